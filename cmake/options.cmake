@@ -1,0 +1,45 @@
+# Options of the build, and what every target of the project is compiled with.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
+endif()
+
+option(ISOTET_IO "Read files through VTK, pugixml and HDF5 (VTU, Exodus, CGNS, XDMF, ...)" ON)
+option(ISOTET_PROGRAM "Build the program isotet" ${PROJECT_IS_TOP_LEVEL})
+option(ISOTET_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(ISOTET_BENCH "Build the benchmarks" OFF)
+option(ISOTET_FUZZ "Build the fuzz targets (clang with libFuzzer)" OFF)
+option(ISOTET_WERROR "Warnings are errors" OFF)
+set(ISOTET_SANITIZE "" CACHE STRING "Sanitizers to build with: address,undefined or thread")
+
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# Contraction is off everywhere: the same bytes on every machine and engine depend on it.
+function(isotet_target target)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wpedantic)
+    if(ISOTET_WERROR)
+        target_compile_options(${target} PRIVATE -Werror)
+    endif()
+    if(ISOTET_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=${ISOTET_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+        target_link_options(${target} PRIVATE -fsanitize=${ISOTET_SANITIZE})
+    endif()
+    get_target_property(type ${target} TYPE)
+    if(type MATCHES "LIBRARY")
+        target_include_directories(${target}
+            PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+            PRIVATE ${PROJECT_SOURCE_DIR}/src)
+        set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+    else()
+        target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    endif()
+endfunction()
+
+# Facts of the build for `isotet --version`.
+execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} rev-parse --short=12 HEAD
+    OUTPUT_VARIABLE ISOTET_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/version.hpp.in ${PROJECT_BINARY_DIR}/include/isotet/version.hpp)

@@ -1,0 +1,71 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+enum class Engine : std::uint8_t { cpu, reference };
+
+enum class Ties : std::uint8_t {
+    merge, ///< default mode: vertices on edges that meet in a tied point are one vertex; no zero-area triangles at ties
+    keep,  ///< kept mode (`keep_degenerate`): every crossed edge gives a vertex, every cut tet one or two triangles
+};
+
+struct ExtractOptions {
+    Engine engine = Engine::cpu;
+    Ties ties = Ties::merge;
+    Normals normals = Normals::none; ///< gradient needs PackOptions::gradients
+    bool edge_ends = false;          ///< edge_ends and edge_weights
+    bool source_cells = false;       ///< needs PackOptions::source_cells
+    std::vector<Field> point_fields; ///< carried onto the surface: one tuple a point of the user's grid, any components
+    std::vector<Field> cell_fields;  ///< copied to the triangles: one tuple a user's cell; needs PackOptions::source_cells
+    int threads = 0;                 ///< 0: all
+};
+
+struct ExtractReport {
+    std::uint64_t selected_clusters = 0;
+    std::uint64_t tied_points = 0;            ///< points whose stored value equals the stored isovalue
+    std::optional<std::uint64_t> false_ties;  ///< of these, not ties in the input's own precision; nothing when the input is no longer at hand
+    bool near_tie = false; ///< no point is tied, but points hold the value of the field's type nearest to the isovalue (0.7 on float32)
+    double isovalue_stored = 0;               ///< the isovalue as rounded for the comparison, in the unit of the field
+    std::uint64_t transient_bytes = 0;        ///< beyond the surface itself, at the peak
+};
+
+struct Extraction {
+    Surface surface;
+    ExtractReport report;
+};
+
+/// Extracts the surface on which the packed field, linear in each tetrahedron, equals `isovalue`.
+///
+/// A point whose value equals the isovalue counts as above it; edges that meet in such a point share one vertex there
+/// (Ties::merge) or have one each (Ties::keep). Tets with a corner of no data give nothing.
+///
+/// `packed`     C clusters; borrowed, must outlive the call
+/// `isovalue`   in the unit of the field; finite
+///
+/// Guarantees   every crossed edge gives one vertex; the surface is closed except on boundary faces of the valid tets;
+///              the same bytes for any thread count and on every engine
+/// Cost         O(C + V + F); transient memory at most 48 bytes a triangle, 100 a selected cluster, 16 a cluster, 1 MB a thread
+/// Errors       invalid_argument when the isovalue is not finite, a field does not fit, or something was not packed;
+///              out_of_memory; cancelled
+/// Threads      safe from many threads on one packed grid
+/// Method       marching tetrahedra over clusters; docs/inside/clusters.md
+Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options = {},
+                           const Progress& progress = {});
+
+/// The nearest value that the type of the field can hold: 0.7 becomes 0.699999988 on a float32 field, 3.2 becomes 3 on
+/// integers.
+double snap(const Array& values, double isovalue);
+
+} // namespace isotet

@@ -1,0 +1,141 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+/// Cell types, with VTK's numbers and VTK's order of corners. Any other number is a cell that isotet leaves out.
+enum class CellType : std::uint8_t { tetrahedron = 10, voxel = 11, hexahedron = 12, wedge = 13, pyramid = 14 };
+
+/// "tetrahedron", "quadratic tetrahedron", "polygon" and so on for any of VTK's numbers; "cell type 97" otherwise.
+std::string name_of_cell_type(std::uint8_t vtk_type);
+
+/// The cells of a grid: corners of all cells one after another, and where each cell's corners start.
+///
+/// `connectivity`  int32, uint32, int64 or uint64, one component; the point numbers of the corners
+/// `offsets`       int32, uint32, int64 or uint64, one component, one more than there are cells; or empty: then every
+///                 cell is a `uniform_type` and cell c starts at c times its number of corners
+/// `types`         uint8, one a cell (VTK's numbers); or empty: every cell is a `uniform_type`
+struct Cells {
+    Array connectivity;
+    Array offsets;
+    Array types;
+    CellType uniform_type = CellType::tetrahedron;
+
+    std::size_t count() const noexcept;
+};
+
+/// Points, cells and fields, as the user has them: any order, any numeric type. Arrays are shared, never copied.
+///
+/// `points`        float32 or float64, 3 components
+/// `point_fields`  one tuple a point;  `cell_fields`  one tuple a cell. Names may occur in both.
+struct Grid {
+    Array points;
+    Cells cells;
+    std::vector<Field> point_fields;
+    std::vector<Field> cell_fields;
+};
+
+/// What a grid holds and what is odd about it. Nothing here is an error: errors are returned by survey() itself.
+struct GridReport {
+    std::size_t points = 0;
+    std::size_t cells = 0;
+    std::map<std::uint8_t, std::size_t> cells_by_type; ///< VTK's number -> cells
+    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic, polyhedral)
+    std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones counted
+    std::size_t collapsed_tets = 0;    ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
+    std::size_t repeated_tets = 0;     ///< tets with the same four corners as an earlier one; packing keeps the first
+    std::size_t negative_tets = 0;     ///< tets of negative volume in the order of the file
+    std::size_t inverted_tets = 0;     ///< tets whose sign is not that of most
+    std::size_t flat_tets = 0;         ///< tets of volume exactly zero
+    std::size_t unused_points = 0;     ///< points that no contoured cell uses
+    std::size_t duplicate_points = 0;  ///< used points with the coordinates of a used point of a lower number
+    std::size_t boundary_faces = 0;    ///< faces that the tets do not use equally often in both directions
+    std::array<double, 3> lower{}, upper{}; ///< bounds of the used points
+};
+
+/// Checks a grid and counts what is in it.
+///
+/// Errors   invalid_data: point number out of range, array of the wrong length or type, wrong number of corners,
+///          offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
+///          nothing left that can be contoured; cancelled
+/// Cost     O(n log n); with `faces` false neither repeated tets nor boundary faces nor duplicate points are counted
+///          and it is one pass over the cells
+/// Threads  safe from many threads on one grid
+struct SurveyOptions {
+    bool faces = true;
+    int threads = 0; ///< 0: all
+};
+Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Progress& progress = {});
+
+/// The tets that isotet makes of a grid, in the user's order: each cell's tets one after another, collapsed ones
+/// dropped, corners in the order of the file (tetrahedra) or of the splitting; orientation is not changed.
+///
+/// Hexahedra, voxels, wedges and pyramids are split by the rule of the lowest point number on each quadrilateral face
+/// (Dompierre, Labbé, Vallet, Camarero 1999), so that neighbours always agree, whatever their types.
+///
+/// Guarantees   the same tets for any thread count
+/// Errors       as survey()
+struct TetList {
+    std::vector<std::array<std::uint64_t, 4>> tets; ///< point numbers
+    std::vector<std::uint64_t> cells;               ///< the cell each tet comes from
+};
+Result<TetList> split(const Grid& grid, const Progress& progress = {});
+
+/// Welds points closer than `tolerance` (0: exactly equal coordinates; -0 equals +0): every cell then uses the
+/// lowest-numbered point of each chain of close points. Points and point fields keep their numbers and lengths.
+///
+/// Errors   invalid_argument when the tolerance is negative or not finite; invalid_data as survey(); out_of_memory
+/// Cost     O(P log P), 24 bytes a point, and a new connectivity
+struct MergedPoints {
+    Grid grid;
+    std::size_t merged = 0; ///< points no longer used
+};
+Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Progress& progress = {});
+
+/// A field to contour: one scalar per point of the grid, and how it was found.
+struct PointField {
+    std::string name;      ///< as asked for, such as "velocity:x"
+    Array values;          ///< one component, one scalar a point
+    bool averaged = false; ///< made from a cell field by volume-weighted averaging
+    std::string note;      ///< empty, or a sentence for the user (a name that is both a point and a cell field, say)
+};
+
+/// Finds the scalar field called `name` on a grid.
+///
+/// The name is first taken whole; only if no field has it is the part after the last colon a component: `x`, `y`, `z`,
+/// `mag`, or a number from 0. A name that is both a point and a cell field means the point field, with a note. If no
+/// field is meant, `x`, `y`, `z` are the coordinates. An empty name means the only field there is.
+/// A cell field is averaged to the points, weighted by the volumes of the cells around each; cells where it is NaN are
+/// left out; a point without a cell left is NaN.
+///
+/// Errors   invalid_argument when there is no such field (what there is, nearest first), when it is ambiguous or has
+///          several components, or when a field's length is not that of the grid
+struct FindFieldOptions {
+    enum class Prefer { point, cell } prefer = Prefer::point;
+    int threads = 0;
+};
+Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {});
+
+/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is needed.
+struct FieldName {
+    std::string field;
+    std::optional<std::string> component;
+};
+std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
+
+/// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.
+std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names);
+
+} // namespace isotet

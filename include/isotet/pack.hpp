@@ -1,0 +1,111 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+namespace core {
+struct Packed;
+}
+
+enum class Precision : std::uint8_t { single, double_ };
+
+struct PackOptions {
+    Precision precision = Precision::single;
+    bool source_cells = false; ///< keep the user's cell number of every packed tet (4 bytes a tet)
+    bool gradients = false;    ///< keep a gradient direction at every point (4 bytes a point), for gradient normals
+    int threads = 0;           ///< 0: all
+};
+
+/// What packing found and what it costs.
+struct PackReport {
+    std::uint64_t points = 0;          ///< points that tets use
+    std::uint64_t tets = 0;            ///< stored tets: collapsed and repeated ones dropped
+    std::uint64_t clusters = 0;
+    std::uint64_t cells_left_out = 0;  ///< cells of types that are not contoured
+    std::uint64_t collapsed_tets = 0, repeated_tets = 0, negative_tets = 0, inverted_tets = 0, flat_tets = 0;
+    std::uint64_t flushed_coordinates = 0; ///< non-zero coordinates below 2^-70, stored as 0
+    std::uint64_t coarse_clusters = 0; ///< clusters where rounding to float32 moves a point by over a thousandth of the shortest edge
+    std::uint64_t bytes = 0;           ///< packed grid, point map included
+    std::uint64_t source_bytes = 0;    ///< of the map to user's cells
+    std::uint64_t gradient_bytes = 0;
+};
+
+/// How a field's values are stored; see docs/inside/precision.md.
+struct FieldReport {
+    std::string name;
+    double lower = 0, upper = 0;       ///< smallest and largest finite value at the points that tets use, as the user gave them
+    std::uint64_t no_data = 0;         ///< points with NaN
+    std::uint64_t infinite = 0;
+    std::uint64_t flushed = 0;         ///< non-zero values that are stored as 0
+    double offset = 0;                 ///< stored = (value - offset) * scale, rounded
+    double scale = 1;                  ///< a power of two
+    bool unchanged = false;            ///< no rounding: float32 or integers below 2^24 (2^53 in double packing)
+};
+
+/// The grid in clusters: what every engine works on.
+///
+/// The grid that was packed is not needed any more, except that the array of the contoured field stays shared (it tells
+/// false ties). Moving is cheap; copying is not possible.
+///
+/// Threads   const functions are safe from many threads; set_field() and set_points() need the object alone
+class PackedGrid {
+public:
+    PackedGrid();
+    explicit PackedGrid(std::unique_ptr<core::Packed> data);
+    PackedGrid(PackedGrid&&) noexcept;
+    PackedGrid& operator=(PackedGrid&&) noexcept;
+    ~PackedGrid();
+
+    const PackReport& report() const noexcept;
+    const FieldReport& field() const noexcept;
+    Precision precision() const noexcept;
+    std::array<double, 3> origin() const noexcept; ///< positions are stored relative to it
+    std::uint64_t user_points() const noexcept;    ///< points of the user's grid, unused ones too
+    std::uint64_t user_cells() const noexcept;
+
+    /// The packed arrays, for engines; src/core/packed.hpp draws them.
+    const core::Packed& data() const noexcept { return *data_; }
+
+    /// Replaces the contoured field (another field, or the next time step on the same cells) without packing again.
+    ///
+    /// `field`   one scalar for each point of the user's grid
+    /// Cost      one pass over values and tets; nothing proportional to the grid is allocated
+    /// Errors    invalid_argument when the length or the number of components is wrong; cancelled (the packed grid then
+    ///           has no usable field: set one again)
+    Result<void> set_field(const PointField& field, int threads = 0, const Progress& progress = {});
+
+    /// Replaces the coordinates (a mesh that moves) without packing again: the same points and cells in the same order.
+    ///
+    /// `points`  float32 or float64, 3 components, as many as the user's grid has
+    /// Errors    invalid_argument when the shape or type is wrong; invalid_data when a coordinate is not finite or 2^91 or
+    ///           more, or when a tet changes its orientation (pack again)
+    Result<void> set_points(const Array& points, int threads = 0, const Progress& progress = {});
+
+private:
+    std::unique_ptr<core::Packed> data_;
+};
+
+/// Packs a grid: cells are checked and split into tets, tets are oriented, sorted along a Hilbert curve, and gathered
+/// into clusters of at most 128 points by growth.
+///
+/// `field`      the field to contour; its length must be the number of points
+/// Guarantees   the packed grid is the same bytes for any thread count
+/// Cost         O(T log T); about 10 to 12 bytes a tet stay, at most 40 bytes a tet beyond the input at the peak
+/// Errors       invalid_data as survey(); invalid_argument when the field does not fit the grid; out_of_memory, before
+///              memory is taken, with the amount needed and the amount free; cancelled
+/// Threads      safe from many threads
+/// Method       docs/inside/packing.md
+Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options = {},
+                        const Progress& progress = {});
+
+} // namespace isotet

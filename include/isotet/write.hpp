@@ -1,0 +1,33 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+struct WriteReport {
+    std::uint64_t bytes = 0;
+    std::vector<std::string> notes; ///< what the format could not hold: "STL holds float32: the origin (4.3e6, ...) was left out"
+};
+
+/// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless given.
+///
+/// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the old
+/// file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file differs
+/// between runs.
+///
+/// Errors   invalid_argument: unknown format, `path` is a folder or not a plain file; machine: disk full, not writable; cancelled
+Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format = {},
+                                  const Progress& progress = {});
+
+/// Writes a grid: vtu (raw appended), vtk (legacy binary); the same guarantees.
+Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const std::string& format = {},
+                               const Progress& progress = {});
+
+} // namespace isotet

@@ -1,0 +1,25 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Running work on a given number of threads. The one place that knows how many there are.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace isotet::core {
+
+/// Runs `work` in an arena of `threads` threads (0: all that the process may use). Parallel algorithms called inside
+/// use that many, even more than there are cores.
+void with_threads(int threads, const std::function<void()>& work);
+
+/// Calls body(begin, end) for pieces of [0, count) of about `grain`, in parallel, in any order.
+void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Calls body(index) for every index of [0, count), in parallel; for bodies that are worth a call each.
+template <class Body>
+void parallel_each(std::size_t count, std::size_t grain, const Body& body) {
+    parallel_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+} // namespace isotet::core
