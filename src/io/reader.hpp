@@ -1,0 +1,36 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a grid reader is to isotet::read(): a format and two functions. src/io/read.cpp picks one by content, then name.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <isotet/read.hpp>
+
+namespace isotet::io {
+
+/// One grid format. `recognizes` sees the first bytes of the file (up to 4 KiB) and its lower-case extension (".vtu").
+struct GridReader {
+    Format format;
+    /// 0: no; 1: by the name only; 2: by the content.
+    int (*recognizes)(std::string_view head, std::string_view extension);
+    Result<FileInfo> (*inspect)(const std::string& path, const ReadOptions& options, const Progress& progress);
+    /// Returns arrays as the file has them; isotet::read() checks shapes and index ranges afterwards.
+    Result<ReadResult> (*read)(const std::string& path, const ReadOptions& options, const Progress& progress);
+};
+
+/// src/io/own: readers that are always there.
+std::span<const GridReader> own_readers();
+
+/// src/io/vtk: with ISOTET_IO only.
+std::span<const GridReader> vtk_readers();
+
+/// src/io/vtk: a surface through VTK's readers, for files that ours do not take (compressed VTP and the like).
+Result<SurfaceFile> read_surface_with_vtk(const std::string& path, const Progress& progress);
+
+/// True when `options` ask for the field; fields nobody asked for are not read.
+bool wanted(const ReadOptions& options, Association association, std::string_view name);
+
+} // namespace isotet::io
