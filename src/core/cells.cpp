@@ -1,0 +1,259 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "core/cells.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/parallel.hpp"
+
+namespace isotet {
+
+std::size_t Cells::count() const noexcept {
+    if (!types.empty()) return types.tuples();
+    if (!offsets.empty()) return offsets.tuples() - 1;
+    return connectivity.tuples() / static_cast<std::size_t>(core::corners_of(static_cast<std::uint8_t>(uniform_type)));
+}
+
+namespace core {
+
+namespace {
+
+constexpr std::uint8_t tetrahedron = 10, voxel = 11, hexahedron = 12, wedge = 13, pyramid = 14;
+
+/// True when the diagonal of the quadrilateral a b c d starts in a (or c): when one of these is the lowest.
+bool diagonal_from_first(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
+    return std::min(a, c) <= std::min(b, d);
+}
+
+/// Two tets between the quadrilateral a b c d and a point.
+void add_quad(CellTets& out, std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d, std::uint64_t apex) {
+    if (diagonal_from_first(a, b, c, d)) {
+        out.add(a, b, c, apex);
+        out.add(a, c, d, apex);
+    } else {
+        out.add(a, b, d, apex);
+        out.add(b, c, d, apex);
+    }
+}
+
+/// Rotations of a hexahedron that bring corner k to position 0 (Dompierre et al. 1999, table 1).
+constexpr int hexahedron_rotations[8][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {1, 2, 3, 0, 5, 6, 7, 4}, {2, 3, 0, 1, 6, 7, 4, 5},
+                                            {3, 0, 1, 2, 7, 4, 5, 6}, {4, 7, 6, 5, 0, 3, 2, 1}, {5, 4, 7, 6, 1, 0, 3, 2},
+                                            {6, 5, 4, 7, 2, 1, 0, 3}, {7, 6, 5, 4, 3, 2, 1, 0}};
+
+// The lowest corner sees the three faces that do not touch it; each of their halves makes a tet with it. If no diagonal of
+// these faces ends in the opposite corner 6, that corner is cut off and five tets are enough.
+void split_hexahedron(const std::uint64_t* corners, CellTets& out) {
+    const auto lowest = std::min_element(corners, corners + 8) - corners;
+    std::uint64_t v[8];
+    for (int i = 0; i < 8; ++i) v[i] = corners[hexahedron_rotations[lowest][i]];
+    const bool right = diagonal_from_first(v[1], v[5], v[6], v[2]); // 1-6
+    const bool back = diagonal_from_first(v[3], v[2], v[6], v[7]);  // 3-6
+    const bool top = diagonal_from_first(v[4], v[7], v[6], v[5]);   // 4-6
+    if (!right && !back && !top) {
+        out.add(v[0], v[1], v[2], v[5]);
+        out.add(v[0], v[2], v[3], v[7]);
+        out.add(v[0], v[5], v[7], v[4]);
+        out.add(v[2], v[7], v[5], v[6]);
+        out.add(v[0], v[2], v[7], v[5]);
+        return;
+    }
+    // Faces counter-clockwise seen from corner 0, so that every tet is as upright as the cell.
+    add_quad(out, v[1], v[5], v[6], v[2], v[0]);
+    add_quad(out, v[3], v[2], v[6], v[7], v[0]);
+    add_quad(out, v[4], v[7], v[6], v[5], v[0]);
+}
+
+void split_wedge(const std::uint64_t* corners, CellTets& out) {
+    static constexpr int rotations[6][6] = {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2, 0, 1, 5, 3, 4},
+                                            {3, 5, 4, 0, 2, 1}, {4, 3, 5, 1, 0, 2}, {5, 4, 3, 2, 1, 0}};
+    const auto lowest = std::min_element(corners, corners + 6) - corners;
+    std::uint64_t v[6];
+    for (int i = 0; i < 6; ++i) v[i] = corners[rotations[lowest][i]];
+    out.add(v[3], v[5], v[4], v[0]);
+    add_quad(out, v[1], v[4], v[5], v[2], v[0]);
+}
+
+void split_pyramid(const std::uint64_t* v, CellTets& out) { add_quad(out, v[0], v[1], v[2], v[3], v[4]); }
+
+} // namespace
+
+int corners_of(std::uint8_t vtk_type) {
+    switch (vtk_type) {
+    case tetrahedron: return 4;
+    case voxel:
+    case hexahedron: return 8;
+    case wedge: return 6;
+    case pyramid: return 5;
+    default: return 0;
+    }
+}
+
+bool is_contoured(std::uint8_t vtk_type) { return corners_of(vtk_type) != 0; }
+
+CellTets CellReader::tets(std::size_t cell) const {
+    CellTets out;
+    const std::uint64_t start = first(cell);
+    std::uint64_t v[8];
+    switch (type(cell)) {
+    case tetrahedron:
+        out.add(corner(start), corner(start + 1), corner(start + 2), corner(start + 3));
+        break;
+    case voxel:
+        for (std::uint64_t i = 0; i < 8; ++i) v[i] = corner(start + (i ^ (i >> 1 & 1))); // 0 1 3 2 4 5 7 6
+        split_hexahedron(v, out);
+        break;
+    case hexahedron:
+        for (std::uint64_t i = 0; i < 8; ++i) v[i] = corner(start + i);
+        split_hexahedron(v, out);
+        break;
+    case wedge:
+        for (std::uint64_t i = 0; i < 6; ++i) v[i] = corner(start + i);
+        split_wedge(v, out);
+        break;
+    case pyramid:
+        for (std::uint64_t i = 0; i < 5; ++i) v[i] = corner(start + i);
+        split_pyramid(v, out);
+        break;
+    default: break;
+    }
+    return out;
+}
+
+Result<CellReader> CellReader::open(const Grid& grid) {
+    const auto invalid = [](std::string message) { return Error{ErrorCode::invalid_data, std::move(message)}; };
+    const auto is_index = [](const Array& array) {
+        return array.type() == ScalarType::int32 || array.type() == ScalarType::uint32 ||
+               array.type() == ScalarType::int64 || array.type() == ScalarType::uint64;
+    };
+    const Cells& cells = grid.cells;
+    if (!is_floating(grid.points.type()) || grid.points.components() != 3)
+        return invalid(fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
+                                   name_of(grid.points.type()), grid.points.components()));
+    if (!is_index(cells.connectivity) || (!cells.connectivity.empty() && cells.connectivity.components() != 1))
+        return invalid(fmt::format("the connectivity is {} with {} components, but must be 32- or 64-bit integers with 1",
+                                   name_of(cells.connectivity.type()), cells.connectivity.components()));
+    CellReader reader;
+    reader.points_ = grid.points.tuples();
+    reader.connectivity_ = IndexColumn(cells.connectivity);
+    reader.connectivity_size_ = cells.connectivity.tuples();
+    reader.uniform_type_ = static_cast<std::uint8_t>(cells.uniform_type);
+    reader.uniform_corners_ = static_cast<std::uint64_t>(corners_of(reader.uniform_type_));
+    if (!cells.types.empty()) {
+        if (cells.types.type() != ScalarType::uint8 || cells.types.components() != 1)
+            return invalid(fmt::format("the cell types are {}, but must be uint8 with 1 component", name_of(cells.types.type())));
+        if (cells.offsets.empty()) return invalid("there are cell types but no offsets, and cells of several types need offsets");
+        reader.types_ = cells.types.as<std::uint8_t>().data();
+    } else if (reader.uniform_corners_ == 0) {
+        return invalid(fmt::format("all cells are of type {}, which cannot be contoured", reader.uniform_type_));
+    }
+    if (!cells.offsets.empty()) {
+        if (!is_index(cells.offsets) || cells.offsets.components() != 1)
+            return invalid(fmt::format("the offsets are {}, but must be 32- or 64-bit integers with 1 component",
+                                       name_of(cells.offsets.type())));
+        if (reader.types_ && cells.offsets.tuples() != cells.types.tuples() + 1)
+            return invalid(fmt::format("there are {} offsets for {} cells, but there must be one more than cells",
+                                       cells.offsets.tuples(), cells.types.tuples()));
+        reader.offsets_ = IndexColumn(cells.offsets);
+        reader.has_offsets_ = true;
+    } else if (reader.connectivity_size_ % reader.uniform_corners_ != 0) {
+        return invalid(fmt::format("the connectivity has {} entries, but must be a multiple of {} for {} cells",
+                                   reader.connectivity_size_, reader.uniform_corners_, name_of_cell_type(reader.uniform_type_)));
+    }
+    reader.count_ = cells.count();
+    reader.only_tets_ = !reader.types_ && reader.uniform_type_ == tetrahedron;
+    const auto check_fields = [&](const std::vector<Field>& fields, std::size_t expected, const char* what) -> Result<void> {
+        for (const Field& field : fields)
+            if (field.values.tuples() != expected)
+                return Error{ErrorCode::invalid_data, fmt::format("{} field '{}' has {} tuples, but the grid has {} {}s", what,
+                                                                  field.name, field.values.tuples(), expected, what)};
+        return {};
+    };
+    if (auto ok = check_fields(grid.point_fields, reader.points_, "point"); !ok) return ok.error();
+    if (auto ok = check_fields(grid.cell_fields, reader.count_, "cell"); !ok) return ok.error();
+    return reader;
+}
+
+namespace {
+
+enum class Fault { none, offset_falls, offset_end, corner_count, point_range, coordinate };
+
+Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
+    const std::uint64_t begin = cells.first(cell);
+    const std::uint64_t corners = cells.corners(cell);
+    if (corners > cells.connectivity_size() || begin > cells.connectivity_size() - corners)
+        return begin + corners < begin ? Fault::offset_falls : Fault::offset_end;
+    const int expected = corners_of(cells.type(cell));
+    if (expected == 0) return Fault::none;
+    if (corners != static_cast<std::uint64_t>(expected)) return Fault::corner_count;
+    for (std::uint64_t k = 0; k < corners; ++k) {
+        const std::uint64_t point = cells.corner(begin + k);
+        if (point >= cells.points()) return Fault::point_range;
+        const auto good = [](auto coordinates, std::uint64_t p) {
+            constexpr auto limit = 0x1p91;
+            return std::abs(coordinates[3 * p]) < limit && std::abs(coordinates[3 * p + 1]) < limit &&
+                   std::abs(coordinates[3 * p + 2]) < limit; // false for NaN
+        };
+        const bool fine = grid.points.type() == ScalarType::float32 ? good(grid.points.as<float>(), point)
+                                                                    : good(grid.points.as<double>(), point);
+        if (!fine) return Fault::coordinate;
+    }
+    return Fault::none;
+}
+
+std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std::size_t cell) {
+    const std::uint64_t begin = cells.first(cell), corners = cells.corners(cell);
+    const std::string who = cells.only_tets() ? fmt::format("tets[{}]", cell)
+                                              : fmt::format("cells[{}] ({})", cell, name_of_cell_type(cells.type(cell)));
+    if (fault == Fault::offset_falls)
+        return fmt::format("{} starts at {} and ends at {}, but offsets must not fall", who, static_cast<std::int64_t>(begin),
+                           static_cast<std::int64_t>(begin + corners));
+    if (fault == Fault::offset_end)
+        return fmt::format("{} has corners {} to {}, but the connectivity has {} entries", who, static_cast<std::int64_t>(begin),
+                           static_cast<std::int64_t>(begin + corners), cells.connectivity_size());
+    if (fault == Fault::corner_count)
+        return fmt::format("{} has {} corners, but must have {}", who, corners, corners_of(cells.type(cell)));
+    for (std::uint64_t k = 0; k < corners; ++k) {
+        const std::uint64_t point = cells.corner(begin + k);
+        if (point >= cells.points()) {
+            if (fault != Fault::point_range) continue;
+            return fmt::format("{} has point {}, but the grid has {} points", who, static_cast<std::int64_t>(point), cells.points());
+        }
+        for (std::size_t axis = 0; axis < 3 && fault == Fault::coordinate; ++axis)
+            if (const double x = grid.points.at(point, axis); !(std::abs(x) < 0x1p91))
+                return fmt::format("points[{}] has {} coordinate {}, but cells use the point, and coordinates must be finite and "
+                                   "below 2^91",
+                                   point, "xyz"[axis], x);
+    }
+    return who + " is broken";
+}
+
+} // namespace
+
+Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progress& progress) {
+    if (grid.cells.offsets.tuples() > 0 && IndexColumn(grid.cells.offsets)[0] > cells.connectivity_size())
+        return Error{ErrorCode::invalid_data, fmt::format("the first offset is {}, but the connectivity has {} entries",
+                                                          IndexColumn(grid.cells.offsets)[0], cells.connectivity_size())};
+    // The lowest broken cell is the one reported, whatever the threads do.
+    std::atomic<std::size_t> lowest{std::numeric_limits<std::size_t>::max()};
+    parallel_ranges(cells.count(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+        if (progress.cancelled() || begin > lowest.load(std::memory_order_relaxed)) return;
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            if (fault_of(grid, cells, cell) == Fault::none) continue;
+            std::size_t seen = lowest.load(std::memory_order_relaxed);
+            while (cell < seen && !lowest.compare_exchange_weak(seen, cell, std::memory_order_relaxed)) {}
+            return;
+        }
+    });
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
+    if (const std::size_t cell = lowest.load(); cell < cells.count())
+        return Error{ErrorCode::invalid_data, describe(fault_of(grid, cells, cell), grid, cells, cell)};
+    return {};
+}
+
+} // namespace core
+} // namespace isotet

@@ -1,0 +1,28 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Signs computed exactly: a floating-point filter first, expansions (sums of doubles that do not overlap) where it fails.
+// Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates (1997).
+#pragma once
+
+#include <array>
+
+namespace isotet::core {
+
+using Point = std::array<double, 3>;
+
+/// The sign of (b - a) . ((c - a) x (d - a)): +1 when the tet a b c d is upright, -1 when it is inverted, 0 when it is flat.
+///
+/// Guarantees   exact for all coordinates below 2^91, unless parts smaller than 2^-1000 of the largest decide
+int orientation_sign(const Point& a, const Point& b, const Point& c, const Point& d);
+
+/// True when the triangle a b c has area exactly zero.
+bool is_collinear(const Point& a, const Point& b, const Point& c);
+
+/// Six times the volume of a tet, rounded: positive when it is upright.
+inline double six_volumes(const Point& a, const Point& b, const Point& c, const Point& d) {
+    const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
+    const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
+    const double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
+    return bx * (cy * dz - cz * dy) + by * (cz * dx - cx * dz) + bz * (cx * dy - cy * dx);
+}
+
+} // namespace isotet::core
