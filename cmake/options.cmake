@@ -1,6 +1,6 @@
 # Options of the build, and what every target of the project is compiled with.
 
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
@@ -11,6 +11,10 @@ option(ISOTET_BENCH "Build the benchmarks" OFF)
 option(ISOTET_FUZZ "Build the fuzz targets (clang with libFuzzer)" OFF)
 option(ISOTET_WERROR "Warnings are errors" OFF)
 set(ISOTET_SANITIZE "" CACHE STRING "Sanitizers to build with: address,undefined or thread")
+
+# What is asked of VTK; an installed isotet::io asks for the same.
+set(ISOTET_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOParallelXML IOLegacy IOGeometry IOExodus IOCGNSReader IOHDF
+    IOEnSight)
 
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)

@@ -1,0 +1,100 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "includes/include_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <fmt/format.h>
+
+namespace isotet::test {
+namespace {
+
+/// A folder and the folders under src/ from which its files may include, besides the public headers. First match counts.
+struct FolderRule {
+    std::string_view folder;
+    std::vector<std::string_view> may_see;
+};
+
+const std::vector<FolderRule>& folder_rules() {
+    static const std::vector<FolderRule> rules = {
+        {"include/", {}},
+        {"src/core/", {"core/"}},
+        {"src/make/", {"make/", "core/"}},
+        {"src/ops/", {"ops/", "core/"}},
+        {"src/reference/", {"reference/", "ops/", "core/"}},
+        {"src/cpu/", {"cpu/", "ops/", "core/"}},
+        {"src/api/", {"api/", "reference/", "cpu/", "ops/", "make/", "core/"}},
+        {"src/io/own/", {"io/", "core/"}},
+        {"src/io/vtk/", {"io/", "core/"}},
+        {"src/io/", {"io/", "core/"}},
+        {"apps/cli/", {"cli/"}},
+        {"examples/", {}},
+    };
+    return rules;
+}
+
+/// A library, how its headers begin, and the folders that may include them.
+struct LibraryRule {
+    std::string_view library;
+    std::vector<std::string_view> beginnings;
+    std::vector<std::string_view> folders;
+};
+
+const std::vector<LibraryRule>& library_rules() {
+    static const std::vector<LibraryRule> rules = {
+        {"VTK", {"vtk"}, {"src/io/vtk/", "bench/", "tests/"}},
+        {"pugixml", {"pugixml"}, {"src/io/", "tests/"}},
+        {"HDF5", {"hdf5", "H5"}, {"src/io/", "tests/"}},
+        {"oneTBB", {"tbb/", "oneapi/"}, {"src/", "bench/", "tests/"}},
+        {"fmt", {"fmt/"}, {"src/", "apps/", "bench/", "tests/"}},
+        {"CLI11", {"CLI/"}, {"apps/", "tests/"}},
+        {"nlohmann_json", {"nlohmann/"}, {"apps/", "bench/", "tests/"}},
+        {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
+    };
+    return rules;
+}
+
+constexpr std::array<std::string_view, 11> folders_of_src = {"core/", "make/", "ops/", "reference/", "cpu/", "api/",
+                                                             "io/", "search/", "vulkan/", "render/", "cli/"};
+
+bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
+    return std::any_of(beginnings.begin(), beginnings.end(), [&](auto beginning) { return text.starts_with(beginning); });
+}
+
+} // namespace
+
+std::string included_name(std::string_view line) {
+    const auto skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+    skip_blanks();
+    if (!line.starts_with('#')) return {};
+    line.remove_prefix(1);
+    skip_blanks();
+    if (!line.starts_with("include")) return {};
+    line.remove_prefix(7);
+    skip_blanks();
+    if (line.empty() || (line.front() != '"' && line.front() != '<')) return {};
+    const char closing = line.front() == '"' ? '"' : '>';
+    return std::string(line.substr(1, line.find(closing, 1) - 1));
+}
+
+std::string objection(std::string_view path, std::string_view name) {
+    for (const LibraryRule& rule : library_rules()) {
+        if (begins_with_any(name, rule.beginnings) && !begins_with_any(path, rule.folders)) {
+            return fmt::format("{} is included only from {}", rule.library, fmt::join(rule.folders, ", "));
+        }
+    }
+    if (name.starts_with("tbb/") && path.ends_with(".hpp") && path.starts_with("src/core/")) {
+        return "headers of src/core show no thread library";
+    }
+    if (!begins_with_any(name, folders_of_src)) return {};
+    for (const FolderRule& rule : folder_rules()) {
+        if (!path.starts_with(rule.folder)) continue;
+        if (begins_with_any(name, rule.may_see)) return {};
+        return fmt::format("{} sees only the public headers{}{}", rule.folder, rule.may_see.empty() ? "" : " and ",
+                           fmt::join(rule.may_see, ", "));
+    }
+    return {};
+}
+
+} // namespace isotet::test

@@ -1,0 +1,63 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Includes go one way: core <- ops <- engines <- api <- apps. Every source file of the tree is read.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "includes/include_rules.hpp"
+
+namespace isotet::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_source(const fs::path& path) {
+    return path.extension() == ".hpp" || path.extension() == ".cpp" || path.extension() == ".h";
+}
+
+TEST(Includes, GoOnlyTheDirectionsOfTheArchitecture) {
+    const fs::path root = ISOTET_SOURCE_DIR;
+    std::size_t includes = 0;
+    for (const char* folder : {"include", "src", "apps", "bench", "examples", "tests"}) {
+        if (!fs::exists(root / folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+            const std::string path = entry.path().lexically_relative(root).generic_string();
+            std::ifstream file(entry.path());
+            std::string line;
+            for (int number = 1; std::getline(file, line); ++number) {
+                const std::string name = included_name(line);
+                if (name.empty()) continue;
+                ++includes;
+                EXPECT_EQ(objection(path, name), "") << path << ":" << number << " includes " << name;
+            }
+        }
+    }
+    EXPECT_GT(includes, 100u) << "the check read nothing";
+}
+
+TEST(Includes, AgainstTheDirectionAreFound) {
+    EXPECT_NE(objection("src/core/pack.cpp", "ops/extract.hpp"), "");
+    EXPECT_NE(objection("src/ops/extract.hpp", "cpu/emit.hpp"), "");
+    EXPECT_NE(objection("src/cpu/emit.cpp", "reference/extract.hpp"), "");
+    EXPECT_NE(objection("src/io/own/gmsh.cpp", "cpu/emit.hpp"), "");
+    EXPECT_NE(objection("src/io/own/gmsh.cpp", "vtkCellArray.h"), "");
+    EXPECT_NE(objection("include/isotet/grid.hpp", "fmt/format.h"), "");
+    EXPECT_NE(objection("src/core/parallel.hpp", "tbb/task_arena.h"), "");
+    EXPECT_NE(objection("apps/cli/extract.cpp", "core/packed.hpp"), "");
+    EXPECT_EQ(objection("src/cpu/emit.cpp", "ops/extract.hpp"), "");
+    EXPECT_EQ(objection("src/io/vtk/child.cpp", "vtkCellArray.h"), "");
+    EXPECT_EQ(objection("apps/cli/extract.cpp", "isotet/extract.hpp"), "");
+}
+
+TEST(Includes, AreReadFromTheLinesThatAreIncludes) {
+    EXPECT_EQ(included_name("  #  include <vector> // why"), "vector");
+    EXPECT_EQ(included_name("#include \"core/cells.hpp\""), "core/cells.hpp");
+    EXPECT_EQ(included_name("// #include <vector>"), "");
+    EXPECT_EQ(included_name("#include NAME"), "");
+}
+
+} // namespace
+} // namespace isotet::test
