@@ -14,17 +14,31 @@ namespace isotet {
 
 /// Test grids of any size with analytic fields of known surface, on the cube [-1, 1]^3 (float32 points).
 ///
-/// `shape`    "kuhn": six tets a cube, side^3 cubes (Kuhn 1960); "perturbed": kuhn with inner points moved by up to a fifth of
-///            the spacing, all tets upright; "shuffled": perturbed with points and tets in random order; "layer": kuhn with z
-///            graded so that the thinnest cells have aspect ratio 1000; "hex", "wedge" (two a cube), "pyramid" (six a cube,
-///            with a centre point); "mixed": all four types, and neighbours of different types that agree on their faces
-/// `side`     cubes along an edge, 1 or more
-/// `fields`   any of "sphere" (distance from the centre), "torus" (distance from a circle of radius 0.5), "plane" (along
-///            (1,2,3)), "gyroid", "wavelet", "integer" (a small integer at each point: many ties); float32, integer: int32
+/// All cells are upright in VTK's order of corners, and neighbours agree on the faces between them.
 ///
-/// Guarantees   the same bytes for any thread count
-/// Errors       invalid_argument for an unknown shape or field (what there is), or side < 1; out_of_memory; cancelled
-/// Cost         memory of the order of the grid itself
+/// `shape`    "kuhn": six tets a cube, side^3 cubes (Kuhn 1960); points and cubes along x first, then y, then z
+///            "perturbed": kuhn with each inner point moved, in any direction, by up to a fifth of the spacing
+///            "shuffled": perturbed with points, tets and the corners of each tet in random order
+///            "layer": kuhn with z graded geometrically so that the thinnest cells, at z = -1, have aspect ratio 1000 (from
+///            side 2 on)
+///            "hex"; "wedge" (two a cube); "pyramid" (six a cube, with a centre point)
+///            "mixed": layers of hexahedra, pyramids and tets, wedges, pyramids and tets, over and over: all four types from
+///            side 3 on
+/// `side`     cubes along an edge, 1 to 4096
+/// `fields`   names, each once; float32, computed in double:
+///            "sphere"   sqrt(x^2 + y^2 + z^2)
+///            "torus"    sqrt((sqrt(x^2 + y^2) - 1/2)^2 + z^2)
+///            "plane"    (x + 2y + 3z) / sqrt(14)
+///            "gyroid"   sin X cos Y + sin Y cos Z + sin Z cos X, with X = 2 pi x and so on
+///            "wavelet"  255 exp(-(x^2 + y^2 + z^2) / 2) + 10 sin 30x + 18 sin 15y + 5 cos 20z (VTK's wavelet source)
+///            "integer"  int32, 0 to 4, drawn for each point: many ties
+/// `seed`     of everything that is drawn: it changes perturbed and shuffled grids, and the field integer
+///
+/// Guarantees   the same bytes for any thread count; points, cells, sphere, torus, plane and integer are the same on every
+///              machine, gyroid and wavelet as far as its sin, cos and exp are
+/// Errors       invalid_argument for an unknown shape or field (what there is, nearest first), a field asked for twice, or
+///              a side out of range; out_of_memory; cancelled
+/// Cost         memory of the grid itself: 12 bytes a point, 4 a point and field, 4 a corner (8 above 2^31 points)
 struct MakeOptions {
     std::string shape = "kuhn";
     std::uint64_t side = 32;

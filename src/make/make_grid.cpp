@@ -1,0 +1,248 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// make_grid(): points, cells and fields are computed in place, each from its number alone.
+#include <isotet/make.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/parallel.hpp"
+#include "make/analytic_field.hpp"
+#include "make/lattice.hpp"
+#include "make/permutation.hpp"
+#include "make/shape.hpp"
+
+namespace isotet {
+
+namespace {
+
+using namespace make;
+
+constexpr std::uint64_t largest_side = 4096;
+
+/// Memory that is not touched before it is written: pages are first used by the thread that fills them.
+template <class T>
+struct Block {
+    std::shared_ptr<T[]> values;
+    std::size_t size = 0;
+
+    explicit Block(std::size_t count) : values(std::make_shared_for_overwrite<T[]>(count)), size(count) {}
+    Array array(std::size_t components) const {
+        return Array(scalar_type_of<T>(), values.get(), size / components, components, values);
+    }
+};
+
+/// Even permutations of the corners of a tet: they keep its orientation.
+constexpr std::array<std::array<std::uint8_t, 4>, 12> even_orders{{{0, 1, 2, 3},
+                                                                   {0, 2, 3, 1},
+                                                                   {0, 3, 1, 2},
+                                                                   {1, 0, 3, 2},
+                                                                   {1, 2, 0, 3},
+                                                                   {1, 3, 2, 0},
+                                                                   {2, 0, 1, 3},
+                                                                   {2, 1, 3, 0},
+                                                                   {2, 3, 0, 1},
+                                                                   {3, 0, 2, 1},
+                                                                   {3, 1, 0, 2},
+                                                                   {3, 2, 1, 0}}};
+
+/// Cells and corners of the cubes in the layers below one layer, for each cube of a layer.
+struct Sizes {
+    std::uint64_t cells = 0, corners = 0;
+};
+
+class Maker {
+public:
+    Maker(const Shape& shape, const MakeOptions& options, const Progress& progress)
+        : shape_(shape), options_(options), progress_(progress), lattice_(shape, options.side, options.seed),
+          shuffled_(shape.variant == Variant::shuffled), point_order_(lattice_.points(), options.seed, Stream::point_order) {
+        layers_.resize(options.side + 1);
+        for (std::uint64_t k = 0; k < options.side; ++k) {
+            const CubeCells& cube = shape.layers[k % shape.layers.size()];
+            layers_[k + 1] = {layers_[k].cells + cube.types.size(), layers_[k].corners + cube.corners.size()};
+        }
+        const std::uint64_t cubes = options.side * options.side;
+        for (Sizes& sizes : layers_) sizes = {sizes.cells * cubes, sizes.corners * cubes};
+        work_ = layers_.back().cells + lattice_.points() * (1 + options.fields.size());
+    }
+
+    Result<Grid> make() {
+        Grid grid;
+        grid.points = points();
+        const bool narrow = lattice_.points() <= std::uint64_t{1} << 31;
+        if (narrow) cells<std::int32_t>(grid.cells);
+        else cells<std::int64_t>(grid.cells);
+        for (const std::string& name : options_.fields) grid.point_fields.push_back({name, field(name)});
+        if (progress_.cancelled()) return Error{ErrorCode::cancelled, "making the grid was cancelled"};
+        return grid;
+    }
+
+private:
+    /// Calls body(index) for all indices, in parallel pieces, between which it reports and looks for a cancel.
+    template <class Body>
+    void for_all(std::uint64_t count, const Body& body) {
+        constexpr std::uint64_t piece = 1 << 22;
+        for (std::uint64_t begin = 0; begin < count && !progress_.cancelled(); begin += piece) {
+            const std::uint64_t size = std::min(piece, count - begin);
+            core::parallel_each(size, 1 << 13, [&](std::size_t i) { body(begin + i); });
+            done_ += size;
+            progress_("make", static_cast<double>(done_) / static_cast<double>(work_));
+        }
+    }
+
+    /// The lattice's number of the grid's point.
+    std::uint64_t lattice_point(std::uint64_t point) const { return shuffled_ ? point_order_.inverse(point) : point; }
+
+    Array points() {
+        const Block<float> block(3 * lattice_.points());
+        for_all(lattice_.points(), [&](std::uint64_t point) {
+            const Position position = lattice_.position(lattice_point(point));
+            std::copy(position.begin(), position.end(), block.values.get() + 3 * point);
+        });
+        return block.array(3);
+    }
+
+    Array field(std::string_view name) {
+        const auto at = std::ranges::find(analytic_fields, name, &AnalyticField::name)->at;
+        if (at) {
+            const Block<float> block(lattice_.points());
+            for_all(lattice_.points(), [&](std::uint64_t point) { block.values[point] = at(lattice_.position(lattice_point(point))); });
+            return block.array(1);
+        }
+        const Block<std::int32_t> block(lattice_.points());
+        for_all(lattice_.points(), [&](std::uint64_t point) { block.values[point] = small_integer(options_.seed, lattice_point(point)); });
+        return block.array(1);
+    }
+
+    template <class Index>
+    void cells(Cells& out) {
+        const Sizes total = layers_.back();
+        const Block<Index> connectivity(total.corners);
+        if (shuffled_) shuffled_tets(connectivity.values.get());
+        else if (shape_.uniform) for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
+            write_corners(cube, corners, connectivity.values.get() + first.corners);
+        });
+        out.connectivity = connectivity.array(1);
+        out.uniform_type = shape_.layers[0].types[0];
+        if (!shape_.uniform) {
+            if (total.corners < std::uint64_t{1} << 31) mixed_cells<std::int32_t>(connectivity.values.get(), out);
+            else mixed_cells<std::int64_t>(connectivity.values.get(), out);
+        }
+    }
+
+    /// Cells of several types: with offsets and types beside the connectivity.
+    template <class Offset, class Index>
+    void mixed_cells(Index* connectivity, Cells& out) {
+        const Sizes total = layers_.back();
+        const Block<Offset> offsets(total.cells + 1);
+        const Block<std::uint8_t> types(total.cells);
+        offsets.values[total.cells] = static_cast<Offset>(total.corners);
+        for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
+            write_corners(cube, corners, connectivity + first.corners);
+            std::uint64_t offset = first.corners;
+            for (std::size_t cell = 0; cell < cube.types.size(); ++cell) {
+                offsets.values[first.cells + cell] = static_cast<Offset>(offset);
+                types.values[first.cells + cell] = static_cast<std::uint8_t>(cube.types[cell]);
+                offset += corner_count(cube.types[cell]);
+            }
+        });
+        out.offsets = offsets.array(1);
+        out.types = types.array(1);
+    }
+
+    static constexpr std::uint64_t corner_count(CellType type) {
+        switch (type) {
+        case CellType::tetrahedron: return 4;
+        case CellType::pyramid: return 5;
+        case CellType::wedge: return 6;
+        default: return 8;
+        }
+    }
+
+    template <class Index>
+    static void write_corners(const CubeCells& cube, const std::array<std::uint64_t, 9>& corners, Index* out) {
+        for (const std::uint8_t corner : cube.corners) *out++ = static_cast<Index>(corners[corner]);
+    }
+
+    /// Calls body(cells of the cube, its corners, where its cells go) for every cube.
+    template <class Body>
+    void for_cubes(const Body& body) {
+        const std::uint64_t side = options_.side;
+        for_all(side * side * side, [&](std::uint64_t number) {
+            const std::uint64_t i = number % side, j = number / side % side, k = number / (side * side);
+            const CubeCells& cube = shape_.layers[k % shape_.layers.size()];
+            const std::uint64_t in_layer = i + side * j;
+            body(cube, lattice_.corners(i, j, k),
+                 Sizes{layers_[k].cells + in_layer * cube.types.size(), layers_[k].corners + in_layer * cube.corners.size()});
+        });
+    }
+
+    template <class Index>
+    void shuffled_tets(Index* connectivity) {
+        const std::uint64_t side = options_.side;
+        const Permutation tet_order(layers_.back().cells, options_.seed, Stream::tet_order);
+        for_all(layers_.back().cells, [&](std::uint64_t tet) {
+            const std::uint64_t old = tet_order.inverse(tet), cube = old / 6;
+            const auto corners = lattice_.corners(cube % side, cube / side % side, cube / (side * side));
+            const auto& order = even_orders[draw(options_.seed, Stream::corner_order, tet) % even_orders.size()];
+            for (std::size_t corner = 0; corner < 4; ++corner)
+                connectivity[4 * tet + corner] =
+                    static_cast<Index>(point_order_(corners[tables::kuhn[old % 6 * 4 + order[corner]]]));
+        });
+    }
+
+    const Shape& shape_;
+    const MakeOptions& options_;
+    const Progress& progress_;
+    Lattice lattice_;
+    bool shuffled_;
+    Permutation point_order_;
+    std::vector<Sizes> layers_; ///< cells and corners below each layer
+    std::uint64_t work_ = 0, done_ = 0;
+};
+
+template <class List>
+std::vector<std::string> names_in(const List& list) {
+    std::vector<std::string> names;
+    for (const auto& entry : list) names.emplace_back(entry.name);
+    return names;
+}
+
+std::optional<Error> fault_in(const MakeOptions& options) {
+    if (std::ranges::find(shapes, options.shape, &Shape::name) == shapes.end())
+        return Error{ErrorCode::invalid_argument, fmt::format("the shape is '{}', but must be one of {}", options.shape,
+                                                              fmt::join(nearest_first(options.shape, make_shapes()), ", "))};
+    if (options.side < 1 || options.side > largest_side)
+        return Error{ErrorCode::invalid_argument, fmt::format("the side is {}, but must be 1 to {}", options.side, largest_side)};
+    for (auto name = options.fields.begin(); name != options.fields.end(); ++name) {
+        if (std::ranges::find(analytic_fields, *name, &AnalyticField::name) == analytic_fields.end())
+            return Error{ErrorCode::invalid_argument, fmt::format("a field is '{}', but must be one of {}", *name,
+                                                                  fmt::join(nearest_first(*name, make_fields()), ", "))};
+        if (std::find(options.fields.begin(), name, *name) != name)
+            return Error{ErrorCode::invalid_argument, fmt::format("the field '{}' is asked for twice, but names must differ", *name)};
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::vector<std::string> make_shapes() { return names_in(make::shapes); }
+std::vector<std::string> make_fields() { return names_in(make::analytic_fields); }
+
+Result<Grid> make_grid(const MakeOptions& options, const Progress& progress) {
+    if (const auto fault = fault_in(options)) return *fault;
+    const Shape& shape = *std::ranges::find(shapes, options.shape, &Shape::name);
+    Result<Grid> grid = Error{};
+    try {
+        core::with_threads(options.threads, [&] { grid = Maker(shape, options, progress).make(); });
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::out_of_memory, fmt::format("a {} grid of side {} does not fit into memory", options.shape, options.side)};
+    }
+    return grid;
+}
+
+} // namespace isotet

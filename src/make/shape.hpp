@@ -1,0 +1,39 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The shapes that make_grid() knows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "make/cube_cells.hpp"
+
+namespace isotet::make {
+
+enum class Variant : std::uint8_t { regular, perturbed, shuffled, layer };
+
+/// `layers`   the cubes of layer k are divided like layers[k % layers.size()]
+struct Shape {
+    std::string_view name;
+    std::span<const CubeCells> layers;
+    Variant variant = Variant::regular;
+    bool uniform = true; ///< all cells have one type
+};
+
+namespace tables {
+inline constexpr std::array<CubeCells, 1> kuhn_layers{kuhn_cube}, hex_layers{hex_cube}, wedge_layers{wedge_cube},
+    pyramid_layers{pyramid_cube};
+}
+
+inline constexpr std::array<Shape, 8> shapes{
+    Shape{"kuhn", tables::kuhn_layers},
+    Shape{"perturbed", tables::kuhn_layers, Variant::perturbed},
+    Shape{"shuffled", tables::kuhn_layers, Variant::shuffled},
+    Shape{"layer", tables::kuhn_layers, Variant::layer},
+    Shape{"hex", tables::hex_layers},
+    Shape{"wedge", tables::wedge_layers},
+    Shape{"pyramid", tables::pyramid_layers},
+    Shape{"mixed", mixed_layers, Variant::regular, false},
+};
+
+} // namespace isotet::make
