@@ -1,0 +1,106 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// write_surface() and write_grid(): choose the format, make the columns, hand over.
+#include <isotet/write.hpp>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "io/own/write_formats.hpp"
+#include "io/own/write_names.hpp"
+
+namespace isotet {
+namespace io {
+namespace {
+
+struct SurfaceFormat {
+    std::string_view name;
+    Result<WriteReport> (*write)(const SurfaceToWrite&);
+};
+constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp}, SurfaceFormat{"ply", write_ply},
+                                     SurfaceFormat{"stl", write_stl}, SurfaceFormat{"obj", write_obj},
+                                     SurfaceFormat{"vtk", write_legacy_surface}, SurfaceFormat{"ts", write_ts}};
+
+struct GridFormat {
+    std::string_view name;
+    Result<WriteReport> (*write)(const GridToWrite&);
+};
+constexpr std::array grid_formats{GridFormat{"vtu", write_vtu}, GridFormat{"vtk", write_legacy_grid}};
+
+/// What follows the last dot of the file's name, in lower case.
+std::string ending_of(const std::string& path) {
+    const auto name = path.substr(path.find_last_of('/') + 1);
+    const auto dot = name.rfind('.');
+    std::string ending = dot == std::string::npos ? std::string() : name.substr(dot + 1);
+    for (char& c : ending) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return ending;
+}
+
+template <class Format>
+Result<Format> choose(std::span<const Format> formats, const std::string& path, const std::string& format, std::string_view what) {
+    const std::string wanted = format.empty() ? ending_of(path) : format;
+    std::string all;
+    for (const auto& candidate : formats) {
+        if (candidate.name == wanted) return candidate;
+        all += fmt::format("{}{}", all.empty() ? "" : ", ", candidate.name);
+    }
+    return Error{ErrorCode::invalid_argument,
+                 format.empty() ? fmt::format("{} has the ending \"{}\", but a {} can be written as {}", path, printable_name(wanted), what, all)
+                                : fmt::format("the format \"{}\" is not one in which a {} can be written: {}", printable_name(wanted), what, all)};
+}
+
+/// Runs a writer; what it throws, for want of memory, becomes an error.
+template <class F>
+Result<WriteReport> guarded(const std::string& path, std::vector<std::string>& notes, const F& write) {
+    try {
+        Result<WriteReport> report = write();
+        if (report) report->notes = std::move(notes);
+        return report;
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::out_of_memory, fmt::format("no memory left to write {}", path)};
+    } catch (const std::exception& exception) {
+        return Error{ErrorCode::internal, fmt::format("{}: {}", path, exception.what())};
+    }
+}
+
+} // namespace
+
+void note_left_out(const SurfaceToWrite& input, std::string_view format, const std::vector<const std::vector<Column>*>& lists) {
+    std::string names;
+    for (const auto* list : lists) {
+        for (const auto& column : *list) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", printable_name(column.name));
+    }
+    if (!names.empty()) input.notes.push_back(fmt::format("{} has no place for {}: left out", format, names));
+}
+
+} // namespace io
+
+Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format, const Progress& progress) {
+    std::vector<std::string> notes;
+    return io::guarded(path, notes, [&]() -> Result<WriteReport> {
+        const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, format, "surface");
+        if (!chosen) return chosen.error();
+        const auto columns = io::columns_of(surface, notes);
+        if (!columns) return columns.error();
+        return chosen->write({surface, *columns, path, progress, notes});
+    });
+}
+
+Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const std::string& format, const Progress& progress) {
+    std::vector<std::string> notes;
+    return io::guarded(path, notes, [&]() -> Result<WriteReport> {
+        const auto chosen = io::choose<io::GridFormat>(io::grid_formats, path, format, "grid");
+        if (!chosen) return chosen.error();
+        const auto columns = io::columns_of(grid, notes);
+        if (!columns) return columns.error();
+        return chosen->write({*columns, path, progress});
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,108 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// STL, binary: float32 triangles without shared vertices.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "io/own/write_formats.hpp"
+#include "io/own/write_text.hpp"
+
+namespace isotet::io {
+namespace {
+
+using Vector = std::array<float, 3>;
+
+constexpr std::size_t header_bytes = 80;
+constexpr std::size_t facet_bytes = 50; // normal, three corners, two bytes that nobody uses
+
+/// Relative to the origin.
+Vector position(const Surface& surface, std::uint64_t vertex) {
+    return surface.positions.visit([&](auto values) {
+        return Vector{static_cast<float>(values[3 * vertex]), static_cast<float>(values[3 * vertex + 1]),
+                      static_cast<float>(values[3 * vertex + 2])};
+    });
+}
+
+/// Of unit length, or zero where the triangle has no area.
+Vector facet_normal(const Vector& a, const Vector& b, const Vector& c) {
+    std::array<double, 3> u{}, v{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        u[i] = static_cast<double>(b[i]) - static_cast<double>(a[i]);
+        v[i] = static_cast<double>(c[i]) - static_cast<double>(a[i]);
+    }
+    const std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double length = std::hypot(n[0], n[1], n[2]);
+    if (!(length > 0) || !std::isfinite(length)) return {};
+    return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
+}
+
+void put(const Vector& vector, char* out) {
+    for (const float value : vector) {
+        auto bytes = std::bit_cast<std::array<char, sizeof(float)>>(value);
+        if (std::endian::native != std::endian::little) std::reverse(bytes.begin(), bytes.end());
+        out = std::copy(bytes.begin(), bytes.end(), out);
+    }
+}
+
+/// How far float32 is from the given coordinates at most.
+double largest_rounding(const Array& positions) {
+    double largest = 0;
+    positions.visit([&](auto values) {
+        for (const auto value : values) {
+            const double exact = static_cast<double>(value);
+            if (const double error = std::abs(exact - static_cast<double>(static_cast<float>(exact))); error > largest) largest = error;
+        }
+    });
+    return largest;
+}
+
+} // namespace
+
+Result<WriteReport> write_stl(const SurfaceToWrite& input) {
+    const auto& surface = input.surface;
+    const std::size_t triangles = surface.triangle_count();
+    if (triangles > std::numeric_limits<std::uint32_t>::max()) {
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("the surface has {} triangles, but STL holds at most 4294967295", triangles)};
+    }
+    const auto& origin = surface.origin;
+    if (origin != std::array<double, 3>{}) {
+        input.notes.push_back(fmt::format("STL holds float32: the origin ({}, {}, {}) was left out", origin[0], origin[1], origin[2]));
+    }
+    if (surface.positions.type() == ScalarType::float64) {
+        if (const double error = largest_rounding(surface.positions); error > 0) {
+            input.notes.push_back(fmt::format("STL holds float32: coordinates were rounded by up to {:.3g}", error));
+        }
+    }
+    note_left_out(input, "STL", {&input.columns.edges, &input.columns.point_fields, &input.columns.cell_fields});
+
+    const std::uint64_t expected = header_bytes + sizeof(std::uint32_t) + std::uint64_t{triangles} * facet_bytes;
+    return write_file(input.path, input.progress, expected, [&](WriteStream& stream) {
+        std::string header = "isotet"; // must not start with "solid", by which a text STL is told
+        header.resize(header_bytes, ' ');
+        stream.text(header);
+        stream.number(static_cast<std::uint32_t>(triangles), std::endian::little);
+        stream.rows(triangles, [&](std::size_t begin, std::size_t end, std::string& out) {
+            const auto corners = corners_of(surface.triangles, begin, end);
+            out.assign((end - begin) * facet_bytes, '\0');
+            char* facet = out.data();
+            for (std::size_t i = 0; i < end - begin; ++i, facet += facet_bytes) {
+                std::array<Vector, 4> vectors{};
+                for (std::size_t k = 0; k < 3; ++k) vectors[k + 1] = position(surface, static_cast<std::uint64_t>(corners[3 * i + k]));
+                if (input.columns.cell_normals) {
+                    for (std::size_t k = 0; k < 3; ++k) vectors[0][k] = static_cast<float>(surface.normals.at(begin + i, k));
+                } else {
+                    vectors[0] = facet_normal(vectors[1], vectors[2], vectors[3]);
+                }
+                for (std::size_t k = 0; k < 4; ++k) put(vectors[k], facet + 12 * k);
+            }
+        });
+    });
+}
+
+} // namespace isotet::io
