@@ -10,7 +10,18 @@ option(ISOTET_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_BENCH "Build the benchmarks" OFF)
 option(ISOTET_FUZZ "Build the fuzz targets (clang with libFuzzer)" OFF)
 option(ISOTET_WERROR "Warnings are errors" OFF)
+set(ISOTET_TEST_KINDS "" CACHE STRING "Folders of tests/ to build; empty: all")
+set(ISOTET_TEST_PREFIX "" CACHE STRING "What the names of all tests begin with, such as thread.")
+set(ISOTET_FUZZ_SECONDS 20 CACHE STRING "How long ctest runs each fuzz target")
 set(ISOTET_SANITIZE "" CACHE STRING "Sanitizers to build with: address,undefined or thread")
+
+if(ISOTET_FUZZ)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+        message(FATAL_ERROR "ISOTET_FUZZ needs clang with libFuzzer, but the compiler is ${CMAKE_CXX_COMPILER}: "
+                            "configure with CC=clang-19 CXX=clang++-19")
+    endif()
+    set(ISOTET_SANITIZE "address,undefined,fuzzer-no-link")
+endif()
 
 # What is asked of VTK; an installed isotet::io asks for the same.
 set(ISOTET_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOParallelXML IOLegacy IOGeometry IOExodus IOCGNSReader IOHDF

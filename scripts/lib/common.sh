@@ -1,0 +1,67 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+# What demo.sh and test.sh share: where the tree is, what they say, and how they build. Sourced, never run.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+readonly root
+
+# The minutes since the start stand before every line, so that a log tells where the time went.
+say() {
+    printf '[%2d min] %s\n' $((SECONDS / 60)) "$*"
+}
+
+fail() {
+    printf '%s: %s\n' "${0##*/}" "$*" >&2
+}
+
+# One compiler takes up to 1.5 GB: as many as the processors and the free memory carry. ISOTET_JOBS overrules.
+jobs_that_fit() {
+    if [[ -n ${ISOTET_JOBS:-} ]]; then
+        echo "$ISOTET_JOBS"
+        return
+    fi
+    local processors free_gigabytes
+    processors=$(nproc)
+    free_gigabytes=$(awk '/^MemAvailable:/ { print int($2 / 1048576 / 1.5) }' /proc/meminfo)
+    local jobs=$((free_gigabytes < processors ? free_gigabytes : processors))
+    echo $((jobs < 1 ? 1 : jobs))
+}
+
+# in_log NAME LOG COMMAND...: runs the command with its output in LOG, says every half minute how far ninja is, and shows
+# the end of LOG when the command fails.
+in_log() {
+    local name=$1 log=$2
+    shift 2
+    mkdir -p "$(dirname "$log")"
+    NINJA_STATUS='[%f/%t] ' "$@" >"$log" 2>&1 </dev/null &
+    local child=$! ticks=0
+    while kill -0 "$child" 2>/dev/null; do
+        sleep 0.5
+        ticks=$((ticks + 1))
+        if ((ticks % 60 == 0)); then
+            local files_done
+            files_done=$(tail -c 4000 "$log" | grep -o '^\[[0-9]*/[0-9]*\]' | tail -n 1 || true)
+            say "$name ${files_done:-goes on}"
+        fi
+    done
+    local status=0
+    wait "$child" || status=$?
+    if ((status != 0)); then
+        fail "$name failed with status $status; the end of $log:"
+        tail -n 60 "$log" >&2
+    fi
+    return "$status"
+}
+
+# build NAME FOLDER CMAKE_OPTIONS...: configures and builds the tree in FOLDER; does next to nothing when it is up to date.
+build() {
+    local name=$1 folder=$2
+    shift 2
+    local launcher=()
+    if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+    say "$name: configures"
+    in_log "$name: configure" "$folder.configure.log" cmake -G Ninja -S "$root" -B "$folder" "${launcher[@]}" "$@" || return
+    say "$name: builds, $(jobs_that_fit) files at a time"
+    in_log "$name: build" "$folder.build.log" cmake --build "$folder" -j "$(jobs_that_fit)" || return
+    say "$name: built"
+}

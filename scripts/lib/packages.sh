@@ -1,0 +1,55 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+# The Debian packages that the project needs, and how missing ones get onto a Debian 12. Sourced, never run.
+
+readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libcli11-dev nlohmann-json3-dev
+    libvtk9-dev libpugixml-dev libhdf5-dev)
+readonly packages_to_test=(libgtest-dev)
+readonly packages_to_test_fully=(clang-19 libclang-rt-19-dev xz-utils)
+
+missing_packages() {
+    local package
+    for package; do
+        if [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) != installed ]]; then
+            printf '%s\n' "$package"
+        fi
+    done
+}
+
+on_debian_12() {
+    [[ -r /etc/os-release ]] && (. /etc/os-release && [[ ${ID:-} == debian && ${VERSION_ID:-} == 12 ]])
+}
+
+# install_packages PACKAGE...: installs the ones that are missing, saying which, asking nothing. Returns 4 when it cannot.
+install_packages() {
+    if [[ ${ISOTET_PACKAGES:-} == present ]]; then return; fi
+    if ! on_debian_12; then
+        fail "this is not Debian 12, so nothing is installed. Needed, by their names in Debian 12: $*"
+        fail "When they, or the same from elsewhere, are there: ISOTET_PACKAGES=present $0"
+        return 4
+    fi
+    local missing
+    mapfile -t missing < <(missing_packages "$@")
+    if ((${#missing[@]} == 0)); then
+        say "packages: all there"
+        return
+    fi
+    local as_root=()
+    if ((EUID != 0)); then
+        if ! sudo -n true 2>/dev/null; then
+            fail "missing packages, and neither root nor sudo without a password to install them. Please run:"
+            fail "    apt-get install --no-install-recommends ${missing[*]}"
+            return 4
+        fi
+        as_root=(sudo -n)
+    fi
+    say "packages: installs with apt-get, and what they depend on: ${missing[*]}"
+    local log=$root/build/packages.log
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive NEEDRESTART_MODE=l
+        apt-get -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3)
+    if ! in_log "packages: apt-get update" "$log" "${apt[@]}" update ||
+        ! in_log "packages: apt-get install" "$log" "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; then
+        fail "could not install ${missing[*]}"
+        return 4
+    fi
+    say "packages: installed"
+}

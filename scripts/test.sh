@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+# Builds and runs all tests: the release build; the tests again under the address, undefined-behaviour and thread
+# sanitizers; every fuzz target for a short time. `quick`: the release build only.
+# The trees stand in build/test; what ctest says about all of them together comes last.
+source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
+source "$root/scripts/lib/packages.sh"
+source "$root/scripts/lib/thread_sanitizer.sh"
+
+readonly trees=$root/build/test
+
+mode=${1:-full}
+if (($# > 1)) || [[ $mode != full && $mode != quick ]]; then
+    echo "usage: $0 [quick]    quick: release build only, no sanitizers, no fuzzing" >&2
+    [[ $mode == -h || $mode == --help ]] && exit 0
+    exit 2
+fi
+
+# Kinds of tests that a sanitizer can say something about; the others look at the tree or at the program.
+readonly address_kinds='api;broken_inputs;core;cpu;determinism;io;laws;make;ops;readers;writers'
+readonly thread_kinds='determinism;laws'
+
+build_release() {
+    build release "$trees/release" -DCMAKE_BUILD_TYPE=Release -DISOTET_WERROR=ON
+}
+
+# Without VTK: its readers run as uninstrumented children under a limit on address space that a sanitizer cannot live in.
+build_address() {
+    build address "$trees/address" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS='-O1 -D_GLIBCXX_ASSERTIONS' \
+        -DISOTET_SANITIZE=address,undefined -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF \
+        -DISOTET_TEST_PREFIX=address. -DISOTET_TEST_KINDS="$address_kinds"
+}
+
+build_thread() {
+    thread_sanitizer_tbb "$trees/tbb" || return
+    build thread "$trees/thread" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 -DISOTET_SANITIZE=thread \
+        -DCMAKE_PREFIX_PATH="$trees/tbb/installed" -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF \
+        -DISOTET_TEST_PREFIX=thread. -DISOTET_TEST_KINDS="$thread_kinds"
+}
+
+build_fuzz() {
+    CC=clang-19 CXX=clang++-19 build fuzz "$trees/fuzz" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 \
+        -DISOTET_FUZZ=ON -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF -DISOTET_TESTS=OFF
+}
+
+# try_stage NAME TEST_FOLDER: builds one tree, and adds to the list of ctest whether that went well, and its tests.
+try_stage() {
+    local name=$1 folder=$2 built=$trees/$1.built
+    rm -f "$built"
+    if "build_$name"; then touch "$built"; fi
+    {
+        printf 'add_test([=[build.%s]=] "%s" "-E" "cat" "%s")\n' "$name" "$(command -v cmake)" "$built"
+        if [[ -e $built ]]; then printf 'subdirs([=[%s]=])\n' "$folder"; fi
+    } >>"$trees/CTestTestfile.cmake"
+}
+
+say "isotet tests, $mode"
+packages=("${packages_to_build[@]}" "${packages_to_test[@]}")
+if [[ $mode == full ]]; then packages+=("${packages_to_test_fully[@]}"); fi
+install_packages "${packages[@]}" || exit
+
+mkdir -p "$trees"
+: >"$trees/CTestTestfile.cmake"
+try_stage release release
+if [[ $mode == full ]]; then
+    try_stage address address
+    try_stage thread thread
+    try_stage fuzz fuzz/tests/fuzz
+fi
+
+say "runs the tests"
+export ASAN_OPTIONS=allocator_may_return_null=1:detect_stack_use_after_return=1
+export UBSAN_OPTIONS=print_stacktrace=1
+export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+status=0
+"${without_random_addresses[@]}" ctest --test-dir "$trees" --output-on-failure --no-tests=error -j "$(nproc)" || status=$?
+exit "$status"
