@@ -255,5 +255,16 @@ Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progre
     return {};
 }
 
+Error nothing_to_contour(const Grid& grid, const CellReader& cells) {
+    std::map<std::uint8_t, std::size_t> counts;
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) ++counts[cells.type(cell)];
+    std::string list;
+    for (const auto& [type, count] : counts) list += fmt::format("{}{} x {}", list.empty() ? "" : ", ", count, name_of_cell_type(type));
+    return {ErrorCode::invalid_data,
+            fmt::format("the grid with {} points has no cell that can be contoured ({}); tetrahedra, hexahedra, voxels, wedges "
+                        "and pyramids can",
+                        grid.points.tuples(), list.empty() ? "no cells at all" : list)};
+}
+
 } // namespace core
 } // namespace isotet

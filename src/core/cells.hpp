@@ -94,4 +94,7 @@ private:
 /// Errors   invalid_data, the lowest-numbered cell first; cancelled
 Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progress& progress);
 
+/// The error for a grid of which no tet is left: what cells there are.
+Error nothing_to_contour(const Grid& grid, const CellReader& cells);
+
 } // namespace isotet::core

@@ -64,35 +64,44 @@ public:
     Orienter(const Array& points, bool mostly_negative) : points_(points), mostly_negative_(mostly_negative) {}
 
     struct Counts {
-        std::uint64_t negative = 0, flat = 0;
+        std::uint64_t upright = 0, negative = 0, flat = 0; ///< of tetrahedra
+        std::uint64_t twisted = 0; ///< pieces of split cells whose sign is not that of their cell; flat pieces count as flat
+
+        void combine(const Counts& other) {
+            upright += other.upright;
+            negative += other.negative;
+            flat += other.flat;
+            twisted += other.twisted;
+        }
     };
 
-    /// Orients and canonicalizes the tets of one cell in place; adds to `counts`. Pieces of a split cell count as
-    /// negative when their sign is not that of their cell.
-    void orient(std::uint8_t cell_type, CellTets& tets, Counts& counts) const {
+    /// The stored form of one of a cell's tets; adds to `counts`.
+    Tet stored(std::uint8_t cell_type, const CellTets& cell, unsigned piece, Counts& counts) const {
         const bool whole = cell_type == static_cast<std::uint8_t>(CellType::tetrahedron);
-        bool cell_negative = mostly_negative_;
-        if (!whole) {
-            double volume = 0;
-            for (const Tet& t : tets) volume += points_.six_volumes(t);
-            cell_negative = volume < 0;
-        }
-        for (int i = 0; i < tets.count; ++i) {
-            Tet& t = tets.tets[static_cast<std::size_t>(i)];
-            const int sign = points_.orientation(t);
-            counts.flat += sign == 0;
-            counts.negative += whole ? sign < 0 : sign != 0 && (sign < 0) != cell_negative;
-            if (sign < 0 || (sign == 0 && cell_negative)) std::swap(t[2], t[3]);
-            t = canonical(t);
-        }
+        Tet t = cell.tets[piece];
+        const int sign = points_.orientation(t);
+        const bool mirrored = whole ? mostly_negative_ : six_volumes(cell) < 0;
+        if (sign == 0) ++counts.flat;
+        else if (whole) ++(sign < 0 ? counts.negative : counts.upright);
+        else if ((sign < 0) != mirrored) ++counts.twisted;
+        if (sign < 0 || (sign == 0 && mirrored)) std::swap(t[2], t[3]);
+        return canonical(t);
+    }
+
+    /// Tetrahedra whose sign is not that of most, and twisted pieces.
+    std::uint64_t inverted(const Counts& counts) const {
+        return (mostly_negative_ ? counts.upright : counts.negative) + counts.twisted;
     }
 
 private:
+    double six_volumes(const CellTets& cell) const {
+        double sum = 0;
+        for (const Tet& t : cell) sum += points_.six_volumes(t);
+        return sum;
+    }
+
     PointReader points_;
     bool mostly_negative_;
 };
-
-/// True when more tetrahedra of the grid (cells of that type) have a negative volume than a positive one. Parallel.
-bool mostly_negative(const Grid& grid, const CellReader& cells);
 
 } // namespace isotet::core

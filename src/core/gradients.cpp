@@ -1,0 +1,115 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Directions of the gradient at points: the sum over the valid tets of each point, in stored order, of the tet's gradient
+// times its volume, in double.
+#include <vector>
+
+#include "core/local_values.hpp"
+#include "core/normal_code.hpp"
+#include "core/orientation.hpp"
+#include "core/pack_draft.hpp"
+#include "core/parallel.hpp"
+#include "core/storage.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+/// Which later clusters borrow points from each cluster, ascending, and where those points start in the borrower.
+struct Borrower {
+    std::uint32_t cluster;
+    std::uint16_t first_local, points;
+};
+
+struct Borrowers {
+    std::vector<std::uint64_t> first;
+    std::vector<Borrower> list;
+
+    explicit Borrowers(const Packed& packed) : first(packed.clusters() + 1, 0) {
+        for (std::size_t c = 0; c < packed.clusters(); ++c)
+            for (const Neighbour& n : packed.cluster_links(c).neighbours) first[n.cluster + 1] += n.foreign_points > 0;
+        for (std::size_t c = 0; c < packed.clusters(); ++c) first[c + 1] += first[c];
+        list.resize(first.back());
+        auto next = first;
+        for (std::size_t c = 0; c < packed.clusters(); ++c) {
+            std::uint16_t local = 0;
+            for (const Neighbour& n : packed.cluster_links(c).neighbours) {
+                if (n.foreign_points) list[next[n.cluster]++] = {static_cast<std::uint32_t>(c), local, n.foreign_points};
+                local = static_cast<std::uint16_t>(local + n.foreign_points);
+            }
+        }
+    }
+};
+
+template <class Real>
+class Gradients {
+public:
+    explicit Gradients(Packed& packed) : packed_(packed), borrowers_(packed) {}
+
+    void run() {
+        packed_.gradients = Buffer<std::uint32_t>(packed_.points());
+        parallel_each(packed_.clusters(), 16, [&](std::size_t c) { one_cluster(c); });
+    }
+
+private:
+    void one_cluster(std::size_t c) {
+        const ClusterHeader& h = packed_.headers[c];
+        Point sums[max_cluster_points] = {};
+        add_tets(c, h.foreign_points, h.own_points, sums);
+        for (std::uint64_t i = borrowers_.first[c]; i < borrowers_.first[c + 1]; ++i) {
+            const Borrower& borrower = borrowers_.list[i];
+            Point borrowed[max_cluster_points];
+            const auto links = packed_.cluster_links(borrower.cluster);
+            for (std::size_t k = 0; k < borrower.points; ++k) borrowed[k] = sums[links.foreign_points[borrower.first_local + k]];
+            add_tets(borrower.cluster, borrower.first_local, borrower.points, borrowed);
+            for (std::size_t k = 0; k < borrower.points; ++k) sums[links.foreign_points[borrower.first_local + k]] = borrowed[k];
+        }
+        for (std::size_t k = 0; k < h.own_points; ++k) packed_.gradients[h.first_point + k] = encode_normal(sums[k]);
+    }
+
+    /// Adds the tets of a cluster to the sums of its local points [first, first + count).
+    void add_tets(std::size_t cluster, std::size_t first, std::size_t count, Point* sums) const {
+        Real values[max_cluster_points], positions[3 * max_cluster_points];
+        load_values(packed_, cluster, values);
+        load_positions(packed_, cluster, positions);
+        const auto wanted = [&](std::uint8_t corner) { return std::size_t{corner} - first < count; }; // wraps below first
+        for (const StoredTet& tet : packed_.cluster_tets(cluster)) {
+            const auto& v = tet.corners;
+            if (!wanted(v[0]) && !wanted(v[1]) && !wanted(v[2]) && !wanted(v[3])) continue;
+            if (is_nan(values[v[0]]) || is_nan(values[v[1]]) || is_nan(values[v[2]]) || is_nan(values[v[3]])) continue;
+            const Point gradient = six_volumes_times_gradient(positions, values, v);
+            for (const std::uint8_t corner : v)
+                if (wanted(corner))
+                    for (std::size_t axis = 0; axis < 3; ++axis) sums[corner - first][axis] += gradient[axis];
+        }
+    }
+
+    static Point six_volumes_times_gradient(const Real* positions, const Real* values, const std::array<std::uint8_t, 4>& v) {
+        Point edge[3];
+        double rise[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                edge[k][axis] = double{positions[3 * v[k + 1] + axis]} - double{positions[3 * v[0] + axis]};
+            rise[k] = double{values[v[k + 1]]} - double{values[v[0]]};
+        }
+        const auto cross = [](const Point& a, const Point& b) {
+            return Point{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+        };
+        const Point n0 = cross(edge[1], edge[2]), n1 = cross(edge[2], edge[0]), n2 = cross(edge[0], edge[1]);
+        Point gradient;
+        for (std::size_t axis = 0; axis < 3; ++axis) gradient[axis] = rise[0] * n0[axis] + rise[1] * n1[axis] + rise[2] * n2[axis];
+        return gradient;
+    }
+
+    Packed& packed_;
+    Borrowers borrowers_;
+};
+
+} // namespace
+
+void store_gradients(Packed& packed) {
+    if (packed.single()) Gradients<float>(packed).run();
+    else Gradients<double>(packed).run();
+    packed.report.gradient_bytes = packed.gradients.bytes();
+}
+
+} // namespace isotet::core

@@ -1,0 +1,92 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "core/memory.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+namespace isotet::core {
+
+namespace {
+
+constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+
+std::optional<std::uint64_t> number_in(const std::string& path) {
+    std::ifstream file(path);
+    std::string word;
+    std::uint64_t value = 0;
+    if (!(file >> word) || std::from_chars(word.data(), word.data() + word.size(), value).ec != std::errc()) return {};
+    return value;
+}
+
+/// A line "Name:   123 kB" of a file in /proc, in bytes.
+std::optional<std::uint64_t> proc_bytes(const char* path, std::string_view name) {
+    std::ifstream file(path);
+    for (std::string word; file >> word;) {
+        std::uint64_t kib = 0;
+        if (word == name && file >> kib) return kib * 1024;
+    }
+    return {};
+}
+
+/// What the control group of this process (version 2, or 1) and those above it leave.
+std::uint64_t control_group_free() {
+    std::uint64_t least = unlimited;
+    const auto consider = [&](const std::string& limit, const std::string& used) {
+        const auto most = number_in(limit), now = number_in(used);
+        if (most && now) least = std::min(least, *most > *now ? *most - *now : 0);
+    };
+    std::ifstream file("/proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        const auto first = line.find(':'), second = line.find(':', first + 1);
+        if (first == std::string::npos || second == std::string::npos) continue;
+        const std::string controllers = line.substr(first + 1, second - first - 1);
+        std::string group = line.substr(second + 1);
+        for (;; group.erase(group.find_last_of('/'))) {
+            if (controllers.empty()) {
+                const std::string folder = "/sys/fs/cgroup" + group;
+                consider(folder + "/memory.max", folder + "/memory.current");
+            } else if (controllers == "memory") {
+                const std::string folder = "/sys/fs/cgroup/memory" + group;
+                consider(folder + "/memory.limit_in_bytes", folder + "/memory.usage_in_bytes");
+            }
+            if (group.find('/') == std::string::npos) break;
+        }
+    }
+    return least;
+}
+
+} // namespace
+
+std::uint64_t free_memory() {
+    std::uint64_t least = proc_bytes("/proc/meminfo", "MemAvailable:").value_or(unlimited);
+    least = std::min(least, control_group_free());
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+        const std::uint64_t used = proc_bytes("/proc/self/status", "VmSize:").value_or(0);
+        least = std::min<std::uint64_t>(least, limit.rlim_cur > used ? limit.rlim_cur - used : 0);
+    }
+    return least;
+}
+
+std::string format_bytes(std::uint64_t bytes) {
+    const auto value = static_cast<double>(bytes);
+    if (value < 1e3) return fmt::format("{} B", bytes);
+    if (value < 1e6) return fmt::format("{:.1f} kB", value / 1e3);
+    if (value < 1e9) return fmt::format("{:.1f} MB", value / 1e6);
+    return fmt::format("{:.1f} GB", value / 1e9);
+}
+
+Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
+    const std::uint64_t free = free_memory();
+    if (bytes <= free) return {};
+    return Error{ErrorCode::out_of_memory,
+                 fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free))};
+}
+
+} // namespace isotet::core

@@ -1,0 +1,23 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// How much memory there is, and saying no before it runs out.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <isotet/result.hpp>
+
+namespace isotet::core {
+
+/// Bytes this process can still take: the smallest of what the system has free, what the control group allows, and what
+/// the limit on address space leaves. Huge where none of these can be told.
+std::uint64_t free_memory();
+
+/// An out_of_memory error when `bytes` are more than free_memory(): "packing needs 12.3 GB, but 4.5 GB are free".
+Result<void> require_memory(std::string_view what, std::uint64_t bytes);
+
+/// "12.3 GB", decimal.
+std::string format_bytes(std::uint64_t bytes);
+
+} // namespace isotet::core

@@ -1,0 +1,165 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/pack.hpp>
+
+#include <atomic>
+
+#include <fmt/format.h>
+
+#include "core/guard.hpp"
+#include "core/memory.hpp"
+#include "core/orientation.hpp"
+#include "core/pack_draft.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet {
+
+namespace core {
+
+namespace {
+
+Result<void> check_field(const PointField& field, std::uint64_t points) {
+    if (field.values.components() != 1 && !field.values.empty())
+        return Error{ErrorCode::invalid_argument, fmt::format("field '{}' has {} components, but the contoured field must have 1",
+                                                              field.name, field.values.components())};
+    if (field.values.tuples() != points)
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("field '{}' has {} values, but the grid has {} points", field.name, field.values.tuples(), points)};
+    return {};
+}
+
+/// At the peak: the sorted tets (16 B) and, beside them, what blocks return, or later the packed grid with the candidate
+/// seams; and 5 bytes a user's point for owners and places.
+std::uint64_t packing_memory(std::uint64_t tets, std::uint64_t points) { return 36 * tets + 6 * points; }
+
+void measure(Packed& packed) {
+    PackReport& report = packed.report;
+    report.points = packed.points();
+    report.bytes = packed.headers.bytes() + packed.tets.bytes() + packed.group_ranges.bytes() + packed.links.bytes() +
+                   packed.has_no_data.bytes() + packed.point_ids.bytes() + packed.wide_point_ids.bytes();
+    std::visit([&](const auto& reals) { report.bytes += reals.positions.bytes() + reals.values.bytes() + reals.ranges.bytes(); },
+               packed.reals);
+    report.source_bytes = packed.cell_ids.bytes() + packed.wide_cell_ids.bytes();
+}
+
+Result<void> store_field(const PointField& field, Packed& packed, const Progress& progress) {
+    return packed.single() ? store_values<float>(field, packed, progress) : store_values<double>(field, packed, progress);
+}
+
+void store_points(const Array& points, Packed& packed) {
+    if (packed.single()) store_positions<float>(points, packed);
+    else store_positions<double>(points, packed);
+}
+
+Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, const PackOptions& options,
+                                     const Progress& progress) {
+    auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto ok = check_field(field, grid.points.tuples()); !ok) return ok.error();
+    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    const TetSurvey survey = survey_tets(grid, *cells);
+    if (survey.tets == 0) return nothing_to_contour(grid, *cells);
+    if (auto ok = require_memory("packing the grid", packing_memory(survey.tets, grid.points.tuples())); !ok) return ok.error();
+
+    auto order = sort_tets(grid, *cells, survey, progress);
+    if (!order) return order.error();
+    Draft draft;
+    if (options.precision == Precision::double_) draft.packed.reals = Values<double>{};
+    if (auto ok = form_clusters(grid, *cells, survey, *std::move(order), options, draft, progress); !ok) return ok.error();
+    number_points(grid.points.tuples(), draft);
+    progress("pack", 0.7);
+    if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
+    draft.locals.release();
+
+    auto packed = std::make_unique<Packed>(std::move(draft.packed));
+    packed->user_points = grid.points.tuples();
+    packed->user_cells = cells->count();
+    packed->report.cells_left_out = survey.left_out;
+    packed->report.collapsed_tets = survey.collapsed;
+    store_points(grid.points, *packed);
+    if (auto ok = store_field(field, *packed, progress); !ok) return ok.error();
+    if (options.gradients) store_gradients(*packed);
+    measure(*packed);
+    progress("pack", 1);
+    return packed;
+}
+
+/// True when no stored tet has a negative volume with these coordinates.
+Result<void> check_moved_points(const Packed& packed, const Array& points) {
+    const PointReader reader(points);
+    std::atomic<std::uint64_t> outside{0}, turned{0};
+    parallel_each(packed.clusters(), 64, [&](std::size_t c) {
+        std::uint64_t locals[max_cluster_points];
+        Point positions[max_cluster_points];
+        const std::size_t count = local_points(packed, c, locals);
+        for (std::size_t k = 0; k < count; ++k) {
+            positions[k] = reader[packed.user_point(locals[k])];
+            for (const double x : positions[k]) outside += !(std::abs(x) < 0x1p91);
+        }
+        for (const StoredTet& tet : packed.cluster_tets(c)) {
+            const auto& v = tet.corners;
+            turned += orientation_sign(positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]) < 0;
+        }
+    });
+    if (outside) return Error{ErrorCode::invalid_data, fmt::format("{} of the new coordinates are not finite or 2^91 or more, but "
+                                                                   "points that cells use must be finite and below 2^91", outside)};
+    if (turned) return Error{ErrorCode::invalid_data,
+                             fmt::format("{} tets change their orientation with the new points, and such a grid must be packed again", turned)};
+    return {};
+}
+
+} // namespace
+} // namespace core
+
+PackedGrid::PackedGrid() : data_(std::make_unique<core::Packed>()) {}
+PackedGrid::PackedGrid(std::unique_ptr<core::Packed> data) : data_(std::move(data)) {}
+PackedGrid::PackedGrid(PackedGrid&&) noexcept = default;
+PackedGrid& PackedGrid::operator=(PackedGrid&&) noexcept = default;
+PackedGrid::~PackedGrid() = default;
+
+const PackReport& PackedGrid::report() const noexcept { return data_->report; }
+const FieldReport& PackedGrid::field() const noexcept { return data_->field_report; }
+Precision PackedGrid::precision() const noexcept { return data_->single() ? Precision::single : Precision::double_; }
+std::array<double, 3> PackedGrid::origin() const noexcept { return data_->origin; }
+std::uint64_t PackedGrid::user_points() const noexcept { return data_->user_points; }
+std::uint64_t PackedGrid::user_cells() const noexcept { return data_->user_cells; }
+
+Result<void> PackedGrid::set_field(const PointField& field, int threads, const Progress& progress) {
+    return core::guarded("setting the field", [&]() -> Result<void> {
+        if (auto ok = core::check_field(field, data_->user_points); !ok) return ok.error();
+        Result<void> result;
+        core::with_threads(threads, [&] {
+            result = core::store_field(field, *data_, progress);
+            if (result && !data_->gradients.empty()) core::store_gradients(*data_);
+        });
+        return result;
+    });
+}
+
+Result<void> PackedGrid::set_points(const Array& points, int threads, const Progress& progress) {
+    return core::guarded("setting the points", [&]() -> Result<void> {
+        if (!is_floating(points.type()) || points.components() != 3 || points.tuples() != data_->user_points)
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("the new points are {} x {} {}, but must be {} x 3 of float32 or float64", points.tuples(),
+                                     points.components(), name_of(points.type()), data_->user_points)};
+        Result<void> result;
+        core::with_threads(threads, [&] {
+            result = core::check_moved_points(*data_, points);
+            if (!result) return;
+            core::store_points(points, *data_);
+            if (!data_->gradients.empty()) core::store_gradients(*data_);
+        });
+        progress("pack", 1);
+        return result;
+    });
+}
+
+Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options, const Progress& progress) {
+    return core::guarded("packing", [&]() -> Result<PackedGrid> {
+        Result<std::unique_ptr<core::Packed>> result = Error{};
+        core::with_threads(options.threads, [&] { result = core::pack(grid, field, options, progress); });
+        if (!result) return std::move(result).error();
+        return PackedGrid(*std::move(result));
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,122 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <atomic>
+#include <limits>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "core/growth.hpp"
+#include "core/orientation.hpp"
+#include "core/pack_draft.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+/// Puts the block's sorted tets into the order of its clusters.
+void reorder(std::span<SortedTet> tets, const std::vector<std::uint32_t>& order) {
+    std::vector<SortedTet> sorted(tets.begin(), tets.end());
+    for (std::size_t i = 0; i < order.size(); ++i) tets[i] = sorted[order[i]];
+}
+
+std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / group_size; }
+
+} // namespace
+
+Result<void> form_clusters(const Grid& grid, const CellReader& cells, const TetSurvey& survey, TetOrder order,
+                           const PackOptions& options, Draft& draft, const Progress& progress) {
+    const Orienter orienter(grid.points, survey.mostly_negative);
+    const std::size_t count = order.tets.size();
+    const std::size_t block_count = (count + tets_a_block - 1) / tets_a_block;
+    std::vector<BlockClusters> blocks(block_count);
+    std::vector<Orienter::Counts> counts(block_count);
+    std::atomic<std::size_t> finished{0};
+    std::mutex reporting;
+    parallel_each(block_count, 1, [&](std::size_t b) {
+        if (progress.cancelled()) return;
+        const std::span<SortedTet> sorted(order.tets.data() + b * tets_a_block,
+                                          std::min(tets_a_block, count - b * tets_a_block));
+        std::vector<Tet> tets(sorted.size());
+        for (std::size_t i = 0; i < sorted.size(); ++i) {
+            const TetId id = sorted[i].tet;
+            tets[i] = orienter.stored(cells.type(id.cell()), cells.tets(id.cell()), id.piece(), counts[b]);
+        }
+        blocks[b] = grow_clusters(tets);
+        if (options.source_cells) reorder(sorted, blocks[b].order);
+        blocks[b].order = {};
+        const std::size_t done = ++finished;
+        if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
+            progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
+    });
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};
+    if (!options.source_cells) order.tets.release();
+
+    // Where each block's clusters, groups and points start.
+    struct Start {
+        std::size_t cluster = 0, group = 0, local = 0;
+    };
+    std::vector<Start> starts(block_count + 1);
+    for (std::size_t b = 0; b < block_count; ++b) {
+        Start next = starts[b];
+        next.cluster += blocks[b].clusters.size();
+        next.local += blocks[b].points.size();
+        for (const auto& cluster : blocks[b].clusters) next.group += groups_for(cluster.tets);
+        starts[b + 1] = next;
+    }
+    const Start total = starts[block_count];
+    constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
+    if (total.cluster >= limit || total.group >= limit)
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("the grid makes {} clusters and {} groups of tets, but there can be {} of each", total.cluster,
+                                 total.group, limit - 1)};
+
+    Packed& packed = draft.packed;
+    packed.headers = Buffer<ClusterHeader>(total.cluster);
+    packed.tets = Buffer<StoredTet>(total.group * group_size);
+    draft.first_local = Buffer<std::uint64_t>(total.cluster + 1);
+    draft.locals = Buffer<std::uint64_t>(total.local);
+    draft.first_local[total.cluster] = total.local;
+    const bool wide_cells = cells.count() > std::size_t{1} << 32;
+    if (options.source_cells && wide_cells) packed.wide_cell_ids = Buffer<std::uint64_t>(packed.tets.size());
+    else if (options.source_cells) packed.cell_ids = Buffer<std::uint32_t>(packed.tets.size());
+    parallel_each(block_count, 1, [&](std::size_t b) {
+        BlockClusters block = std::move(blocks[b]);
+        Start at = starts[b];
+        std::copy(block.points.begin(), block.points.end(), draft.locals.begin() + at.local);
+        std::size_t tet = 0;
+        for (const auto& cluster : block.clusters) {
+            ClusterHeader& header = packed.headers[at.cluster];
+            header = {};
+            header.tets = static_cast<std::uint16_t>(cluster.tets);
+            header.first_group = static_cast<std::uint32_t>(at.group);
+            draft.first_local[at.cluster] = at.local;
+            const std::size_t groups = groups_for(cluster.tets);
+            for (std::size_t i = 0; i < groups * group_size; ++i) {
+                const std::size_t from = tet + std::min<std::size_t>(i, cluster.tets - 1);
+                const std::size_t to = at.group * group_size + i;
+                packed.tets[to] = block.tets[from];
+                if (!options.source_cells) continue;
+                const std::uint64_t cell = order.tets[b * tets_a_block + from].tet.cell();
+                if (wide_cells) packed.wide_cell_ids[to] = cell;
+                else packed.cell_ids[to] = static_cast<std::uint32_t>(cell);
+            }
+            tet += cluster.tets;
+            at.group += groups;
+            at.local += cluster.points;
+            ++at.cluster;
+        }
+    });
+    Orienter::Counts sum;
+    for (const Orienter::Counts& part : counts) sum.combine(part);
+    PackReport& report = packed.report;
+    report.clusters = total.cluster;
+    report.tets = count;
+    report.repeated_tets = order.repeated;
+    report.negative_tets = sum.negative + sum.twisted;
+    report.inverted_tets = orienter.inverted(sum);
+    report.flat_tets = sum.flat;
+    return {};
+}
+
+} // namespace isotet::core

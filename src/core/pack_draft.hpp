@@ -1,0 +1,59 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The stages of packing, in the order in which they run, and what they hand on. docs/inside/packing.md draws them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/progress.hpp>
+
+#include "core/buffer.hpp"
+#include "core/packed.hpp"
+#include "core/tet_order.hpp"
+
+namespace isotet::core {
+
+/// A point by the cluster that owns it and its place among that cluster's own points. Ordered as packed points are.
+struct PointRef {
+    std::uint64_t value;
+    static PointRef make(std::uint32_t owner, std::uint8_t index) { return {std::uint64_t{owner} << 8 | index}; }
+    std::uint32_t owner() const { return static_cast<std::uint32_t>(value >> 8); }
+    std::uint8_t index() const { return static_cast<std::uint8_t>(value); }
+};
+
+/// A packed grid in the making: the parts of Packed that are final, and what later stages need beside them.
+struct Draft {
+    Packed packed;
+    Buffer<std::uint64_t> first_local; ///< C + 1: where each cluster's local points start
+    Buffer<std::uint64_t> locals;      ///< user's numbers first, PointRefs after number_points()
+
+    std::size_t clusters() const { return packed.headers.size(); }
+    std::size_t local_count(std::size_t cluster) const { return first_local[cluster + 1] - first_local[cluster]; }
+};
+
+/// Grows clusters block by block. Fills headers (tets, first_group), tets (corners as positions among the cluster's
+/// points), first_local and locals; and cell ids if asked for.
+Result<void> form_clusters(const Grid& grid, const CellReader& cells, const TetSurvey& survey, TetOrder order,
+                           const PackOptions& options, Draft& draft, const Progress& progress);
+
+/// Gives every point its owner and packed number, and every cluster its local order. Fills headers (own and foreign
+/// points, first_point) and point ids; turns locals into PointRefs and corners of tets into local indices.
+void number_points(std::uint64_t user_points, Draft& draft);
+
+/// Finds the edges that several clusters hold. Fills the rest of the headers, and links.
+Result<void> link_clusters(Draft& draft, const Progress& progress);
+
+/// Stores the coordinates; fills positions, origin and what of it goes into the report.
+template <class Real>
+void store_positions(const Array& points, Packed& packed);
+
+/// Stores the values of a field; fills values, ranges, group ranges, has_no_data, storage and the field's report.
+template <class Real>
+Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress);
+
+/// Computes the gradient direction of the stored field at every point (normal_code.hpp).
+void store_gradients(Packed& packed);
+
+} // namespace isotet::core

@@ -1,0 +1,89 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "core/pack_draft.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+constexpr std::size_t clusters_a_task = 64;
+
+/// The lowest-numbered cluster that holds each point; 2^32 - 1 for a point that no tet uses.
+Buffer<std::uint32_t> find_owners(std::uint64_t user_points, const Draft& draft) {
+    Buffer<std::uint32_t> owners(user_points);
+    parallel_ranges(user_points, 1 << 16, [&](std::size_t begin, std::size_t end) {
+        std::fill(owners.begin() + begin, owners.begin() + end, std::numeric_limits<std::uint32_t>::max());
+    });
+    parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
+        for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i) {
+            std::atomic_ref<std::uint32_t> owner(owners[draft.locals[i]]);
+            std::uint32_t seen = owner.load(std::memory_order_relaxed);
+            while (c < seen && !owner.compare_exchange_weak(seen, static_cast<std::uint32_t>(c), std::memory_order_relaxed)) {}
+        }
+    });
+    return owners;
+}
+
+} // namespace
+
+void number_points(std::uint64_t user_points, Draft& draft) {
+    Packed& packed = draft.packed;
+    const Buffer<std::uint32_t> owners = find_owners(user_points, draft);
+
+    // Own points of a cluster ascend by the user's numbers.
+    Buffer<std::uint8_t> place(user_points);
+    parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
+        std::uint64_t own[max_cluster_points];
+        std::size_t count = 0;
+        for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i)
+            if (owners[draft.locals[i]] == c) own[count++] = draft.locals[i];
+        std::sort(own, own + count);
+        for (std::size_t k = 0; k < count; ++k) place[own[k]] = static_cast<std::uint8_t>(k);
+        packed.headers[c].own_points = static_cast<std::uint16_t>(count);
+        packed.headers[c].foreign_points = static_cast<std::uint16_t>(draft.local_count(c) - count);
+    });
+    std::uint64_t points = 0;
+    for (ClusterHeader& header : packed.headers) {
+        header.first_point = points;
+        points += header.own_points;
+    }
+    const bool wide = user_points > std::uint64_t{1} << 32;
+    if (wide) packed.wide_point_ids = Buffer<std::uint64_t>(points);
+    else packed.point_ids = Buffer<std::uint32_t>(points);
+
+    // Local points in packed order, and the tets' corners with them.
+    parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
+        struct Local {
+            PointRef ref;
+            std::uint8_t before;
+        };
+        Local locals[max_cluster_points];
+        const std::size_t count = draft.local_count(c);
+        std::uint64_t* const list = draft.locals.data() + draft.first_local[c];
+        ClusterHeader& header = packed.headers[c];
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint64_t user = list[k];
+            locals[k] = {PointRef::make(owners[user], place[user]), static_cast<std::uint8_t>(k)};
+            if (owners[user] != c) continue;
+            const std::uint64_t point = header.first_point + place[user];
+            if (wide) packed.wide_point_ids[point] = user;
+            else packed.point_ids[point] = static_cast<std::uint32_t>(user);
+        }
+        std::sort(locals, locals + count, [](const Local& a, const Local& b) { return a.ref.value < b.ref.value; });
+        std::uint8_t after[max_cluster_points];
+        for (std::size_t k = 0; k < count; ++k) {
+            after[locals[k].before] = static_cast<std::uint8_t>(k);
+            list[k] = locals[k].ref.value;
+        }
+        StoredTet* tets = packed.tets.data() + group_size * std::size_t{header.first_group};
+        const std::size_t padded = (header.tets + group_size - 1) / group_size * group_size;
+        for (std::size_t i = 0; i < padded; ++i)
+            for (std::uint8_t& corner : tets[i].corners) corner = after[corner];
+    });
+}
+
+} // namespace isotet::core

@@ -1,0 +1,112 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include "core/orientation.hpp"
+#include "core/pack_draft.hpp"
+#include "core/parallel.hpp"
+#include "core/storage.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+struct Bounds {
+    Point lower, upper;
+    Bounds() {
+        lower.fill(std::numeric_limits<double>::infinity());
+        upper.fill(-std::numeric_limits<double>::infinity());
+    }
+};
+
+Bounds bounds_of(const PointReader& points, const Packed& packed) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, packed.points(), 1 << 14), Bounds{},
+        [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const Point p = points[packed.user_point(i)];
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    bounds.lower[axis] = std::min(bounds.lower[axis], p[axis]);
+                    bounds.upper[axis] = std::max(bounds.upper[axis], p[axis]);
+                }
+            }
+            return bounds;
+        },
+        [](Bounds a, const Bounds& b) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                a.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
+                a.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
+            }
+            return a;
+        });
+}
+
+double squared_distance(const Point& a, const Point& b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+/// True when rounding moves a point of the cluster by more than a thousandth of its shortest edge.
+template <class Real>
+bool is_coarse(const PointReader& points, const Packed& packed, std::size_t cluster) {
+    std::uint64_t locals[max_cluster_points];
+    const std::size_t count = local_points(packed, cluster, locals);
+    Point exact[max_cluster_points];
+    double moved = 0;
+    const Real* positions = packed.as<Real>().positions.data();
+    for (std::size_t k = 0; k < count; ++k) {
+        exact[k] = points[packed.user_point(locals[k])];
+        Point stored;
+        for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = positions[3 * locals[k] + axis] + packed.origin[axis];
+        moved = std::max(moved, squared_distance(exact[k], stored));
+    }
+    if (moved == 0) return false;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const StoredTet& tet : packed.cluster_tets(cluster))
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = a + 1; b < 4; ++b)
+                shortest = std::min(shortest, squared_distance(exact[tet.corners[a]], exact[tet.corners[b]]));
+    return moved > 1e-6 * shortest;
+}
+
+} // namespace
+
+template <class Real>
+void store_positions(const Array& array, Packed& packed) {
+    const PointReader points(array);
+    const bool unchanged = array.type() == ScalarType::float32 || sizeof(Real) == sizeof(double);
+    packed.origin = {};
+    if (!unchanged) {
+        const Bounds bounds = bounds_of(points, packed);
+        for (std::size_t axis = 0; axis < 3 && packed.points(); ++axis)
+            packed.origin[axis] = static_cast<float>(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
+    }
+    Buffer<Real>& positions = packed.as<Real>().positions;
+    if (positions.empty()) positions = Buffer<Real>(3 * packed.points());
+    std::atomic<std::uint64_t> flushed{0}, coarse{0};
+    parallel_ranges(packed.points(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Point p = points[packed.user_point(i)];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const Real stored = store_coordinate<Real>(p[axis], packed.origin[axis]);
+                count += stored == 0 && p[axis] != packed.origin[axis];
+                positions[3 * i + axis] = stored;
+            }
+        }
+        flushed += count;
+    });
+    if (!unchanged)
+        parallel_each(packed.clusters(), 64, [&](std::size_t c) { coarse += is_coarse<Real>(points, packed, c); });
+    packed.report.flushed_coordinates = flushed;
+    packed.report.coarse_clusters = coarse;
+}
+
+template void store_positions<float>(const Array&, Packed&);
+template void store_positions<double>(const Array&, Packed&);
+
+} // namespace isotet::core
