@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <limits>
-#include <new>
 #include <optional>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "core/buffer.hpp"
+#include "core/cells.hpp"
+#include "core/guard.hpp"
+#include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "make/analytic_field.hpp"
 #include "make/lattice.hpp"
@@ -23,18 +25,6 @@ namespace {
 using namespace make;
 
 constexpr std::uint64_t largest_side = 4096;
-
-/// Memory that is not touched before it is written: pages are first used by the thread that fills them.
-template <class T>
-struct Block {
-    std::shared_ptr<T[]> values;
-    std::size_t size = 0;
-
-    explicit Block(std::size_t count) : values(std::make_shared_for_overwrite<T[]>(count)), size(count) {}
-    Array array(std::size_t components) const {
-        return Array(scalar_type_of<T>(), values.get(), size / components, components, values);
-    }
-};
 
 /// Even permutations of the corners of a tet: they keep its orientation.
 constexpr std::array<std::array<std::uint8_t, 4>, 12> even_orders{{{0, 1, 2, 3},
@@ -71,9 +61,15 @@ public:
     }
 
     Result<Grid> make() {
+        const bool narrow = lattice_.points() <= std::uint64_t{1} << 31;
+        const Sizes total = layers_.back();
+        const std::uint64_t cell_bytes = shape_.uniform ? 0 : 1 + (total.corners < std::uint64_t{1} << 31 ? 4u : 8u);
+        const std::uint64_t bytes = lattice_.points() * (12 + 4 * options_.fields.size()) +
+                                    total.corners * (narrow ? 4u : 8u) + total.cells * cell_bytes;
+        if (auto fits = core::require_memory("making the grid", bytes); !fits) return fits.error();
+
         Grid grid;
         grid.points = points();
-        const bool narrow = lattice_.points() <= std::uint64_t{1} << 31;
         if (narrow) cells<std::int32_t>(grid.cells);
         else cells<std::int64_t>(grid.cells);
         for (const std::string& name : options_.fields) grid.point_fields.push_back({name, field(name)});
@@ -98,69 +94,60 @@ private:
     std::uint64_t lattice_point(std::uint64_t point) const { return shuffled_ ? point_order_.inverse(point) : point; }
 
     Array points() {
-        const Block<float> block(3 * lattice_.points());
+        core::Buffer<float> positions(3 * lattice_.points());
         for_all(lattice_.points(), [&](std::uint64_t point) {
             const Position position = lattice_.position(lattice_point(point));
-            std::copy(position.begin(), position.end(), block.values.get() + 3 * point);
+            std::copy(position.begin(), position.end(), positions.data() + 3 * point);
         });
-        return block.array(3);
+        return std::move(positions).to_array(3);
     }
 
     Array field(std::string_view name) {
         const auto at = std::ranges::find(analytic_fields, name, &AnalyticField::name)->at;
-        if (at) {
-            const Block<float> block(lattice_.points());
-            for_all(lattice_.points(), [&](std::uint64_t point) { block.values[point] = at(lattice_.position(lattice_point(point))); });
-            return block.array(1);
-        }
-        const Block<std::int32_t> block(lattice_.points());
-        for_all(lattice_.points(), [&](std::uint64_t point) { block.values[point] = small_integer(options_.seed, lattice_point(point)); });
-        return block.array(1);
+        if (at) return values<float>([&](std::uint64_t point) { return at(lattice_.position(point)); });
+        return values<std::int32_t>([&](std::uint64_t point) { return small_integer(options_.seed, point); });
+    }
+
+    /// One value for each point, from its number in the lattice.
+    template <class Value, class At>
+    Array values(const At& at) {
+        core::Buffer<Value> all(lattice_.points());
+        for_all(lattice_.points(), [&](std::uint64_t point) { all[point] = at(lattice_point(point)); });
+        return std::move(all).to_array();
     }
 
     template <class Index>
     void cells(Cells& out) {
-        const Sizes total = layers_.back();
-        const Block<Index> connectivity(total.corners);
-        if (shuffled_) shuffled_tets(connectivity.values.get());
-        else if (shape_.uniform) for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
-            write_corners(cube, corners, connectivity.values.get() + first.corners);
-        });
-        out.connectivity = connectivity.array(1);
+        core::Buffer<Index> connectivity(layers_.back().corners);
         out.uniform_type = shape_.layers[0].types[0];
-        if (!shape_.uniform) {
-            if (total.corners < std::uint64_t{1} << 31) mixed_cells<std::int32_t>(connectivity.values.get(), out);
-            else mixed_cells<std::int64_t>(connectivity.values.get(), out);
-        }
+        if (shuffled_) shuffled_tets(connectivity.data());
+        else if (shape_.uniform) for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
+            write_corners(cube, corners, connectivity.data() + first.corners);
+        });
+        else if (connectivity.size() < std::uint64_t{1} << 31) mixed_cells<std::int32_t>(connectivity.data(), out);
+        else mixed_cells<std::int64_t>(connectivity.data(), out);
+        out.connectivity = std::move(connectivity).to_array();
     }
 
     /// Cells of several types: with offsets and types beside the connectivity.
     template <class Offset, class Index>
     void mixed_cells(Index* connectivity, Cells& out) {
         const Sizes total = layers_.back();
-        const Block<Offset> offsets(total.cells + 1);
-        const Block<std::uint8_t> types(total.cells);
-        offsets.values[total.cells] = static_cast<Offset>(total.corners);
+        core::Buffer<Offset> offsets(total.cells + 1);
+        core::Buffer<std::uint8_t> types(total.cells);
+        offsets[total.cells] = static_cast<Offset>(total.corners);
         for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
             write_corners(cube, corners, connectivity + first.corners);
             std::uint64_t offset = first.corners;
             for (std::size_t cell = 0; cell < cube.types.size(); ++cell) {
-                offsets.values[first.cells + cell] = static_cast<Offset>(offset);
-                types.values[first.cells + cell] = static_cast<std::uint8_t>(cube.types[cell]);
-                offset += corner_count(cube.types[cell]);
+                const auto type = static_cast<std::uint8_t>(cube.types[cell]);
+                offsets[first.cells + cell] = static_cast<Offset>(offset);
+                types[first.cells + cell] = type;
+                offset += static_cast<std::uint64_t>(core::corners_of(type));
             }
         });
-        out.offsets = offsets.array(1);
-        out.types = types.array(1);
-    }
-
-    static constexpr std::uint64_t corner_count(CellType type) {
-        switch (type) {
-        case CellType::tetrahedron: return 4;
-        case CellType::pyramid: return 5;
-        case CellType::wedge: return 6;
-        default: return 8;
-        }
+        out.offsets = std::move(offsets).to_array();
+        out.types = std::move(types).to_array();
     }
 
     template <class Index>
@@ -212,18 +199,30 @@ std::vector<std::string> names_in(const List& list) {
     return names;
 }
 
+/// "the shape is 'cuhn', but must be one of kuhn, ..."
+Error unknown(std::string_view what, const std::string& name, std::vector<std::string> known) {
+    std::string message = fmt::format("{} is '{}', but must be one of", what, name);
+    std::string_view separator = " ";
+    for (const std::string& candidate : nearest_first(name, std::move(known))) {
+        message += separator;
+        message += candidate;
+        separator = ", ";
+    }
+    return {ErrorCode::invalid_argument, std::move(message)};
+}
+
 std::optional<Error> fault_in(const MakeOptions& options) {
     if (std::ranges::find(shapes, options.shape, &Shape::name) == shapes.end())
-        return Error{ErrorCode::invalid_argument, fmt::format("the shape is '{}', but must be one of {}", options.shape,
-                                                              fmt::join(nearest_first(options.shape, make_shapes()), ", "))};
+        return unknown("the shape", options.shape, make_shapes());
     if (options.side < 1 || options.side > largest_side)
-        return Error{ErrorCode::invalid_argument, fmt::format("the side is {}, but must be 1 to {}", options.side, largest_side)};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("the side is {}, but must be 1 to {}", options.side, largest_side)};
     for (auto name = options.fields.begin(); name != options.fields.end(); ++name) {
         if (std::ranges::find(analytic_fields, *name, &AnalyticField::name) == analytic_fields.end())
-            return Error{ErrorCode::invalid_argument, fmt::format("a field is '{}', but must be one of {}", *name,
-                                                                  fmt::join(nearest_first(*name, make_fields()), ", "))};
+            return unknown("a field", *name, make_fields());
         if (std::find(options.fields.begin(), name, *name) != name)
-            return Error{ErrorCode::invalid_argument, fmt::format("the field '{}' is asked for twice, but names must differ", *name)};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("the field '{}' is asked for twice, but names must differ", *name)};
     }
     return std::nullopt;
 }
@@ -236,13 +235,11 @@ std::vector<std::string> make_fields() { return names_in(make::analytic_fields);
 Result<Grid> make_grid(const MakeOptions& options, const Progress& progress) {
     if (const auto fault = fault_in(options)) return *fault;
     const Shape& shape = *std::ranges::find(shapes, options.shape, &Shape::name);
-    Result<Grid> grid = Error{};
-    try {
+    return core::guarded("making the grid", [&]() -> Result<Grid> {
+        Result<Grid> grid = Error{};
         core::with_threads(options.threads, [&] { grid = Maker(shape, options, progress).make(); });
-    } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::out_of_memory, fmt::format("a {} grid of side {} does not fit into memory", options.shape, options.side)};
-    }
-    return grid;
+        return grid;
+    });
 }
 
 } // namespace isotet

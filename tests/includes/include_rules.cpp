@@ -20,11 +20,12 @@ const std::vector<FolderRule>& folder_rules() {
     static const std::vector<FolderRule> rules = {
         {"include/", {}},
         {"src/core/", {"core/"}},
+        {"src/check/", {"check/", "core/"}},
         {"src/make/", {"make/", "core/"}},
         {"src/ops/", {"ops/", "core/"}},
         {"src/reference/", {"reference/", "ops/", "core/"}},
         {"src/cpu/", {"cpu/", "ops/", "core/"}},
-        {"src/api/", {"api/", "reference/", "cpu/", "ops/", "make/", "core/"}},
+        {"src/api/", {"api/", "reference/", "cpu/", "ops/", "check/", "make/", "core/"}},
         {"src/io/own/", {"io/", "core/"}},
         {"src/io/vtk/", {"io/", "core/"}},
         {"src/io/", {"io/", "core/"}},
@@ -55,7 +56,7 @@ const std::vector<LibraryRule>& library_rules() {
     return rules;
 }
 
-constexpr std::array<std::string_view, 11> folders_of_src = {"core/", "make/", "ops/", "reference/", "cpu/", "api/",
+constexpr std::array<std::string_view, 12> folders_of_src = {"core/", "check/", "make/", "ops/", "reference/", "cpu/", "api/",
                                                              "io/", "search/", "vulkan/", "render/", "cli/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
