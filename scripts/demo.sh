@@ -55,7 +55,7 @@ print_table() {
     printf '\n%s\n' "${grid#"$root"/}, speed of the blood in m/s"
     printf '  points %s   cells %s   tetrahedra %s\n' "${seen[points]}" "${seen[cells]}" "${seen[tets]}"
     printf '  engine %s, %s threads   packed %s KiB   transient peak %s KiB\n' "${seen[engine]}" "${seen[threads]}" \
-        $((seen[bytes.packed] / 1024)) $((seen[bytes.transient_peak] / 1024))
+        "$(kibibytes "${seen[bytes.packed]}")" "$(kibibytes "${seen[bytes.transient_peak]}")"
     printf '  read %.3f s   pack %.3f s\n\n' "${seen[seconds.read]}" "${seen[seconds.pack]}"
     printf '  %8s %9s %10s %12s %10s %10s   %s\n' isovalue vertices triangles 'area (m2)' extract write 'file, checked'
     for ((i = 0; i < ${#isovalues[@]}; i++)); do
@@ -66,6 +66,8 @@ print_table() {
             "$(milliseconds "${seen[surfaces.$i.seconds.write]}")" "$(shorter "$(surface_of "$isovalue")")"
     done
 }
+
+kibibytes() { awk -v bytes="$1" 'BEGIN { printf "%d", bytes / 1024 }'; }
 
 milliseconds() { awk -v seconds="$1" 'BEGIN { print seconds * 1000 }'; }
 
