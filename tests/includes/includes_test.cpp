@@ -46,7 +46,8 @@ TEST(Includes, AgainstTheDirectionAreFound) {
     EXPECT_NE(objection("src/io/own/gmsh.cpp", "vtkCellArray.h"), "");
     EXPECT_NE(objection("include/isotet/grid.hpp", "fmt/format.h"), "");
     EXPECT_NE(objection("src/core/parallel.hpp", "tbb/task_arena.h"), "");
-    EXPECT_NE(objection("apps/cli/extract.cpp", "core/packed.hpp"), "");
+    EXPECT_NE(objection("apps/cli/extract.cpp", "cpu/emit.hpp"), "");
+    EXPECT_NE(objection("src/new_folder/new.cpp", "core/packed.hpp"), "") << "a folder without a rule";
     EXPECT_EQ(objection("src/cpu/emit.cpp", "ops/extract.hpp"), "");
     EXPECT_EQ(objection("src/io/vtk/child.cpp", "vtkCellArray.h"), "");
     EXPECT_EQ(objection("apps/cli/extract.cpp", "isotet/extract.hpp"), "");
