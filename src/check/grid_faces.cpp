@@ -10,6 +10,7 @@
 #include "core/cells.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
+#include "core/stored_tets.hpp"
 
 namespace isotet::checking {
 
@@ -17,36 +18,14 @@ namespace {
 
 using core::Tet;
 
-/// A tet in canonical form and its place in the user's order.
+/// A tet as stored, and where it comes from.
 struct FoundTet {
     Tet tet;
-    std::uint64_t order;
+    core::TetId id;
 };
 
 /// The four corners, ascending; a canonical tet has its two lowest in front.
-Tet corners_of(const Tet& t) { return {t[0], t[1], std::min(t[2], t[3]), std::max(t[2], t[3])}; }
-
-/// A face and the direction in which its tet uses it.
-struct FaceUse {
-    Face face;
-    bool rising; ///< the tet, seen from outside, runs through the corners in ascending order
-    auto operator<=>(const FaceUse&) const = default;
-};
-
-FaceUse face_use(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
-    Face face{a, b, c};
-    bool rising = true;
-    const auto order = [&](std::size_t i, std::size_t j) {
-        if (face[j] < face[i]) {
-            std::swap(face[i], face[j]);
-            rising = !rising;
-        }
-    };
-    order(0, 1);
-    order(1, 2);
-    order(0, 1);
-    return {face, rising};
-}
+Tet sorted_corners(const Tet& t) { return {t[0], t[1], std::min(t[2], t[3]), std::max(t[2], t[3])}; }
 
 /// The points that are asked about, and how many of them a face needs to matter.
 struct Marks {
@@ -91,7 +70,7 @@ std::vector<FoundTet> tets_near(const core::CellReader& cells, const core::Orien
             for (unsigned piece = 0; piece < static_cast<unsigned>(tets.count); ++piece) {
                 const Tet& t = tets.tets[piece];
                 if (marks.enough(t) && std::ranges::all_of(t, has_data))
-                    near.push_back({orienter.stored(cells.type(cell), tets, piece, seen), 6 * cell + piece});
+                    near.push_back({orienter.stored(cells.type(cell), tets, piece, seen), core::TetId::make(cell, piece)});
             }
         }
         const std::lock_guard lock(mutex);
@@ -101,37 +80,17 @@ std::vector<FoundTet> tets_near(const core::CellReader& cells, const core::Orien
     return found;
 }
 
-/// True when more tetrahedra of the grid have a negative volume than a positive one.
-bool is_mostly_negative(const Grid& grid, const core::CellReader& cells) {
-    const core::Orienter orienter(grid.points, false);
-    core::Orienter::Counts counts;
-    std::mutex mutex;
-    core::parallel_ranges(cells.count(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-        core::Orienter::Counts seen;
-        for (std::size_t cell = begin; cell < end; ++cell)
-            if (cells.type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron))
-                if (const core::CellTets tets = cells.tets(cell); tets.count > 0)
-                    orienter.stored(cells.type(cell), tets, 0, seen);
-        const std::lock_guard lock(mutex);
-        counts.combine(seen);
+/// The tets alone; of those with the same four corners the first in the user's order.
+std::vector<Tet> without_repeated(std::vector<FoundTet> found) {
+    tbb::parallel_sort(found.begin(), found.end(), [](const FoundTet& a, const FoundTet& b) {
+        const Tet p = sorted_corners(a.tet), q = sorted_corners(b.tet);
+        return p != q ? p < q : a.id.value < b.id.value;
     });
-    return counts.negative > counts.upright;
-}
-
-std::vector<FaceUse> faces_of(std::vector<FoundTet> tets, const Marks& marks) {
-    tbb::parallel_sort(tets.begin(), tets.end(), [](const FoundTet& a, const FoundTet& b) {
-        const Tet p = corners_of(a.tet), q = corners_of(b.tet);
-        return p != q ? p < q : a.order < b.order;
-    });
-    const auto repeated = std::ranges::unique(tets, {}, [](const FoundTet& t) { return corners_of(t.tet); });
-    tets.erase(repeated.begin(), repeated.end());
-    std::vector<FaceUse> uses;
-    for (const auto& [t, order] : tets)
-        for (const FaceUse& use : {face_use(t[1], t[2], t[3]), face_use(t[0], t[3], t[2]), face_use(t[0], t[1], t[3]),
-                                   face_use(t[0], t[2], t[1])})
-            if (marks.enough(use.face)) uses.push_back(use);
-    tbb::parallel_sort(uses.begin(), uses.end());
-    return uses;
+    const auto repeated = std::ranges::unique(found, {}, [](const FoundTet& t) { return sorted_corners(t.tet); });
+    found.erase(repeated.begin(), repeated.end());
+    std::vector<Tet> tets(found.size());
+    std::ranges::transform(found, tets.begin(), &FoundTet::tet);
+    return tets;
 }
 
 template <class T>
@@ -169,22 +128,18 @@ Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, con
     core::Orienter::Counts counts;
     auto tets = tets_near(*cells, core::Orienter(grid.points, false), marks, no_data, counts, progress);
     // Only flat tets depend on how most of the grid is oriented.
-    if (counts.flat > 0 && is_mostly_negative(grid, *cells))
+    if (counts.flat > 0 && core::survey_tets(grid, *cells).mostly_negative)
         tets = tets_near(*cells, core::Orienter(grid.points, true), marks, no_data, counts, progress);
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking against the grid was cancelled"};
 
-    const std::vector<FaceUse> uses = faces_of(std::move(tets), marks);
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        const Face face = uses[begin].face;
-        std::size_t rising = 0;
-        for (end = begin; end < uses.size() && uses[end].face == face; ++end) rising += uses[end].rising;
-        const std::size_t falling = end - begin - rising;
-        if (rising > 1 || falling > 1) faces.doubled_.push_back(face);
-        if (rising == falling) continue;
-        faces.boundary_.push_back(face);
-        faces.boundary_points_.insert(faces.boundary_points_.end(), face.begin(), face.end());
-        for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
-            faces.boundary_edges_.push_back({face[static_cast<std::size_t>(a)], face[static_cast<std::size_t>(b)]});
+    for (const core::StoredFace& face : core::faces_of(without_repeated(std::move(tets)))) {
+        const Face& p = face.points;
+        if (!marks.enough(p)) continue;
+        if (face.forward > 1 || face.backward > 1) faces.doubled_.push_back(p);
+        if (face.forward == face.backward) continue;
+        faces.boundary_.push_back(p);
+        faces.boundary_edges_.insert(faces.boundary_edges_.end(), {{p[0], p[1]}, {p[0], p[2]}, {p[1], p[2]}});
+        faces.boundary_points_.insert(faces.boundary_points_.end(), p.begin(), p.end());
     }
     sort_unique(faces.boundary_edges_);
     sort_unique(faces.boundary_points_);

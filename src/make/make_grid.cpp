@@ -57,7 +57,7 @@ public:
         }
         const std::uint64_t cubes = options.side * options.side;
         for (Sizes& sizes : layers_) sizes = {sizes.cells * cubes, sizes.corners * cubes};
-        work_ = layers_.back().cells + lattice_.points() * (1 + options.fields.size());
+        work_ = (shuffled_ ? layers_.back().cells : cubes * options.side) + lattice_.points() * (1 + options.fields.size());
     }
 
     Result<Grid> make() {
