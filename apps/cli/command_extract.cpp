@@ -1,0 +1,226 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet extract`: from a grid file to surface files.
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <isotet/extract.hpp>
+#include <isotet/write.hpp>
+
+#include "cells_left_out.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "extract_plan.hpp"
+#include "extract_report.hpp"
+#include "number_format.hpp"
+#include "output_paths.hpp"
+#include "packed_series.hpp"
+#include "stopwatch.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+/// One run of the command: what its steps share.
+class ExtractRun {
+public:
+    ExtractRun(const ExtractCommand& command, Console& console) : command_(command), console_(console) {}
+
+    Result<void> run();
+    const ExtractNumbers& numbers() const noexcept { return numbers_; }
+
+private:
+    Result<void> open();
+    Result<void> load(std::size_t step);
+    Result<void> choose_values(const PointField& field);
+    Result<void> extract_step(std::size_t step);
+    Result<void> extract_one(double isovalue, std::optional<double> time, Surface& surface);
+    Result<void> write(const Surface& surface, const std::string& path);
+    void say_what_packing_found(const Grid& grid);
+    void say_what_extracting_found(const SurfaceNumbers& surface);
+
+    const ExtractCommand& command_;
+    Console& console_;
+    std::optional<GridSource> source_;
+    ExtractPlan plan_;
+    std::optional<PackedSeries> series_;
+    StepFields fields_;
+    std::vector<double> isovalues_; ///< chosen at the first step, the same for all
+    ExtractNumbers numbers_;
+};
+
+Result<void> ExtractRun::open() {
+    const Stopwatch reading;
+    const OutputNames names(command_.out);
+    const bool fixed_name = !names.by_value() && !names.by_time();
+    if (Result<void> paths = check_output_paths({command_.grid.file}, {fixed_name ? command_.out : "", command_.common.json}); !paths) {
+        return paths;
+    }
+    console_.detail("looking at " + command_.grid.file);
+    Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
+    if (!source) return source.error();
+    source_ = *std::move(source);
+    Result<ExtractPlan> plan = plan_extract(command_, *source_, console_);
+    if (!plan) return plan.error();
+    plan_ = *std::move(plan);
+    series_.emplace(plan_.pack, plan_.steps.size());
+    numbers_.grid = command_.grid.file;
+    numbers_.format = source_->info().format;
+    numbers_.precision = command_.precision;
+    numbers_.engine = command_.engine;
+    numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads)
+                                                   : std::max(1U, std::thread::hardware_concurrency());
+    numbers_.read_seconds = reading.seconds();
+    return {};
+}
+
+/// Reads one step and makes it the packed one. The grid itself is gone afterwards; the fields to carry stay.
+Result<void> ExtractRun::load(std::size_t step) {
+    const Stopwatch reading;
+    console_.detail(fmt::format("reading step {}", step));
+    fields_ = {};
+    const Result<Grid> grid = source_->read(plan_.read, step, console_);
+    if (!grid) return grid.error();
+    const auto prefer = command_.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
+    const Result<PointField> field = find_field(*grid, plan_.field.name, {.prefer = prefer, .threads = command_.common.threads});
+    if (!field) return field.error();
+    console_.note(field->note);
+    Result<StepFields> fields = carried_fields(plan_, *grid);
+    if (!fields) return fields.error();
+    fields_ = *std::move(fields);
+    numbers_.read_seconds += reading.seconds();
+
+    const Stopwatch packing;
+    console_.detail("packing");
+    const Result<PackedSeries::Work> work = series_->load(*grid, *field, console_.progress());
+    if (!work) return work.error();
+    if (*work != PackedSeries::Work::packed) console_.detail("the cells are those of the step before: not packed again");
+    numbers_.pack_seconds += packing.seconds();
+    numbers_.cells = grid->cells.count();
+    numbers_.pack = series_->packed().report();
+    numbers_.field = series_->packed().field();
+    numbers_.averaged = field->averaged;
+    say_what_packing_found(*grid);
+    return isovalues_.empty() ? choose_values(*field) : Result<void>{};
+}
+
+Result<void> ExtractRun::choose_values(const PointField& field) {
+    Result<std::vector<double>> isovalues = choose_isovalues(command_, field, numbers_.field, console_);
+    if (!isovalues) return isovalues.error();
+    isovalues_ = *std::move(isovalues);
+    if (!plan_.names.by_value() && !plan_.names.by_time()) return {};
+    for (const std::size_t step : plan_.steps) {
+        for (const double isovalue : isovalues_) {
+            const std::string name = plan_.names.name(isovalue, time_of(source_->info(), step));
+            if (Result<void> path = check_output_paths({command_.grid.file, command_.common.json}, {name}); !path) return path;
+            if (!plan_.names.by_value()) break; // all values go into the same file
+        }
+    }
+    return {};
+}
+
+void ExtractRun::say_what_packing_found(const Grid& grid) {
+    const PackReport& pack = numbers_.pack;
+    if (pack.cells_left_out > 0) console_.note(cells_left_out_note(grid));
+    if (pack.coarse_clusters > 0) {
+        console_.note(fmt::format("in {} of {} clusters rounding to float32 moves points by over a thousandth of the shortest edge; "
+                                  "--precision double keeps them", grouped(pack.coarse_clusters), grouped(pack.clusters)));
+    }
+    if (numbers_.field.flushed > 0) {
+        console_.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0", grouped(numbers_.field.flushed),
+                                  numbers_.field.name));
+    }
+}
+
+void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
+    const FieldReport& field = numbers_.field;
+    if (!(field.lower <= field.upper)) {
+        console_.note(fmt::format("isovalue {} gives no surface: field '{}' has no finite value", shortest(surface.isovalue), field.name));
+    } else if (surface.triangles == 0) {
+        const bool outside = surface.isovalue < field.lower || surface.isovalue > field.upper;
+        console_.note(fmt::format("isovalue {} {}: the surface is empty; the range of '{}' is {} to {}", shortest(surface.isovalue),
+                                  outside ? "is outside the range" : "has nothing below it or is cut by no tet", field.name,
+                                  shortest(field.lower), shortest(field.upper)));
+    }
+    if (surface.report.near_tie) {
+        console_.note(fmt::format("no point has the value {}, but points have the nearest one that the type of '{}' can hold; --snap "
+                                  "takes that", shortest(surface.isovalue), field.name));
+    }
+}
+
+Result<void> ExtractRun::extract_one(double isovalue, std::optional<double> time, Surface& surface) {
+    ExtractOptions options = plan_.extract;
+    options.point_fields = fields_.point;
+    options.cell_fields = fields_.cell;
+    const Stopwatch extracting;
+    console_.detail("extracting " + shortest(isovalue));
+    Result<Extraction> extraction = extract(series_->packed(), isovalue, options, console_.progress());
+    if (!extraction) return extraction.error();
+    SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
+    numbers.extract_seconds = extracting.seconds();
+    surface = std::move(extraction->surface);
+    numbers.isovalue = isovalue;
+    numbers.time = time;
+    numbers.report = extraction->report;
+    numbers.vertices = surface.vertices();
+    numbers.triangles = surface.triangle_count();
+    numbers.area = area(surface);
+    say_what_extracting_found(numbers);
+    return {};
+}
+
+Result<void> ExtractRun::write(const Surface& surface, const std::string& path) {
+    const Stopwatch writing;
+    console_.detail("writing " + path);
+    const Result<WriteReport> written = write_surface(surface, path, {}, console_.progress());
+    if (!written) return written.error();
+    console_.notes(written->notes);
+    numbers_.surfaces.back().write_seconds = writing.seconds();
+    return {};
+}
+
+Result<void> ExtractRun::extract_step(std::size_t step) {
+    const std::optional<double> time = time_of(source_->info(), step);
+    const bool one_file = !plan_.names.none() && !plan_.names.by_value();
+    std::vector<Surface> surfaces;
+    for (const double isovalue : isovalues_) {
+        Surface surface;
+        if (Result<void> extracted = extract_one(isovalue, time, surface); !extracted) return extracted;
+        if (plan_.names.none()) continue;
+        const std::string path = plan_.names.name(isovalue, time);
+        numbers_.surfaces.back().file = path;
+        if (one_file) {
+            surfaces.push_back(std::move(surface));
+        } else if (Result<void> written = write(surface, path); !written) {
+            return written;
+        }
+    }
+    if (!one_file) return {};
+    const std::string& path = numbers_.surfaces.back().file;
+    return write(surfaces.size() == 1 ? surfaces.front() : join(surfaces, isovalues_), path);
+}
+
+Result<void> ExtractRun::run() {
+    if (Result<void> opened = open(); !opened) return opened;
+    for (const std::size_t step : plan_.steps) {
+        if (console_.progress().cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (Result<void> loaded = load(step); !loaded) return loaded;
+        if (Result<void> extracted = extract_step(step); !extracted) return extracted;
+    }
+    return {};
+}
+
+} // namespace
+
+Result<ExitCode> run_extract(const ExtractCommand& command) {
+    Console console(command.common);
+    ExtractRun run(command, console);
+    if (Result<void> done = run.run(); !done) return done.error();
+    if (Result<void> printed = console.print(extract_table(run.numbers())); !printed) return printed.error();
+    Json report = extract_json(run.numbers());
+    report["notes"] = json_texts(console.noted());
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    return ExitCode::done;
+}
+
+} // namespace isotet::cli

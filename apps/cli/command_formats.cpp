@@ -1,0 +1,54 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet formats`: what can be read and written.
+#include <isotet/read.hpp>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "json_output.hpp"
+#include "output_paths.hpp"
+#include "report.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+std::string access(bool reads, bool writes) {
+    if (reads && writes) return "read, write";
+    return reads ? "read" : writes ? "write" : "";
+}
+
+} // namespace
+
+Result<ExitCode> run_formats(const FormatsCommand& command) {
+    Console console(command.common);
+    if (Result<void> paths = check_output_paths({}, {command.common.json}); !paths) return paths.error();
+    using enum Table::Align;
+    Table table({left, left, left, left, left});
+    table.row({"name", "grid", "surface", "endings", "what it is"});
+    Json list = Json::array();
+    for (const Format& format : formats()) {
+        table.row({format.name, access(format.reads_grid, format.writes_grid), access(format.reads_surface, format.writes_surface),
+                   joined(format.extensions), format.title});
+        list.push_back({{"name", format.name},
+                        {"title", format.title},
+                        {"extensions", format.extensions},
+                        {"reads_grid", format.reads_grid},
+                        {"writes_grid", format.writes_grid},
+                        {"reads_surface", format.reads_surface},
+                        {"writes_surface", format.writes_surface},
+                        {"needs_vtk", format.needs_vtk}});
+    }
+    if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
+    Json report = json_report("formats");
+    report["formats"] = std::move(list);
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    return ExitCode::done;
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,174 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet info`: what a grid file holds.
+#include <fmt/format.h>
+
+#include <isotet/grid.hpp>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "field_statistics.hpp"
+#include "grid_source.hpp"
+#include "json_output.hpp"
+#include "number_format.hpp"
+#include "output_paths.hpp"
+#include "report.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+/// What was found out about a file, before it is printed twice.
+struct Findings {
+    const FileInfo& file;
+    std::size_t step = 0;
+    const Grid& grid;
+    GridReport report;
+};
+
+struct DescribedField {
+    const Field& field;
+    const char* association;
+    std::vector<ComponentStatistics> components;
+};
+
+std::vector<DescribedField> describe_fields(const Grid& grid) {
+    std::vector<DescribedField> described;
+    for (const Field& field : grid.point_fields) described.push_back({field, "point", statistics(field.values)});
+    for (const Field& field : grid.cell_fields) described.push_back({field, "cell", statistics(field.values)});
+    return described;
+}
+
+std::string range_text(const ComponentStatistics& component) {
+    if (component.lower > component.upper) return "no finite value";
+    return fmt::format("{} to {}", shortest(component.lower), shortest(component.upper));
+}
+
+std::string holes_text(const ComponentStatistics& component) {
+    std::string text;
+    if (component.not_a_number > 0) text = fmt::format("no data {}", grouped(component.not_a_number));
+    if (component.infinite > 0) text += fmt::format("{}infinite {}", text.empty() ? "" : ", ", grouped(component.infinite));
+    return text;
+}
+
+std::string grid_table(const Findings& found, const std::string& path) {
+    const GridReport& report = found.report;
+    Table table = facts();
+    table.row({"file", fmt::format("{} ({})", path, found.file.format)});
+    table.row({"points", fmt::format("{} ({})", grouped(report.points), name_of(found.grid.points.type()))});
+    table.row({"cells", grouped(report.cells)});
+    for (const auto& [type, count] : report.cells_by_type) table.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
+    table.row({"tets", grouped(report.tets)});
+    for (const auto& [count, what] : {std::pair{report.cells_left_out, "cells left out: their type is not contoured"},
+                                      {report.collapsed_tets, "collapsed tets, dropped"},
+                                      {report.repeated_tets, "repeated tets"},
+                                      {report.negative_tets, "tets of negative volume in the order of the file"},
+                                      {report.inverted_tets, "inverted tets"},
+                                      {report.flat_tets, "flat tets"},
+                                      {report.unused_points, "unused points"},
+                                      {report.duplicate_points, "duplicate points"}}) {
+        if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
+    }
+    table.row({"boundary faces", grouped(report.boundary_faces)});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        table.row({axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], shortest(report.lower[axis]), shortest(report.upper[axis]))});
+    }
+    const std::vector<double>& times = found.file.times;
+    if (!times.empty()) {
+        table.row({"time steps", fmt::format("{}, times {} to {}; this is step {}, time {}", times.size(), shortest(times.front()),
+                                             shortest(times.back()), found.step, shortest(times[found.step]))});
+    }
+    return table.text();
+}
+
+std::string field_table(const std::vector<DescribedField>& fields) {
+    using enum Table::Align;
+    Table table({left, left, left, right, left, left});
+    for (const DescribedField& described : fields) {
+        const std::size_t count = described.components.size();
+        const Array& values = described.field.values;
+        const std::string type = std::string(name_of(values.type())) + (count > 1 ? fmt::format(" x {}", count) : "");
+        table.row({"field", described.field.name, described.association, type, count == 1 ? range_text(described.components[0]) : "",
+                   count == 1 ? holes_text(described.components[0]) : ""});
+        for (std::size_t c = 0; count > 1 && c < count; ++c) {
+            const std::string component = count <= 3 ? std::string(1, "xyz"[c]) : std::to_string(c);
+            table.row({"", "  :" + component, "", "", range_text(described.components[c]), holes_text(described.components[c])});
+        }
+    }
+    return table.text();
+}
+
+Json json_of(const std::vector<DescribedField>& fields) {
+    Json list = Json::array();
+    for (const DescribedField& described : fields) {
+        Json ranges = Json::array();
+        Json not_a_number = Json::array();
+        Json infinite = Json::array();
+        for (const ComponentStatistics& component : described.components) {
+            const bool none = component.lower > component.upper;
+            ranges.push_back(none ? Json(nullptr) : Json::array({component.lower, component.upper}));
+            not_a_number.push_back(component.not_a_number);
+            infinite.push_back(component.infinite);
+        }
+        list.push_back({{"name", json_text(described.field.name)},
+                        {"association", described.association},
+                        {"type", name_of(described.field.values.type())},
+                        {"components", described.components.size()},
+                        {"range", std::move(ranges)},
+                        {"nan", std::move(not_a_number)},
+                        {"infinite", std::move(infinite)}});
+    }
+    return list;
+}
+
+Json json_of(const Findings& found, const std::string& path) {
+    const GridReport& grid = found.report;
+    Json report = json_report("info");
+    report["file"] = json_text(path);
+    report["format"] = found.file.format;
+    report["points"] = grid.points;
+    report["cells"] = grid.cells;
+    Json by_type = Json::object();
+    for (const auto& [type, count] : grid.cells_by_type) by_type[name_of_cell_type(type)] = count;
+    report["cells_by_type"] = std::move(by_type);
+    report["cells_left_out"] = grid.cells_left_out;
+    report["tets"] = grid.tets;
+    report["collapsed_tets"] = grid.collapsed_tets;
+    report["repeated_tets"] = grid.repeated_tets;
+    report["negative_tets"] = grid.negative_tets;
+    report["inverted_tets"] = grid.inverted_tets;
+    report["flat_tets"] = grid.flat_tets;
+    report["unused_points"] = grid.unused_points;
+    report["duplicate_points"] = grid.duplicate_points;
+    report["boundary_faces"] = grid.boundary_faces;
+    report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
+    report["times"] = found.file.times;
+    report["step"] = found.step;
+    return report;
+}
+
+} // namespace
+
+Result<ExitCode> run_info(const InfoCommand& command) {
+    Console console(command.common);
+    const std::string& path = command.grid.file;
+    if (Result<void> paths = check_output_paths({path}, {command.common.json}); !paths) return paths.error();
+    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    if (!source) return source.error();
+    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
+    if (!steps) return steps.error();
+    const Result<Grid> grid = source->read({}, steps->front(), console);
+    if (!grid) return grid.error();
+    Result<GridReport> surveyed = survey(*grid, {.faces = true, .threads = command.common.threads}, console.progress());
+    if (!surveyed) return surveyed.error();
+    const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed)};
+    const std::vector<DescribedField> fields = describe_fields(*grid);
+
+    if (Result<void> printed = console.print(grid_table(found, path) + field_table(fields)); !printed) return printed.error();
+    Json report = json_of(found, path);
+    report["fields"] = json_of(fields);
+    report["notes"] = json_texts(console.noted());
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    return ExitCode::done;
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,26 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// One function for each command; each lives in command_NAME.cpp.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <isotet/result.hpp>
+
+#include "exit_code.hpp"
+#include "options.hpp"
+
+namespace isotet::cli {
+
+Result<ExitCode> run_info(const InfoCommand& command);
+Result<ExitCode> run_extract(const ExtractCommand& command);
+Result<ExitCode> run_check(const CheckCommand& command);
+Result<ExitCode> run_make(const MakeCommand& command);
+Result<ExitCode> run_formats(const FormatsCommand& command);
+Result<ExitCode> run_docs(const DocsCommand& command, const CLI::App& program);
+
+/// What --version prints.
+std::string version_text();
+
+} // namespace isotet::cli

@@ -1,0 +1,46 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "console.hpp"
+
+#include <algorithm>
+
+#include "signals.hpp"
+#include "standard_streams.hpp"
+#include "text.hpp"
+
+namespace isotet::cli {
+
+Console::Console(const CommonOptions& options)
+    : quiet_(options.quiet), verbose_(options.verbose), table_(!options.quiet && options.json != "-"),
+      bar_(!options.quiet && stderr_is_terminal()) {
+    progress_.report = [this](std::string_view step, double fraction) { bar_.show(step, fraction); };
+    progress_.cancel = &interrupted;
+}
+
+void Console::note(const std::string& sentence) {
+    if (sentence.empty() || std::find(noted_.begin(), noted_.end(), sentence) != noted_.end()) return;
+    noted_.push_back(sentence);
+    if (quiet_) return;
+    bar_.clear();
+    write_to_stderr("isotet: note: " + printable(sentence) + "\n");
+}
+
+void Console::notes(const std::vector<std::string>& sentences) {
+    for (const std::string& sentence : sentences) note(sentence);
+}
+
+void Console::detail(const std::string& sentence) {
+    if (!verbose_) return;
+    bar_.clear();
+    write_to_stderr("isotet: " + printable(sentence) + "\n");
+}
+
+Result<void> Console::print(std::string_view text) {
+    bar_.clear();
+    return table_ ? write_to_stdout(text) : Result<void>{};
+}
+
+void say_error(std::string_view message) {
+    write_to_stderr("isotet: " + printable(message) + "\n");
+}
+
+} // namespace isotet::cli

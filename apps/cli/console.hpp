@@ -1,0 +1,46 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a command says while it works: results, notes, details, progress, and where each of them goes.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+#include "options.hpp"
+#include "progress_bar.hpp"
+
+namespace isotet::cli {
+
+class Console {
+public:
+    explicit Console(const CommonOptions& options);
+
+    /// A sentence for the user, on standard error and in the JSON; said once however often it is noted. Not with --quiet.
+    void note(const std::string& sentence);
+    void notes(const std::vector<std::string>& sentences);
+
+    /// A sentence for --verbose, on standard error.
+    void detail(const std::string& sentence);
+
+    /// Text for people on standard output: not with --quiet, and not where the JSON goes there.
+    Result<void> print(std::string_view text);
+
+    const std::vector<std::string>& noted() const noexcept { return noted_; }
+
+    /// Draws the bar and hears Ctrl-C. The console must outlive it.
+    const Progress& progress() const noexcept { return progress_; }
+
+private:
+    bool quiet_, verbose_, table_;
+    ProgressBar bar_;
+    Progress progress_;
+    std::vector<std::string> noted_;
+};
+
+/// "isotet: MESSAGE" on standard error, escaped.
+void say_error(std::string_view message);
+
+} // namespace isotet::cli

@@ -1,0 +1,140 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "extract_report.hpp"
+
+#include <algorithm>
+
+#include <sys/resource.h>
+
+#include <fmt/format.h>
+
+#include "number_format.hpp"
+#include "report.hpp"
+
+namespace isotet::cli {
+
+std::uint64_t ExtractNumbers::transient_peak() const {
+    std::uint64_t peak = 0;
+    for (const SurfaceNumbers& surface : surfaces) peak = std::max(peak, surface.report.transient_bytes);
+    return peak;
+}
+
+namespace {
+
+std::uint64_t process_peak_bytes() {
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// The engine that ran; both extract by clusters.
+const char* engine_name(EngineChoice engine) {
+    return engine == EngineChoice::reference ? "reference" : "cpu";
+}
+
+std::string memory_text(const ExtractNumbers& numbers) {
+    const PackReport& pack = numbers.pack;
+    std::string text = "packed " + bytes_text(pack.bytes);
+    if (pack.tets > 0) {
+        text += fmt::format(" ({:.1f} bytes a tet)", static_cast<double>(pack.bytes) / static_cast<double>(pack.tets));
+    }
+    if (pack.source_bytes > 0) text += ", source cells " + bytes_text(pack.source_bytes);
+    if (pack.gradient_bytes > 0) text += ", gradients " + bytes_text(pack.gradient_bytes);
+    return fmt::format("{}, extracting {}, whole process {}", text, bytes_text(numbers.transient_peak()),
+                       bytes_text(process_peak_bytes()));
+}
+
+std::string field_text(const ExtractNumbers& numbers) {
+    const FieldReport& field = numbers.field;
+    std::string text = field.name + (numbers.averaged ? " (cell field, averaged to the points)" : "");
+    if (field.lower <= field.upper) text += fmt::format(", {} to {}", shortest(field.lower), shortest(field.upper));
+    if (field.no_data > 0) text += fmt::format(", no data at {} points", grouped(field.no_data));
+    if (field.infinite > 0) text += fmt::format(", infinite at {}", grouped(field.infinite));
+    return text;
+}
+
+std::string facts_table(const ExtractNumbers& numbers) {
+    const PackReport& pack = numbers.pack;
+    Table table = facts();
+    table.row({"grid", fmt::format("{} ({})", numbers.grid, numbers.format)});
+    table.row({"cells", grouped(numbers.cells)});
+    table.row({"points", fmt::format("{} used", grouped(pack.points))});
+    table.row({"tets", grouped(pack.tets)});
+    for (const auto& [count, what] : {std::pair{pack.cells_left_out, "cells left out"},
+                                      {pack.collapsed_tets, "collapsed tets, dropped"},
+                                      {pack.repeated_tets, "repeated tets, dropped"},
+                                      {pack.inverted_tets, "inverted tets"},
+                                      {pack.flat_tets, "flat tets"}}) {
+        if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
+    }
+    table.row({"field", field_text(numbers)});
+    table.row({"engine", fmt::format("{}{}, {} packing, {} thread{}", engine_name(numbers.engine),
+                                     numbers.engine == EngineChoice::automatic ? " (auto: the fastest there is)" : "",
+                                     numbers.precision == Precision::single ? "single" : "double", numbers.threads,
+                                     numbers.threads == 1 ? "" : "s")});
+    table.row({"memory", memory_text(numbers)});
+    table.row({"time", fmt::format("read {}, pack {}", seconds_text(numbers.read_seconds), seconds_text(numbers.pack_seconds))});
+    return table.text();
+}
+
+std::string ties_text(const ExtractReport& report) {
+    std::string text = grouped(report.tied_points);
+    if (report.false_ties.value_or(0) > 0) text += fmt::format(" ({} false)", grouped(*report.false_ties));
+    return text;
+}
+
+} // namespace
+
+std::string extract_table(const ExtractNumbers& numbers) {
+    const auto any = [&](const auto& holds) { return std::any_of(numbers.surfaces.begin(), numbers.surfaces.end(), holds); };
+    const bool times = any([](const SurfaceNumbers& surface) { return surface.time.has_value(); });
+    const bool files = any([](const SurfaceNumbers& surface) { return !surface.file.empty(); });
+    using enum Table::Align;
+    Table table({right, right, right, right, right, right, right, right, left});
+    table.row({"isovalue", times ? "time" : "", "tied points", "vertices", "triangles", "area", "extract", files ? "write" : "",
+               files ? "file" : ""});
+    for (const SurfaceNumbers& surface : numbers.surfaces) {
+        table.row({shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "", ties_text(surface.report),
+                   grouped(surface.vertices), grouped(surface.triangles), rounded(surface.area),
+                   seconds_text(surface.extract_seconds), files ? seconds_text(surface.write_seconds) : "", surface.file});
+    }
+    return facts_table(numbers) + "\n" + table.text();
+}
+
+Json extract_json(const ExtractNumbers& numbers) {
+    Json report = json_report("extract");
+    report["grid"] = json_text(numbers.grid);
+    report["format"] = numbers.format;
+    report["cells"] = numbers.cells;
+    report["points"] = numbers.pack.points;
+    report["tets"] = numbers.pack.tets;
+    report["cells_left_out"] = numbers.pack.cells_left_out;
+    report["field"] = json_text(numbers.field.name);
+    report["range"] = {numbers.field.lower, numbers.field.upper};
+    report["no_data_points"] = numbers.field.no_data;
+    report["engine"] = engine_name(numbers.engine);
+    report["method"] = "clusters";
+    report["precision"] = numbers.precision == Precision::single ? "float" : "double";
+    report["threads"] = numbers.threads;
+    report["seconds"] = {{"read", numbers.read_seconds}, {"pack", numbers.pack_seconds}};
+    report["bytes"] = {{"packed", numbers.pack.bytes},
+                       {"sources", numbers.pack.source_bytes},
+                       {"normals", numbers.pack.gradient_bytes},
+                       {"transient_peak", numbers.transient_peak()}};
+    Json list = Json::array();
+    for (const SurfaceNumbers& surface : numbers.surfaces) {
+        const auto& ties = surface.report.false_ties;
+        list.push_back({{"isovalue", surface.isovalue},
+                        {"time", surface.time ? Json(*surface.time) : Json(nullptr)},
+                        {"tied_points", surface.report.tied_points},
+                        {"false_ties", ties ? Json(*ties) : Json(nullptr)},
+                        {"vertices", surface.vertices},
+                        {"triangles", surface.triangles},
+                        {"area", surface.area},
+                        {"seconds", {{"extract", surface.extract_seconds}, {"write", surface.write_seconds}}},
+                        {"file", surface.file.empty() ? Json(nullptr) : json_text(surface.file)}});
+    }
+    report["surfaces"] = std::move(list);
+    return report;
+}
+
+} // namespace isotet::cli

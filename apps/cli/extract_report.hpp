@@ -1,0 +1,49 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The numbers of `isotet extract`, as a table and as JSON.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+
+#include "json_output.hpp"
+#include "options.hpp"
+
+namespace isotet::cli {
+
+/// One isosurface.
+struct SurfaceNumbers {
+    double isovalue = 0;
+    std::optional<double> time;
+    ExtractReport report;
+    std::uint64_t vertices = 0, triangles = 0;
+    double area = 0;
+    double extract_seconds = 0;
+    double write_seconds = 0; ///< of several surfaces in one file the last has it all
+    std::string file;         ///< empty without OUT
+};
+
+struct ExtractNumbers {
+    std::string grid, format;
+    std::size_t cells = 0;
+    PackReport pack;     ///< of the last packing
+    FieldReport field;   ///< of the last time step
+    bool averaged = false;
+    Precision precision = Precision::single;
+    EngineChoice engine = EngineChoice::automatic;
+    unsigned threads = 1;
+    double read_seconds = 0, pack_seconds = 0;
+    std::vector<SurfaceNumbers> surfaces;
+
+    std::uint64_t transient_peak() const;
+};
+
+std::string extract_table(const ExtractNumbers& numbers);
+Json extract_json(const ExtractNumbers& numbers);
+
+} // namespace isotet::cli

@@ -1,0 +1,40 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Which fields a command needs, decided by name before anything is read.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/read.hpp>
+#include <isotet/result.hpp>
+
+#include "grid_source.hpp"
+#include "options.hpp"
+
+namespace isotet::cli {
+
+/// A field as find_field() will look for it, and the arrays that it is made of.
+struct FoundField {
+    std::string name;                     ///< for find_field(); empty only for "no field"
+    std::vector<std::string> point, cell; ///< to read; none for a coordinate
+};
+
+/// The field to contour. An empty name means the only one there is.
+/// Errors   invalid_argument: no such field (what there is, nearest first), or no name and not just one field
+Result<FoundField> choose_field(const GridSource& source, const FieldChoice& choice);
+
+/// The fields to carry onto a surface.
+struct CarriedFields {
+    std::vector<std::string> point; ///< whole point fields
+    std::vector<std::string> cell;  ///< whole cell fields
+    std::vector<FoundField> components; ///< components of point fields
+};
+
+/// What --with names; each a point field, else a cell field, else a component of a point field. Empty names are no field.
+Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names);
+
+/// The fields of one read: without repetition.
+void add_names(std::vector<std::string>& names, const std::vector<std::string>& more);
+
+} // namespace isotet::cli

@@ -1,0 +1,54 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Where a grid comes from: a file, or memory ("make:kuhn:64:gyroid").
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/make.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/read.hpp>
+#include <isotet/result.hpp>
+
+#include "console.hpp"
+#include "options.hpp"
+
+namespace isotet::cli {
+
+/// Names of the fields to read; nothing: all of them.
+struct FieldsToRead {
+    std::optional<std::vector<std::string>> point, cell;
+};
+
+class GridSource {
+public:
+    /// Finds out what the file holds, or what the grid to make will hold.
+    static Result<GridSource> open(const GridOptions& options, const CommonOptions& common, const Console& console);
+
+    const FileInfo& info() const noexcept { return info_; }
+
+    /// Names of the point or the cell fields.
+    std::vector<std::string> names(Association association) const;
+
+    /// Reads one time step, welds points if asked to, and notes what the reader has to say. Points that coincide where
+    /// nobody welds are noted too.
+    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console) const;
+
+private:
+    GridOptions options_;
+    std::optional<MakeOptions> made_;
+    FileInfo info_;
+    ReadOptions read_options_;
+};
+
+/// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.
+/// Errors   invalid_argument: a step or time that the file does not have, with those that it has
+enum class Steps { one, all };
+Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps, Console& console);
+
+/// The time of a step; nothing where the file knows no time.
+std::optional<double> time_of(const FileInfo& info, std::size_t step);
+
+} // namespace isotet::cli

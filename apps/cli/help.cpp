@@ -1,0 +1,51 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// --help, from the walk over the option tree.
+#include <fmt/format.h>
+
+#include "option_walker.hpp"
+#include "text.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr std::size_t columns = 100;
+constexpr std::size_t description_column = 30;
+
+std::string entry(const std::string& left, const std::string& description) {
+    std::string line = fmt::format("  {}", left);
+    if (line.size() + 2 > description_column) line += "\n" + std::string(description_column, ' ');
+    else line.resize(description_column, ' ');
+    return line + wrapped(description, columns, description_column) + "\n";
+}
+
+} // namespace
+
+std::string help_text(const CommandText& command, const std::vector<CommandText>& commands) {
+    std::string text = fmt::format("{}\n\nUsage: {}\n", command.summary, command.usage);
+    if (command.word.empty()) {
+        text += "\nCommands (isotet COMMAND --help says more):\n";
+        for (const CommandText& other : commands) {
+            if (!other.word.empty()) text += entry(other.word, other.summary);
+        }
+    }
+    text += "\nOptions:\n";
+    for (const OptionText& option : command.options) {
+        const bool with_value = !option.positional && !option.value.empty();
+        text += entry(with_value ? fmt::format("{} {}", option.names, option.value) : option.names, option.description);
+    }
+    for (const Paragraph& paragraph : paragraphs(command.details)) {
+        if (!paragraph.preformatted) {
+            text += fmt::format("\n{}\n", wrapped(paragraph.text, columns));
+            continue;
+        }
+        for (std::size_t begin = 0; begin < paragraph.text.size();) {
+            const std::size_t end = paragraph.text.find('\n', begin) + 1;
+            text += fmt::format("  {}", paragraph.text.substr(begin, end - begin));
+            begin = end;
+        }
+    }
+    return text;
+}
+
+} // namespace isotet::cli

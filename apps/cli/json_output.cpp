@@ -1,0 +1,43 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "json_output.hpp"
+
+#include <utility>
+
+#include "io/own/output_file.hpp"
+#include "standard_streams.hpp"
+#include "text.hpp"
+
+namespace isotet::cli {
+
+Json json_report(const std::string& command) {
+    return {{"schema", json_schema}, {"command", command}};
+}
+
+Json json_text(const std::string& text) {
+    return valid_utf8(text);
+}
+
+Json json_texts(const std::vector<std::string>& texts) {
+    Json list = Json::array();
+    for (const std::string& text : texts) list.push_back(json_text(text));
+    return list;
+}
+
+Result<void> write_json(const Json& report, const std::string& where, const Progress& progress) {
+    if (where.empty()) return {};
+    // All texts are valid by now; "replace" is for the one that somebody forgets.
+    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    if (where == "-") {
+        if (stdout_was_closed()) {
+            return Error{ErrorCode::machine, "--json - writes to standard output, which was closed when isotet started"};
+        }
+        return write_to_stdout(text);
+    }
+    Result<io::OutputFile> file = io::OutputFile::open(where);
+    if (!file) return file.error();
+    if (Result<void> written = file->write(text); !written) return written;
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+    return file->commit();
+}
+
+} // namespace isotet::cli

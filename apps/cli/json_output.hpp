@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What --json writes. docs/json.md is the list of keys; they are a promise.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::cli {
+
+/// Keys stay in the order in which they were set.
+using Json = nlohmann::ordered_json;
+
+/// The number under "schema": it grows when a key changes its meaning or goes; new keys leave it as it is.
+constexpr int json_schema = 1;
+
+/// An object with "schema" and "command".
+Json json_report(const std::string& command);
+
+/// Text from a file or the command line: bytes that are not UTF-8 become \xNN.
+Json json_text(const std::string& text);
+Json json_texts(const std::vector<std::string>& texts);
+
+/// Writes the report where --json says: standard output ("-"), a file, or nowhere (""). A file is replaced as a whole.
+Result<void> write_json(const Json& report, const std::string& where, const Progress& progress);
+
+} // namespace isotet::cli

@@ -1,0 +1,61 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "number_format.hpp"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+namespace isotet::cli {
+
+std::string shortest(double value) {
+    return fmt::format("{}", value);
+}
+
+std::string rounded(double value) {
+    return fmt::format("{:.6g}", value);
+}
+
+std::string grouped(std::uint64_t count) {
+    std::string digits = fmt::format("{}", count);
+    for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
+    return digits;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+    if (bytes < 1000) return fmt::format("{} B", bytes);
+    double value = static_cast<double>(bytes);
+    const char* unit = "";
+    for (const char* larger : {"kB", "MB", "GB", "TB"}) {
+        value /= 1000;
+        unit = larger;
+        if (value < 999.95) break;
+    }
+    return fmt::format("{:.1f} {}", value, unit);
+}
+
+std::string seconds_text(double seconds) {
+    return fmt::format("{:.3f} s", seconds);
+}
+
+namespace {
+
+template <class Number>
+std::optional<Number> parse(std::string_view text) noexcept {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    Number value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+} // namespace
+
+std::optional<double> parse_number(std::string_view text) noexcept {
+    return parse<double>(text);
+}
+
+std::optional<std::uint64_t> parse_count(std::string_view text) noexcept {
+    return parse<std::uint64_t>(text);
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Numbers as text and back, the same in every locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace isotet::cli {
+
+/// The shortest decimal that reads back as the same double: "0.7", "1e-05".
+std::string shortest(double value);
+
+/// Six significant digits: "3.14159".
+std::string rounded(double value);
+
+/// "12,345,678".
+std::string grouped(std::uint64_t count);
+
+/// "512 B", "1.2 MB"; a MB is 10^6 bytes.
+std::string bytes_text(std::uint64_t bytes);
+
+/// "0.034 s".
+std::string seconds_text(double seconds);
+
+/// The whole of `text` as a number, the point as its decimal sign; nothing if it is not one or does not fit.
+std::optional<double> parse_number(std::string_view text) noexcept;
+std::optional<std::uint64_t> parse_count(std::string_view text) noexcept;
+
+} // namespace isotet::cli

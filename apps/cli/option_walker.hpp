@@ -1,0 +1,49 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The one walk over the option tree. What it finds is printed as --help, man page, bash completion and markdown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace isotet::cli {
+
+struct OptionText {
+    std::string names;                ///< "-f, --field", or "FILE" for a positional
+    std::vector<std::string> flags;   ///< "-f", "--field"; empty for a positional
+    std::string value;                ///< "FIELD"; empty for a flag
+    std::vector<std::string> choices; ///< "none", "gradient", "face"
+    std::string description;
+    bool positional = false, required = false, repeatable = false;
+    bool is_file = false;             ///< the value is a file's name
+};
+
+struct CommandText {
+    std::string name;  ///< "isotet extract"; "isotet" for the program itself
+    std::string word;  ///< "extract"; empty for the program itself
+    std::string usage; ///< "isotet extract [OPTIONS] FILE [OUT]"
+    std::string summary;
+    std::string details; ///< paragraphs between empty lines; lines that begin with two spaces are kept as they are
+    std::vector<OptionText> options; ///< positionals first
+};
+
+/// The program, then its commands in order; hidden ones are left out.
+std::vector<CommandText> walk(const CLI::App& program);
+
+/// The entry of one command, hidden or not.
+CommandText describe(const CLI::App& command);
+
+/// One piece of CommandText::details.
+struct Paragraph {
+    bool preformatted = false;
+    std::string text; ///< preformatted: lines without their two spaces, each with its newline
+};
+std::vector<Paragraph> paragraphs(const std::string& details);
+
+std::string help_text(const CommandText& command, const std::vector<CommandText>& commands);
+std::string man_page(const std::vector<CommandText>& commands);
+std::string bash_completion(const std::vector<CommandText>& commands);
+std::string markdown(const std::vector<CommandText>& commands);
+
+} // namespace isotet::cli

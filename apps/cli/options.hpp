@@ -1,0 +1,104 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What the command line asks for, one struct a command. option_tree.cpp says how it is written.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/extract.hpp>
+#include <isotet/make.hpp>
+#include <isotet/pack.hpp>
+
+namespace isotet::cli {
+
+/// Every command has these.
+struct CommonOptions {
+    bool quiet = false;
+    bool verbose = false;
+    std::string json;  ///< a file, "-" for standard output, empty for none
+    int threads = 0;   ///< 0: all
+};
+
+/// Which grid, and how it is read.
+struct GridOptions {
+    std::string file; ///< or "make:SHAPE:SIDE[:FIELDS]"
+    std::string format;
+    std::optional<double> time;
+    std::optional<std::uint64_t> step;
+    std::optional<double> merge_points; ///< tolerance
+    bool merge_pieces = false;
+    bool allow_outside = false;
+    std::string displace;
+};
+
+struct InfoCommand {
+    CommonOptions common;
+    GridOptions grid;
+};
+
+/// A field's name, and what it is when a point field and a cell field have it.
+struct FieldChoice {
+    std::string name; ///< empty: the only one there is
+    bool cell_field = false;
+};
+
+enum class EngineChoice : std::uint8_t { automatic, cpu, reference };
+
+struct ExtractCommand {
+    CommonOptions common;
+    GridOptions grid;
+    bool all_steps = false;
+    std::string out; ///< empty: only numbers
+    FieldChoice field;
+    std::vector<double> isovalues;
+    std::uint64_t levels = 0; ///< 0: `isovalues` say it
+    bool snap = false;
+    Normals normals = Normals::none;
+    std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
+    bool keep_degenerate = false;
+    bool edge_ends = false;
+    bool source_cells = false;
+    Precision precision = Precision::single;
+    EngineChoice engine = EngineChoice::automatic;
+};
+
+struct CheckCommand {
+    CommonOptions common;
+    std::string surface;
+    std::string format;
+    bool closed = false;
+    bool strict = false;
+    GridOptions grid; ///< `file` is empty without --grid
+    FieldChoice field;
+};
+
+struct MakeCommand {
+    CommonOptions common;
+    MakeOptions grid;
+    std::string out;
+};
+
+struct FormatsCommand {
+    CommonOptions common;
+};
+
+/// The hidden command `docs`: man, completion or markdown.
+struct DocsCommand {
+    std::string kind;
+};
+
+/// A whole command line. `command` says which of the structs counts.
+struct CommandLine {
+    std::string command; ///< "info", "extract", "check", "make", "formats" or "docs"
+    bool version = false;
+    InfoCommand info;
+    ExtractCommand extract;
+    CheckCommand check;
+    MakeCommand make;
+    FormatsCommand formats;
+    DocsCommand docs;
+};
+
+} // namespace isotet::cli

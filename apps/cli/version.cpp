@@ -1,0 +1,38 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What --version prints: which build this is, and of what.
+#include <CLI/Version.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <isotet/version.hpp>
+
+#include "build_facts.hpp"
+#include "commands.hpp"
+#include "report.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+#if defined(__clang__)
+constexpr const char* compiler = "clang " __clang_version__;
+#else
+constexpr const char* compiler = "g++ " __VERSION__;
+#endif
+
+} // namespace
+
+std::string version_text() {
+    Table table = facts();
+    const std::string commit = ISOTET_COMMIT;
+    table.row({"isotet", ISOTET_VERSION});
+    table.row({"commit", commit.empty() ? "unknown" : commit});
+    table.row({"compiler", fmt::format("{}, {} build{}", compiler, ISOTET_BUILD_TYPE, *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
+    table.row({"files through VTK", *ISOTET_VTK_VERSION ? "on, VTK " ISOTET_VTK_VERSION : "off (-DISOTET_IO=OFF)"});
+    table.row({"libraries", fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}", ISOTET_TBB_VERSION,
+                                        FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,
+                                        NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)});
+    return table.text();
+}
+
+} // namespace isotet::cli
