@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
+#include "core/field_storage.hpp"
 #include "core/local_values.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
@@ -13,41 +11,6 @@
 namespace isotet::core {
 
 namespace {
-
-/// The extreme non-zero magnitudes of (value - offset) over finite values.
-struct Magnitudes {
-    double smallest = std::numeric_limits<double>::infinity();
-    double largest = 0;
-
-    void add(double value) {
-        const double magnitude = std::abs(value);
-        if (!(magnitude > 0) || std::isinf(magnitude)) return; // also NaN
-        smallest = std::min(smallest, magnitude);
-        largest = std::max(largest, magnitude);
-    }
-    void combine(const Magnitudes& other) {
-        smallest = std::min(smallest, other.smallest);
-        largest = std::max(largest, other.largest);
-    }
-};
-
-/// Reduces over the field's values at all packed points; combine() commutes, so threads do not matter.
-template <class Statistics, class Add>
-Statistics reduce_values(const Packed& packed, const Array& values, const Add& add) {
-    return values.visit([&](auto typed) {
-        return tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, packed.points(), 1 << 15), Statistics{},
-            [&](const tbb::blocked_range<std::size_t>& range, Statistics partial) {
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    add(partial, static_cast<double>(typed[packed.user_point(i)]));
-                return partial;
-            },
-            [](Statistics a, const Statistics& b) {
-                a.combine(b);
-                return a;
-            });
-    });
-}
 
 template <class Real>
 void extend(Range<Real>& range, Real value) {
@@ -91,12 +54,9 @@ void store_ranges(Packed& packed, std::size_t cluster) {
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress) {
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "storing the field was cancelled"}; };
-    const Precision precision = sizeof(Real) == 4 ? Precision::single : Precision::double_;
-    const auto statistics = reduce_values<ValueStatistics>(packed, field.values, [](ValueStatistics& s, double v) { s.add(v); });
-    Storage storage = choose_offset(field.values.type(), statistics, precision);
-    const auto magnitudes = reduce_values<Magnitudes>(
-        packed, field.values, [offset = storage.offset](Magnitudes& m, double v) { m.add(v - offset); });
-    choose_scale(storage, magnitudes.smallest, magnitudes.largest);
+    const FieldStorage survey = survey_field(field.values, packed);
+    const Storage chosen = survey.storage;
+    const ValueStatistics& statistics = survey.statistics;
     if (progress.cancelled()) return cancelled();
 
     Values<Real>& reals = packed.as<Real>();
@@ -112,8 +72,8 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
             std::uint64_t count = 0;
             for (std::size_t i = begin; i < end; ++i) {
                 const auto value = static_cast<double>(typed[packed.user_point(i)]);
-                reals.values[i] = store_value<Real>(value, storage);
-                count += reals.values[i] == 0 && value != storage.offset;
+                reals.values[i] = store_value<Real>(value, chosen);
+                count += reals.values[i] == 0 && value != chosen.offset;
             }
             flushed += count;
         });
@@ -121,7 +81,7 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
     if (progress.cancelled()) return cancelled();
     parallel_each(packed.clusters(), 64, [&](std::size_t c) { store_ranges<Real>(packed, c); });
 
-    packed.storage = storage;
+    packed.storage = chosen;
     packed.field = field.values;
     FieldReport& report = packed.field_report;
     report = {};
@@ -133,9 +93,9 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
     report.no_data = statistics.no_data;
     report.infinite = statistics.infinite;
     report.flushed = flushed;
-    report.offset = storage.offset;
-    report.scale = storage.scale;
-    report.unchanged = storage.unchanged;
+    report.offset = chosen.offset;
+    report.scale = chosen.scale;
+    report.unchanged = chosen.unchanged;
     return {};
 }
 

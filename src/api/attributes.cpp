@@ -1,0 +1,120 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "api/attributes.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "core/arithmetic.hpp"
+#include "core/field_storage.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet::api {
+
+namespace {
+
+constexpr std::size_t grain = 1 << 13;
+
+template <class Real, class Index>
+core::Vector<Real> normal_of(const Real* positions, const Index* triangle) {
+    const auto corner = [&](Index v) { return core::Vector<Real>{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]}; };
+    return core::face_normal(corner(triangle[0]), corner(triangle[1]), corner(triangle[2]));
+}
+
+template <class Work>
+void with_indices(const Array& triangles, Work&& work) {
+    if (triangles.type() == ScalarType::uint32) work(triangles.as<std::uint32_t>());
+    else work(triangles.as<std::uint64_t>());
+}
+
+} // namespace
+
+template <class Real>
+SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw) {
+    const core::Storage storage = core::choose_storage(field.values, packed);
+    const std::size_t components = field.values.components(), vertices = raw.ends.tuples();
+    const auto ends = raw.ends.as<std::int64_t>();
+    const auto weights = raw.weights.as<Real>();
+    core::Buffer<Real> out(vertices * components);
+    field.values.visit([&](auto values) {
+        core::parallel_each(vertices, grain, [&](std::size_t v) {
+            const auto below = static_cast<std::size_t>(ends[2 * v]), above = static_cast<std::size_t>(ends[2 * v + 1]);
+            for (std::size_t k = 0; k < components; ++k)
+                out[v * components + k] = core::interpolate_field(
+                    core::store_value<Real>(static_cast<double>(values[below * components + k]), storage),
+                    core::store_value<Real>(static_cast<double>(values[above * components + k]), storage), weights[v]);
+        });
+    });
+    return {field.name, std::move(out).to_array(components), storage.offset, storage.scale};
+}
+
+SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw) {
+    const auto cells = raw.source_cells.as<std::int64_t>();
+    const std::size_t components = field.values.components();
+    SurfaceField out{field.name, {}, 0, 1};
+    field.values.visit([&]<class T>(std::span<const T> values) {
+        core::Buffer<T> copy(cells.size() * components);
+        core::parallel_each(cells.size(), grain, [&](std::size_t t) {
+            std::copy_n(values.data() + static_cast<std::size_t>(cells[t]) * components, components, copy.data() + t * components);
+        });
+        out.values = std::move(copy).to_array(components);
+    });
+    return out;
+}
+
+template <class Real>
+Array face_normals(const ops::RawSurface& raw) {
+    core::Buffer<float> normals(3 * raw.triangles.tuples());
+    const Real* positions = raw.positions.as<Real>().data();
+    with_indices(raw.triangles, [&](auto triangles) {
+        core::parallel_each(raw.triangles.tuples(), grain, [&](std::size_t t) {
+            const auto n = normal_of(positions, triangles.data() + 3 * t);
+            for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * t + axis] = static_cast<float>(n[axis]);
+        });
+    });
+    return std::move(normals).to_array(3);
+}
+
+template <class Real>
+Array fill_normals(const ops::RawSurface& raw) {
+    const auto given = raw.normals.as<float>();
+    const std::size_t vertices = raw.normals.tuples();
+    const auto is_zero = [&](std::size_t v) { return given[3 * v] == 0 && given[3 * v + 1] == 0 && given[3 * v + 2] == 0; };
+    std::atomic<bool> any{false};
+    core::parallel_ranges(vertices, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            if (is_zero(v)) return any.store(true, std::memory_order_relaxed);
+    });
+    if (!any) return raw.normals;
+
+    core::Buffer<float> normals(3 * vertices);
+    std::copy(given.begin(), given.end(), normals.begin());
+    core::Buffer<std::uint64_t> lowest(vertices); // triangle
+    std::fill(lowest.begin(), lowest.end(), std::numeric_limits<std::uint64_t>::max());
+    const Real* positions = raw.positions.as<Real>().data();
+    with_indices(raw.triangles, [&](auto triangles) {
+        core::parallel_each(triangles.size(), grain, [&](std::size_t corner) {
+            const std::size_t v = triangles[corner];
+            if (!is_zero(v)) return;
+            std::atomic_ref<std::uint64_t> slot(lowest[v]);
+            std::uint64_t seen = slot.load(std::memory_order_relaxed);
+            const std::uint64_t triangle = corner / 3;
+            while (triangle < seen && !slot.compare_exchange_weak(seen, triangle, std::memory_order_relaxed)) {}
+        });
+        core::parallel_each(vertices, grain, [&](std::size_t v) {
+            if (!is_zero(v)) return;
+            const auto n = normal_of(positions, triangles.data() + 3 * lowest[v]);
+            for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * v + axis] = static_cast<float>(n[axis]);
+        });
+    });
+    return std::move(normals).to_array(3);
+}
+
+template SurfaceField interpolate_field<float>(const Field&, const core::Packed&, const ops::RawSurface&);
+template SurfaceField interpolate_field<double>(const Field&, const core::Packed&, const ops::RawSurface&);
+template Array face_normals<float>(const ops::RawSurface&);
+template Array face_normals<double>(const ops::RawSurface&);
+template Array fill_normals<float>(const ops::RawSurface&);
+template Array fill_normals<double>(const ops::RawSurface&);
+
+} // namespace isotet::api

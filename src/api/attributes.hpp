@@ -1,0 +1,28 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a surface carries beyond its geometry; the same code after every engine.
+#pragma once
+
+#include <isotet/extract.hpp>
+
+#include "core/packed.hpp"
+#include "ops/extraction.hpp"
+
+namespace isotet::api {
+
+/// A point field of the user's grid at the vertices: stored by the rules for values, interpolated between the edge ends.
+/// Cost   one pass over the field to choose offset and scale, then O(V)
+template <class Real>
+SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw);
+
+/// A cell field of the user's grid at the triangles, in its own type.
+SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw);
+
+/// One normal a triangle.
+template <class Real>
+Array face_normals(const ops::RawSurface& raw);
+
+/// Replaces gradient normals that are zero by the face normal of the lowest-numbered triangle at the vertex.
+template <class Real>
+Array fill_normals(const ops::RawSurface& raw);
+
+} // namespace isotet::api

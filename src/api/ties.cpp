@@ -1,0 +1,74 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "api/ties.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "core/parallel.hpp"
+#include "core/storage.hpp"
+
+namespace isotet {
+
+double snap(const Array& values, double isovalue) {
+    return values.visit([&]<class T>(std::span<const T>) {
+        if constexpr (std::is_same_v<T, double>) return isovalue;
+        else if constexpr (std::is_same_v<T, float>) {
+            const auto nearest = static_cast<double>(static_cast<float>(isovalue));
+            return std::isinf(nearest) ? std::copysign(double{std::numeric_limits<float>::max()}, isovalue) : nearest;
+        } else {
+            const auto lower = static_cast<double>(std::numeric_limits<T>::min());
+            const auto upper = static_cast<double>(std::numeric_limits<T>::max());
+            return std::min(std::max(std::nearbyint(isovalue), lower), upper);
+        }
+    });
+}
+
+namespace api {
+
+namespace {
+
+/// Calls f(packed point) for every own point with this stored value, in parallel.
+template <class Real, class F>
+void for_points_with(const core::Packed& packed, Real stored, const F& f) {
+    const auto& reals = packed.as<Real>();
+    core::parallel_each(packed.clusters(), 1 << 10, [&](std::size_t c) {
+        if (!(reals.ranges[c].lower <= stored && stored <= reals.ranges[c].upper)) return;
+        const core::ClusterHeader& h = packed.headers[c];
+        for (std::uint64_t p = h.first_point; p < h.first_point + h.own_points; ++p)
+            if (reals.values[p] == stored) f(p);
+    });
+}
+
+} // namespace
+
+template <class Real>
+void count_ties(const core::Packed& packed, double isovalue, Real stored, ExtractReport& report) {
+    report.isovalue_stored = core::restore_value(static_cast<double>(stored), packed.storage);
+    const bool has_field = packed.field.tuples() == packed.user_points;
+    std::atomic<std::uint64_t> tied{0}, exact{0};
+    const auto holds_exactly = [&](std::uint64_t point, double value) {
+        return packed.field.visit([&](auto values) { return core::equals_exactly(values[packed.user_point(point)], value); });
+    };
+    for_points_with(packed, stored, [&](std::uint64_t point) {
+        tied.fetch_add(1, std::memory_order_relaxed);
+        if (has_field && holds_exactly(point, isovalue)) exact.fetch_add(1, std::memory_order_relaxed);
+    });
+    report.tied_points = tied;
+    if (has_field) report.false_ties = tied - exact;
+    if (!has_field) return;
+
+    const double nearest = snap(packed.field, isovalue);
+    if (nearest == isovalue || tied != 0) return;
+    std::atomic<bool> near{false};
+    for_points_with(packed, core::store_value<Real>(nearest, packed.storage), [&](std::uint64_t point) {
+        if (holds_exactly(point, nearest)) near.store(true, std::memory_order_relaxed);
+    });
+    report.near_tie = near;
+}
+
+template void count_ties<float>(const core::Packed&, double, float, ExtractReport&);
+template void count_ties<double>(const core::Packed&, double, double, ExtractReport&);
+
+} // namespace api
+} // namespace isotet

@@ -1,0 +1,45 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Extraction, the contract that every engine meets: from a packed grid and a stored isovalue to the bytes of a surface.
+//
+// Vertices: clusters ascending; within the owner first tied own points (Ties::merge), then own seam edges in stored order,
+// then inner edges by (lower, higher local index). Triangles: clusters ascending, stored tets ascending, then the case table.
+// A tet counts when no corner is without data; with B corners below, T tied and A strictly above it gives triangles
+//   Ties::merge   when B > 0 and (A > 0 or T = 3)
+//   Ties::keep    when B > 0 and A + T > 0
+// A vertex is there when a tet that counts has its tied corner, or its edge from below to strictly above (Ties::keep: to
+// above or tied).
+#pragma once
+
+#include <cstdint>
+
+#include <isotet/extract.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+#include "core/packed.hpp"
+
+namespace isotet::ops {
+
+/// What to extract.
+template <class Real>
+struct Request {
+    Real isovalue; ///< stored form
+    Ties ties = Ties::merge;
+    bool ends = false;          ///< edge ends and weights
+    bool normals = false;       ///< gradient normals (packed.gradients is there)
+    bool source_cells = false;  ///< packed cell ids are there
+};
+
+/// What comes out; V vertices, F triangles. Parts that were not asked for are empty.
+struct RawSurface {
+    Array positions;    ///< Real x 3, V
+    Array triangles;    ///< uint32 or uint64 x 3, F
+    Array normals;      ///< float32 x 3, V; zero where the face normal stands in
+    Array ends;         ///< int64 x 2, V: user's points, the one below first
+    Array weights;      ///< Real, V
+    Array source_cells; ///< int64, F: user's cells
+    std::uint64_t selected_clusters = 0;
+    std::uint64_t transient_bytes = 0;
+};
+
+} // namespace isotet::ops
