@@ -33,4 +33,9 @@ Result<SurfaceFile> read_surface_with_vtk(const std::string& path, const Progres
 /// True when `options` ask for the field; fields nobody asked for are not read.
 bool wanted(const ReadOptions& options, Association association, std::string_view name);
 
+/// The step that `options` ask for: the first if they do not say.
+///
+/// Errors   invalid_argument, with the number of steps, when there is no such step
+Result<std::size_t> choose_step(const FileInfo& info, const ReadOptions& options);
+
 } // namespace isotet::io

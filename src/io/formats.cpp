@@ -1,0 +1,189 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/formats.hpp"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cctype>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <isotet/grid.hpp>
+
+#include "io/own/file_kind.hpp"
+#include "io/own/text_scanner.hpp"
+
+namespace isotet {
+
+namespace io {
+
+namespace {
+
+/// Formats that are written, and surfaces that are read; grids are added by their readers.
+std::vector<Format> written_formats() {
+    const auto surface = [](const char* name, const char* title) {
+        Format format{name, title, {std::string(".") + name}};
+        format.reads_surface = format.writes_surface = true;
+        return format;
+    };
+    std::vector<Format> formats{
+        surface("vtp", "VTK XML surface"), surface("ply", "PLY"),        surface("stl", "STL"),
+        surface("obj", "Wavefront OBJ"),   surface("ts", "Gocad TSurf"), surface("vtk", "legacy VTK")};
+    formats.back().writes_grid = true;
+    Format vtu{"vtu", "VTK XML unstructured grid", {".vtu"}};
+    vtu.writes_grid = true;
+    formats.push_back(vtu);
+    return formats;
+}
+
+std::vector<const GridReader*> grid_readers() {
+    std::vector<const GridReader*> result;
+    for (const GridReader& reader : own_readers()) result.push_back(&reader);
+#if ISOTET_IO
+    for (const GridReader& reader : vtk_readers()) result.push_back(&reader);
+#endif
+    return result;
+}
+
+std::vector<std::string> names_of_readers() {
+    std::vector<std::string> names;
+    for (const GridReader* reader : grid_readers()) names.push_back(reader->format.name);
+    return names;
+}
+
+#if !ISOTET_IO
+/// Formats that a build with VTK reads: how their files begin, and what they are called.
+struct LeftOut {
+    std::string_view title, begins, extensions;
+};
+constexpr LeftOut left_out[] = {
+    {"a VTK XML file", "<?xml", ".vtu .pvtu .pvd .vtp .xdmf .xmf"},
+    {"a VTK XML file", "<VTKFile", ".vtu .pvtu .pvd"},
+    {"an XDMF file", "<Xdmf", ".xdmf .xmf"},
+    {"a legacy VTK file", "# vtk DataFile", ".vtk"},
+    {"a NetCDF file (Exodus II)", "CDF", ".e .ex2 .exo .g"},
+    {"an HDF5 file (VTKHDF, Exodus II, CGNS)", "\x89HDF", ".hdf .vtkhdf .cgns .h5"},
+};
+
+/// What a file is that a build with VTK would read; empty if it is none.
+std::string_view title_left_out(std::string_view head, std::string_view extension) {
+    for (const LeftOut& format : left_out) {
+        if (head.starts_with(format.begins)) return format.title;
+    }
+    for (const LeftOut& format : left_out) {
+        const std::size_t at = extension.empty() ? std::string_view::npos : format.extensions.find(extension);
+        if (at == std::string_view::npos) continue;
+        const std::size_t end = at + extension.size();
+        if (end == format.extensions.size() || format.extensions[end] == ' ') return format.title;
+    }
+    return {};
+}
+#endif
+
+/// The start of a file; of a folder nothing.
+struct Head {
+    std::string bytes;
+    bool folder = false;
+};
+
+Result<Head> read_head(const std::string& path) {
+    const auto failed = [&](std::string_view what, int number) {
+        return Error{ErrorCode::file, fmt::format("{}: {}: {}", path, what, std::generic_category().message(number))};
+    };
+    // Without O_NONBLOCK a pipe would wait for somebody to write.
+    const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    if (!descriptor) return failed("cannot be opened", errno);
+    struct stat status {};
+    if (::fstat(descriptor.number(), &status) != 0) return failed("cannot be looked at", errno);
+    if (S_ISDIR(status.st_mode)) return Head{{}, true};
+    if (const auto other = what_else_than_a_file(status.st_mode); !other.empty()) {
+        return Error{ErrorCode::file, fmt::format("{} is {}, but only files can be read", path, other)};
+    }
+    std::array<char, 4096> buffer;
+    const ssize_t count = ::pread(descriptor.number(), buffer.data(), buffer.size(), 0);
+    if (count < 0) return failed("cannot be read", errno);
+    if (count == 0) return Error{ErrorCode::file, fmt::format("{} is empty, so it is no grid", path)};
+    return Head{std::string(buffer.data(), static_cast<std::size_t>(count)), false};
+}
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
+    });
+    return extension;
+}
+
+Error nobody_knows(const std::string& path, const Head& head, const std::string& extension) {
+    const std::string seen =
+        head.folder ? "it is a folder" : "it begins with " + in_quotes(std::string_view(head.bytes).substr(0, 20));
+#if !ISOTET_IO
+    if (const auto title = title_left_out(head.bytes, extension); !title.empty()) {
+        return {ErrorCode::file,
+                fmt::format("{} is {}, but this isotet was built without VTK (ISOTET_IO=OFF) and reads {} only", path,
+                            title, fmt::join(names_of_readers(), ", "))};
+    }
+#endif
+    return {ErrorCode::file,
+            fmt::format("{} has no format that isotet reads: {}, its name ends in {}; formats are {}", path, seen,
+                        extension.empty() ? "nothing" : in_quotes(extension), fmt::join(names_of_readers(), ", "))};
+}
+
+} // namespace
+
+Result<const GridReader*> choose_reader(const std::string& path, const ReadOptions& options) {
+    const auto readers = grid_readers();
+    if (!options.format.empty()) {
+        for (const GridReader* reader : readers) {
+            if (reader->format.name == options.format) return reader;
+        }
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("format {} is not one that isotet reads; formats are {}", in_quotes(options.format),
+                                 fmt::join(nearest_first(options.format, names_of_readers()), ", "))};
+    }
+    const auto head = read_head(path);
+    if (!head) return head.error();
+    const std::string extension = extension_of(path);
+    const GridReader* best = nullptr;
+    int best_score = 0;
+    for (const GridReader* reader : readers) {
+        const int recognized = reader->recognizes(head->bytes, extension);
+        const auto& extensions = reader->format.extensions;
+        const bool named = std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+        const int score = 2 * recognized + (recognized > 0 && named ? 1 : 0);
+        if (score > best_score) {
+            best = reader;
+            best_score = score;
+        }
+    }
+    if (!best) return nobody_knows(path, *head, extension);
+    return best;
+}
+
+} // namespace io
+
+std::vector<Format> formats() {
+    std::vector<Format> result;
+    for (const io::GridReader* reader : io::grid_readers()) result.push_back(reader->format);
+    for (const Format& written : io::written_formats()) {
+        const auto same =
+            std::find_if(result.begin(), result.end(), [&](const Format& f) { return f.name == written.name; });
+        if (same == result.end()) {
+            result.push_back(written);
+            continue;
+        }
+        same->writes_grid = same->writes_grid || written.writes_grid;
+        same->reads_surface = same->reads_surface || written.reads_surface;
+        same->writes_surface = same->writes_surface || written.writes_surface;
+    }
+    return result;
+}
+
+} // namespace isotet

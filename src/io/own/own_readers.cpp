@@ -1,0 +1,165 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The readers that are always there: what they are called, what their files look like, which files they open.
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "io/own/mapped_file.hpp"
+#include "io/own/read_gmsh.hpp"
+#include "io/own/read_gocad.hpp"
+#include "io/own/read_medit.hpp"
+#include "io/own/read_medit_parts.hpp"
+#include "io/own/read_tetgen.hpp"
+#include "io/own/text_scanner.hpp"
+#include "io/reader.hpp"
+
+namespace isotet::io {
+
+namespace {
+
+/// Errors about content say in which file.
+template <class Value>
+Result<Value> in_file(const std::string& path, Result<Value> result) {
+    if (result || result.error().code != ErrorCode::invalid_data) return result;
+    return Error{ErrorCode::invalid_data, path + ": " + result.error().message};
+}
+
+int by_content_or_name(bool content, bool name) {
+    return content ? 2 : name ? 1 : 0;
+}
+
+/// The file of the same name with another extension.
+std::string beside(const std::string& path, const char* extension) {
+    return std::filesystem::path(path).replace_extension(extension).string();
+}
+
+bool is_there(const std::string& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0;
+}
+
+template <class Value, class Parse>
+Result<Value> with_file(const std::string& path, const Parse& parse) {
+    const auto file = MappedFile::open(path);
+    if (!file) return file.error();
+    return in_file<Value>(path, parse(file->text()));
+}
+
+int recognizes_gmsh(std::string_view head, std::string_view extension) {
+    const std::string_view first = TextScanner(head).word();
+    const bool content =
+        first == "$MeshFormat" || first == "$NOD" || head.find("\n$MeshFormat") != std::string_view::npos;
+    return by_content_or_name(content, extension == ".msh");
+}
+
+Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions&, const Progress& progress) {
+    return with_file<FileInfo>(path, [&](std::string_view text) { return inspect_gmsh(text, progress); });
+}
+
+Result<ReadResult> read_gmsh_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<ReadResult>(path, [&](std::string_view text) { return parse_gmsh(text, options, progress); });
+}
+
+int recognizes_medit(std::string_view head, std::string_view extension) {
+    return by_content_or_name(medit::looks_like_medit(head), extension == ".mesh" || extension == ".meshb");
+}
+
+/// The .sol or .solb beside a mesh, the kind that fits the mesh first.
+std::optional<std::string> solution_beside(const std::string& path) {
+    const bool binary = std::filesystem::path(path).extension() == ".meshb";
+    for (const char* extension : {binary ? ".solb" : ".sol", binary ? ".sol" : ".solb"}) {
+        if (std::string solution = beside(path, extension); is_there(solution)) return solution;
+    }
+    return std::nullopt;
+}
+
+template <class Value, class Parse>
+Result<Value> with_mesh_and_solution(const std::string& path, const Parse& parse) {
+    const auto solution_path = solution_beside(path);
+    if (!solution_path) return with_file<Value>(path, [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
+    const auto solution = MappedFile::open(*solution_path);
+    if (!solution) return solution.error();
+    return with_file<Value>(path, [&](std::string_view mesh) { return parse(mesh, std::optional(solution->text())); });
+}
+
+using OptionalText = std::optional<std::string_view>;
+
+Result<FileInfo> inspect_medit_file(const std::string& path, const ReadOptions&, const Progress& progress) {
+    return with_mesh_and_solution<FileInfo>(
+        path, [&](std::string_view mesh, OptionalText solution) { return inspect_medit(mesh, solution, progress); });
+}
+
+Result<ReadResult> read_medit_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_mesh_and_solution<ReadResult>(path, [&](std::string_view mesh, OptionalText solution) {
+        return parse_medit(mesh, solution, options, progress);
+    });
+}
+
+/// TetGen's files are bare numbers: only the name tells.
+int recognizes_tetgen(std::string_view, std::string_view extension) {
+    return by_content_or_name(false, extension == ".node" || extension == ".ele");
+}
+
+template <class Value, class Parse>
+Result<Value> with_nodes_and_elements(const std::string& path, const Parse& parse) {
+    const auto nodes = MappedFile::open(beside(path, ".node"));
+    if (!nodes) return nodes.error();
+    const auto elements = MappedFile::open(beside(path, ".ele"));
+    if (!elements) return elements.error();
+    return in_file<Value>(path, parse(nodes->text(), elements->text()));
+}
+
+Result<FileInfo> inspect_tetgen_files(const std::string& path, const ReadOptions&, const Progress& progress) {
+    return with_nodes_and_elements<FileInfo>(path, [&](std::string_view nodes, std::string_view elements) {
+        return inspect_tetgen(nodes, elements, progress);
+    });
+}
+
+Result<ReadResult> read_tetgen_files(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_nodes_and_elements<ReadResult>(path, [&](std::string_view nodes, std::string_view elements) {
+        return parse_tetgen(nodes, elements, options, progress);
+    });
+}
+
+int recognizes_gocad(std::string_view head, std::string_view extension) {
+    TextScanner scanner(head, '#');
+    const bool content = scanner.word() == "GOCAD" && scanner.word_of_line() == "TSolid";
+    return by_content_or_name(content, extension == ".so");
+}
+
+Result<FileInfo> inspect_gocad_file(const std::string& path, const ReadOptions&, const Progress& progress) {
+    return with_file<FileInfo>(path, [&](std::string_view text) { return inspect_gocad(text, progress); });
+}
+
+Result<ReadResult> read_gocad_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<ReadResult>(path, [&](std::string_view text) { return parse_gocad(text, options, progress); });
+}
+
+Format grid_format(const char* name, const char* title, std::vector<std::string> extensions) {
+    Format format{name, title, std::move(extensions)};
+    format.reads_grid = true;
+    return format;
+}
+
+} // namespace
+
+std::span<const GridReader> own_readers() {
+    static const std::array readers{
+        GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh, inspect_gmsh_file,
+                   read_gmsh_file},
+        GridReader{grid_format("medit", "Medit mesh with its .sol", {".mesh", ".meshb"}), recognizes_medit,
+                   inspect_medit_file, read_medit_file},
+        GridReader{grid_format("tetgen", "TetGen .node and .ele", {".node", ".ele"}), recognizes_tetgen,
+                   inspect_tetgen_files, read_tetgen_files},
+        GridReader{grid_format("gocad", "Gocad TSolid", {".so"}), recognizes_gocad, inspect_gocad_file,
+                   read_gocad_file},
+    };
+    return readers;
+}
+
+} // namespace isotet::io

@@ -1,0 +1,164 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// isotet::inspect() and isotet::read(): picks the reader, and checks whatever it gives back.
+#include <isotet/read.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/cells.hpp"
+#include "core/parallel.hpp"
+#include "io/formats.hpp"
+#include "io/own/text_scanner.hpp"
+#include "io/reader.hpp"
+
+namespace isotet {
+
+namespace io {
+
+bool wanted(const ReadOptions& options, Association association, std::string_view name) {
+    const auto& names = association == Association::point ? options.point_fields : options.cell_fields;
+    return !names || std::find(names->begin(), names->end(), name) != names->end();
+}
+
+Result<std::size_t> choose_step(const FileInfo& info, const ReadOptions& options) {
+    const std::size_t step = options.step.value_or(0);
+    const std::size_t steps = std::max<std::size_t>(info.times.size(), 1);
+    if (step < steps) return step;
+    return Error{ErrorCode::invalid_argument,
+                 fmt::format("step {} is not there, but the file has {} step{}, counted from 0", step, steps,
+                             steps == 1 ? "" : "s")};
+}
+
+namespace {
+
+const char* adjective(Association association) {
+    return association == Association::point ? "point" : "cell";
+}
+
+/// Every name asked for must be in the file, and what is in the file must have come back.
+Result<void> check_names(const std::vector<std::string>& asked, Association association, const ReadResult& result) {
+    const auto& read = association == Association::point ? result.grid.point_fields : result.grid.cell_fields;
+    for (const std::string& name : asked) {
+        if (std::any_of(read.begin(), read.end(), [&](const Field& field) { return field.name == name; })) continue;
+        std::vector<std::string> names;
+        bool in_file = false;
+        for (const FieldInfo& field : result.info.fields) {
+            if (field.association != association) continue;
+            names.push_back(field.name);
+            in_file = in_file || field.name == name;
+        }
+        if (in_file) {
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("{} field {} has no values at step {}", adjective(association), in_quotes(name),
+                                     result.step)};
+        }
+        for (std::string& other : names = nearest_first(name, std::move(names))) other = in_quotes(other);
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("{} field {} is not in the file, {}", adjective(association), in_quotes(name),
+                                 names.empty() ? fmt::format("which has no {} fields", adjective(association))
+                                               : fmt::format("which has {}", fmt::join(names, ", ")))};
+    }
+    return {};
+}
+
+/// What every grid must hold to, whoever read it.
+Result<void> check_grid(const Grid& grid, const Progress& progress) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    return core::check_cells(grid, *cells, progress);
+}
+
+/// Adds a vector field to the coordinates, in double.
+Result<void> displace(const std::string& name, ReadResult& result) {
+    Grid& grid = result.grid;
+    const auto field = std::find_if(grid.point_fields.begin(), grid.point_fields.end(),
+                                    [&](const Field& other) { return other.name == name; });
+    if (field == grid.point_fields.end() || field->values.components() != 3) {
+        const std::size_t components = field == grid.point_fields.end() ? 0 : field->values.components();
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("field {} has {} components, but displacing takes a point field of 3", in_quotes(name),
+                                 components)};
+    }
+    std::vector<double> moved(grid.points.size());
+    grid.points.visit([&](auto points) {
+        field->values.visit([&](auto steps) {
+            core::parallel_each(moved.size(), std::size_t{1} << 16U, [&](std::size_t i) {
+                moved[i] = static_cast<double>(points[i]) + static_cast<double>(steps[i]);
+            });
+        });
+    });
+    grid.points = Array::own(std::move(moved), 3);
+    result.notes.push_back(fmt::format("points are displaced by the field {}", in_quotes(name)));
+    return {};
+}
+
+/// The displacement must be read even if nobody wants it on the surface.
+ReadOptions with_displacement(ReadOptions options) {
+    if (!options.displace.empty() && !wanted(options, Association::point, options.displace)) {
+        options.point_fields->push_back(options.displace);
+    }
+    return options;
+}
+
+Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    const auto reader = choose_reader(path, options);
+    if (!reader) return reader.error();
+    const ReadOptions all = with_displacement(options);
+    auto result = (*reader)->read(path, all, progress);
+    if (!result) return result;
+    if (const auto step = choose_step(result->info, options); !step) return step.error();
+    if (all.point_fields) {
+        if (auto known = check_names(*all.point_fields, Association::point, *result); !known) return known.error();
+    }
+    if (all.cell_fields) {
+        if (auto known = check_names(*all.cell_fields, Association::cell, *result); !known) return known.error();
+    }
+    const auto in_file = [&](Error error) {
+        if (error.code == ErrorCode::invalid_data) error.message = path + ": " + error.message;
+        return error;
+    };
+    if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
+    if (options.displace.empty()) return result;
+    if (auto displaced = displace(options.displace, *result); !displaced) return displaced.error();
+    if (!wanted(options, Association::point, options.displace)) {
+        std::erase_if(result->grid.point_fields, [&](const Field& field) { return field.name == options.displace; });
+    }
+    // Displaced coordinates may be too large or not finite.
+    if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
+    return result;
+}
+
+/// The only place where a failed allocation of a reader becomes an error.
+template <class Value, class Work>
+Result<Value> without_exceptions(const std::string& path, const Work& work) {
+    try {
+        return work();
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::out_of_memory, path + " needs more memory than is free"};
+    } catch (const std::exception& exception) {
+        return Error{ErrorCode::internal, fmt::format("reading {} failed: {}", path, exception.what())};
+    }
+}
+
+} // namespace
+
+} // namespace io
+
+Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return io::without_exceptions<FileInfo>(path, [&]() -> Result<FileInfo> {
+        const auto reader = io::choose_reader(path, options);
+        if (!reader) return reader.error();
+        return (*reader)->inspect(path, options, progress);
+    });
+}
+
+Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return io::without_exceptions<ReadResult>(path, [&] { return io::read_checked(path, options, progress); });
+}
+
+} // namespace isotet
