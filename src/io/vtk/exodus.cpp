@@ -1,0 +1,151 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined by
+// the global numbers of their nodes.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "io/reader.hpp"
+#include "io/vtk/escape.hpp"
+#include "io/vtk/exodus_file.hpp"
+#include "io/vtk/exodus_parts.hpp"
+#include "io/vtk/length_check.hpp"
+#include "io/vtk/loaders.hpp"
+#include "io/vtk/vtk_log.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+FileInfo describe(const ExodusFile& file) {
+    FileInfo info;
+    info.times = file.times();
+    for (const auto& name : file.point_variables()) announce(info, {name, Association::point, file.type(), 1});
+    for (const auto& name : file.cell_variables()) announce(info, {name, Association::cell, file.type(), 1});
+    return info;
+}
+
+/// All blocks hold cells of one of isotet's types: types and offsets need not be stored.
+bool is_uniform(const std::vector<ExodusFile::Block>& blocks, std::uint8_t& type) {
+    type = 0;
+    for (const auto& block : blocks) {
+        if (block.cells == 0) continue;
+        const std::uint8_t here = cell_type_of_element(block.topology, block.corners);
+        if (here < 10 || here > 14 || (type != 0 && here != type)) return false;
+        type = here;
+    }
+    return type != 0;
+}
+
+/// Node numbers of the file, from 1, to point numbers from 0, appended.
+Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block, std::uint64_t points,
+                            std::vector<std::int64_t>& connectivity) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i] < 1 || static_cast<std::uint64_t>(nodes[i]) > points)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("element {} of block {} has node {}, but the nodes are 1 to {}", i / block.corners, block.id, nodes[i], points)};
+        connectivity.push_back(nodes[i] - 1);
+    }
+    return {};
+}
+
+Result<Cells> read_cells(ExodusFile& file) {
+    Cells cells;
+    std::uint8_t uniform_type = 0;
+    const bool uniform = is_uniform(file.blocks(), uniform_type);
+    std::uint64_t corner_count = 0;
+    for (const auto& block : file.blocks()) corner_count += block.cells * block.corners;
+    std::vector<std::int64_t> connectivity, offsets;
+    std::vector<std::uint8_t> types;
+    connectivity.reserve(corner_count);
+    if (!uniform) offsets.push_back(0);
+    for (const auto& block : file.blocks()) {
+        auto nodes = file.connectivity(block);
+        if (!nodes) return nodes.error();
+        if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended) return appended.error();
+        if (uniform) continue;
+        const std::uint8_t type = cell_type_of_element(block.topology, block.corners);
+        types.insert(types.end(), block.cells, type);
+        for (std::uint64_t i = 0; i < block.cells; ++i) offsets.push_back(offsets.back() + static_cast<std::int64_t>(block.corners));
+    }
+    cells.connectivity = Array::own(std::move(connectivity));
+    if (uniform) cells.uniform_type = static_cast<CellType>(uniform_type);
+    else {
+        cells.offsets = Array::own(std::move(offsets));
+        cells.types = Array::own(std::move(types));
+    }
+    return cells;
+}
+
+Result<void> read_fields(ExodusFile& file, const ReadOptions& options, std::size_t step, Grid& grid, std::vector<std::string>& notes) {
+    if (file.times().empty()) return {};
+    for (std::size_t i = 0; i < file.point_variables().size(); ++i) {
+        const std::string& name = file.point_variables()[i];
+        if (!wanted(options, Association::point, name)) continue;
+        auto values = file.point_variable(i, step);
+        if (!values) return values.error();
+        grid.point_fields.push_back({name, std::move(*values)});
+    }
+    for (std::size_t i = 0; i < file.cell_variables().size(); ++i) {
+        const std::string& name = file.cell_variables()[i];
+        if (!wanted(options, Association::cell, name)) continue;
+        std::size_t blocks_without = 0;
+        auto values = file.cell_variable(i, step, blocks_without);
+        if (!values) return values.error();
+        grid.cell_fields.push_back({name, std::move(*values)});
+        if (blocks_without > 0)
+            notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there", escaped(name),
+                                        blocks_without, file.blocks().size()));
+    }
+    return {};
+}
+
+Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded, bool with_ids) {
+    Piece piece;
+    piece.name = path;
+    auto points = file.coordinates();
+    if (!points) return points.error();
+    piece.grid.points = std::move(*points);
+    auto cells = read_cells(file);
+    if (!cells) return broken(path, cells.error().message);
+    piece.grid.cells = std::move(*cells);
+    if (auto read = read_fields(file, options, loaded.step, piece.grid, loaded.notes); !read) return read.error();
+    if (!with_ids) return piece;
+    auto point_ids = file.point_ids();
+    if (!point_ids) return point_ids.error();
+    auto cell_ids = file.cell_ids();
+    if (!cell_ids) return cell_ids.error();
+    piece.point_ids = std::move(*point_ids);
+    piece.cell_ids = std::move(*cell_ids);
+    return piece;
+}
+
+} // namespace
+
+Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth) {
+    auto parts = exodus_parts(path);
+    if (!parts) return parts.error();
+    Loaded loaded;
+    for (std::size_t i = 0; i < parts->size(); ++i) {
+        const std::string& part = (*parts)[i];
+        if (auto complete = check_netcdf_length(part); !complete) return complete.error();
+        if (auto complete = check_hdf5_length(part); !complete) return complete.error();
+        auto file = ExodusFile::open(part);
+        if (!file) return file.error();
+        FileInfo info = describe(*file);
+        if (i == 0) loaded.info.times = info.times;
+        if (info.times.size() != loaded.info.times.size())
+            return broken(part, fmt::format("this part has {} time steps, the first one {}", info.times.size(), loaded.info.times.size()));
+        for (FieldInfo& field : info.fields) announce(loaded.info, std::move(field));
+        if (depth == Depth::description) continue;
+        auto step = choose_step(loaded.info, options);
+        if (!step) return step.error();
+        loaded.step = *step;
+        auto piece = read_piece(*file, part, options, loaded, parts->size() > 1);
+        if (!piece) return piece.error();
+        loaded.pieces.push_back(std::move(*piece));
+        report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));
+    }
+    return loaded;
+}
+
+} // namespace isotet::io::vtk

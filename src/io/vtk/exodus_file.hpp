@@ -1,0 +1,70 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// An Exodus II file through the Exodus library that VTK carries. VTK's own Exodus reader is not used: it glues scalars to
+// vectors, moves the mesh by them, doubles shared nodes, and cannot be told to leave all of that.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::io::vtk {
+
+class ExodusFile {
+public:
+    struct Block {
+        std::int64_t id = 0;
+        std::string topology; ///< upper case
+        std::uint64_t cells = 0;
+        std::uint64_t corners = 0; ///< of each cell; 0 where cells differ (polyhedra, polygons)
+    };
+
+    static Result<ExodusFile> open(const std::string& path);
+    ExodusFile(ExodusFile&& other) noexcept;
+    ExodusFile& operator=(ExodusFile&&) = delete;
+    ~ExodusFile();
+
+    std::uint64_t points() const noexcept { return points_; }
+    std::uint64_t cells() const noexcept { return cells_; }
+    const std::vector<Block>& blocks() const noexcept { return blocks_; }
+    const std::vector<std::string>& point_variables() const noexcept { return point_variables_; }
+    const std::vector<std::string>& cell_variables() const noexcept { return cell_variables_; }
+    const std::vector<double>& times() const noexcept { return times_; }
+    ScalarType type() const noexcept; ///< of coordinates and variables
+
+    Result<Array> coordinates();
+    /// Node numbers from 1, of all cells of a block; empty where `corners` is 0.
+    Result<std::vector<std::int64_t>> connectivity(const Block& block);
+    Result<Array> point_variable(std::size_t variable, std::size_t step);
+    /// One value a cell of all blocks; NaN in blocks that do not have the variable, which are counted.
+    Result<Array> cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);
+    Result<Array> point_ids();
+    Result<Array> cell_ids();
+
+private:
+    ExodusFile() = default;
+    Error failed(std::string_view what) const;
+    Result<void> read_contents();
+    Result<void> read_blocks(std::size_t count);
+    Result<std::vector<std::string>> variable_names(int entity);
+    template <class T>
+    Result<Array> read_coordinates();
+    template <class T>
+    Result<Array> read_cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);
+    Result<Array> id_map(int map, std::uint64_t count);
+
+    std::string path_;
+    int number_ = -1;
+    int word_ = 8;
+    std::uint64_t dimensions_ = 3, points_ = 0, cells_ = 0;
+    std::vector<Block> blocks_;
+    std::vector<std::string> point_variables_, cell_variables_;
+    std::vector<double> times_;
+};
+
+/// VTK's cell type of an Exodus element with so many corners.
+std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corners);
+
+} // namespace isotet::io::vtk

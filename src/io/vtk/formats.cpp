@@ -1,0 +1,176 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The formats that VTK, pugixml and HDF5 read, how each is recognized, and their readers: all in a child process.
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "io/reader.hpp"
+#include "io/vtk/loaders.hpp"
+#include "io/vtk/reader_process.hpp"
+
+namespace isotet::io {
+namespace {
+
+using vtk::Request;
+using vtk::Task;
+
+using Head = std::string_view;
+
+bool has(Head head, std::string_view text) { return head.find(text) != Head::npos; }
+
+/// The value of the attribute `type` of the root element <VTKFile>; empty if there is none.
+std::string_view vtk_xml_type(Head head) {
+    const auto root = head.find("<VTKFile");
+    if (root == Head::npos) return {};
+    Head element = head.substr(root, head.find('>', root) - root);
+    const auto type = element.find(" type=");
+    if (type == Head::npos || element.size() < type + 8) return {};
+    const char quote = element[type + 6];
+    element.remove_prefix(type + 7);
+    return element.substr(0, element.find(quote));
+}
+
+bool is_hdf5(Head head) { return head.starts_with("\x89HDF\r\n\x1a\n"); }
+bool is_netcdf(Head head) {
+    return head.size() > 3 && head.starts_with("CDF") && (head[3] == 1 || head[3] == 2 || head[3] == 5);
+}
+
+/// A line of `count` whole numbers first, as UCD has it; lines of comments start with '#'.
+bool starts_with_numbers(Head head, int count) {
+    while (head.starts_with("#")) {
+        const auto end = head.find('\n');
+        if (end == Head::npos) return false;
+        head.remove_prefix(end + 1);
+    }
+    const Head line = head.substr(0, head.find('\n'));
+    int numbers = 0;
+    bool inside = false;
+    for (const char c : line) {
+        const bool digit = c >= '0' && c <= '9';
+        if (!digit && c != ' ' && c != '\t' && c != '\r') return false;
+        if (digit && !inside) ++numbers;
+        inside = digit;
+    }
+    return numbers == count;
+}
+
+int by_xml_type(Head head, std::string_view type) { return vtk_xml_type(head) == type ? 2 : 0; }
+
+int recognizes_vtu(Head head, std::string_view) { return by_xml_type(head, "UnstructuredGrid"); }
+int recognizes_pvtu(Head head, std::string_view) { return by_xml_type(head, "PUnstructuredGrid"); }
+int recognizes_vti(Head head, std::string_view) { return by_xml_type(head, "ImageData"); }
+int recognizes_vtr(Head head, std::string_view) { return by_xml_type(head, "RectilinearGrid"); }
+int recognizes_vts(Head head, std::string_view) { return by_xml_type(head, "StructuredGrid"); }
+int recognizes_pvd(Head head, std::string_view) { return by_xml_type(head, "Collection"); }
+int recognizes_xdmf(Head head, std::string_view) { return has(head, "<Xdmf") ? 2 : 0; }
+int recognizes_legacy(Head head, std::string_view) { return head.starts_with("# vtk DataFile") ? 2 : 0; }
+int recognizes_exodus(Head head, std::string_view extension) {
+    if (!is_netcdf(head) && !is_hdf5(head)) return 0;
+    if (has(head, "num_nodes") || has(head, "len_string") || has(head, "_nc3_strict") || has(head, "_NCProperties")) return 2;
+    for (const std::string_view name : {".e", ".ex2", ".exo", ".exii", ".g", ".gen"})
+        if (extension == name) return 1;
+    return 0;
+}
+int recognizes_cgns(Head head, std::string_view extension) {
+    if (has(head.substr(0, 64), "ADF Database Version")) return 2;
+    if (!is_hdf5(head)) return 0;
+    return has(head, "CGNSLibraryVersion") || has(head, "hdf5version") ? 2 : extension == ".cgns" ? 1 : 0;
+}
+int recognizes_vtkhdf(Head head, std::string_view extension) {
+    if (!is_hdf5(head)) return 0;
+    return has(head, "VTKHDF") ? 2 : extension == ".hdf" || extension == ".vtkhdf" ? 1 : 0;
+}
+int recognizes_ensight(Head head, std::string_view extension) {
+    if (has(head, "FORMAT") && has(head, "type:") && has(head, "ensight")) return 2;
+    return extension == ".case" || extension == ".encas" ? 1 : 0;
+}
+int recognizes_openfoam(Head head, std::string_view extension) {
+    if (has(head, "FoamFile") && has(head, "controlDict")) return 2;
+    return extension == ".foam" || extension == ".openfoam" ? 1 : 0;
+}
+int recognizes_ucd(Head head, std::string_view extension) {
+    if (extension != ".inp") return 0; // Abaqus uses the name, too
+    return starts_with_numbers(head, 5) || head.starts_with("\x07") ? 2 : 0;
+}
+
+Format grid_format(std::string name, std::string title, std::vector<std::string> extensions) {
+    Format format{std::move(name), std::move(title), std::move(extensions)};
+    format.reads_grid = true;
+    format.needs_vtk = true;
+    return format;
+}
+
+template <class T>
+Result<T> ask(Task task, std::string format, const std::string& path, const ReadOptions& options, const Progress& progress) {
+    auto reply = vtk::ask_reader_process(Request{task, std::move(format), path, options}, progress);
+    if (!reply) return reply.error();
+    if (auto* content = std::get_if<T>(&*reply)) return std::move(*content);
+    return Error{ErrorCode::internal, path + ": the reader process answered another question"};
+}
+
+struct Named {
+    vtk::FileLoader loader;
+    int (*recognizes)(Head head, std::string_view extension);
+    const char* title;
+    std::vector<std::string> extensions;
+};
+
+const auto& table() {
+    static const std::array<Named, 14> formats = {{
+        {{"vtu", vtk::load_vtu}, recognizes_vtu, "VTK XML unstructured grid", {".vtu"}},
+        {{"pvtu", vtk::load_pvtu}, recognizes_pvtu, "VTK XML unstructured grid in pieces", {".pvtu"}},
+        {{"vti", vtk::load_vti}, recognizes_vti, "VTK XML image data", {".vti"}},
+        {{"vtr", vtk::load_vtr}, recognizes_vtr, "VTK XML rectilinear grid", {".vtr"}},
+        {{"vts", vtk::load_vts}, recognizes_vts, "VTK XML structured grid", {".vts"}},
+        {{"vtk", vtk::load_legacy}, recognizes_legacy, "VTK legacy file", {".vtk"}},
+        {{"pvd", vtk::load_pvd}, recognizes_pvd, "ParaView collection of VTK files", {".pvd"}},
+        {{"exodus", vtk::load_exodus}, recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
+        {{"cgns", vtk::load_cgns}, recognizes_cgns, "CGNS", {".cgns"}},
+        {{"vtkhdf", vtk::load_vtkhdf}, recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
+        {{"xdmf", vtk::load_xdmf}, recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
+        {{"ensight", vtk::load_ensight}, recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},
+        {{"openfoam", vtk::load_openfoam}, recognizes_openfoam, "OpenFOAM case", {".foam", ".openfoam"}},
+        {{"ucd", vtk::load_ucd}, recognizes_ucd, "AVS UCD", {".inp"}},
+    }};
+    return formats;
+}
+
+/// GridReader holds plain functions: one pair for each row of the table.
+template <std::size_t row>
+GridReader reader() {
+    GridReader result;
+    const Named& named = table()[row];
+    result.format = grid_format(std::string(named.loader.format), named.title, named.extensions);
+    result.recognizes = named.recognizes;
+    result.inspect = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        return ask<FileInfo>(Task::inspect, std::string(table()[row].loader.format), path, options, progress);
+    };
+    result.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        return ask<ReadResult>(Task::read, std::string(table()[row].loader.format), path, options, progress);
+    };
+    return result;
+}
+
+template <std::size_t... rows>
+std::vector<GridReader> all_readers(std::index_sequence<rows...>) {
+    return {reader<rows>()...};
+}
+
+} // namespace
+
+std::span<const GridReader> vtk_readers() {
+    static const std::vector<GridReader> readers = all_readers(std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(table())>>>());
+    return readers;
+}
+
+Result<SurfaceFile> read_surface_with_vtk(const std::string& path, const Progress& progress) {
+    return ask<SurfaceFile>(Task::read_surface, "", path, {}, progress);
+}
+
+vtk::Load vtk::loader_of(std::string_view format) {
+    for (const Named& named : table())
+        if (named.loader.format == format) return named.loader.load;
+    return nullptr;
+}
+
+} // namespace isotet::io

@@ -1,0 +1,141 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include "io/vtk/escape.hpp"
+#include "io/vtk/hdf5_array.hpp"
+#include "io/vtk/length_check.hpp"
+#include "io/vtk/loaded.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+constexpr std::uint64_t too_many = std::uint64_t(1) << 50;
+
+/// An identifier of the HDF5 library, closed by its own function.
+class Handle {
+public:
+    Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    ~Handle() {
+        if (id_ >= 0) close_(id_);
+    }
+    operator hid_t() const { return id_; } // NOLINT: passed to the library everywhere
+    bool good() const { return id_ >= 0; }
+
+private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+
+std::optional<ScalarType> type_of(hid_t type) {
+    const std::size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_FLOAT) return size == 4 ? std::optional(ScalarType::float32) : size == 8 ? std::optional(ScalarType::float64) : std::nullopt;
+    if (H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
+    const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
+    switch (size) {
+    case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
+    case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
+    case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
+    case 8: return is_signed ? ScalarType::int64 : ScalarType::uint64;
+    default: return std::nullopt;
+    }
+}
+
+template <class T>
+hid_t native_type() {
+    if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+    else if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+    else if constexpr (sizeof(T) == 1) return std::is_signed_v<T> ? H5T_NATIVE_INT8 : H5T_NATIVE_UINT8;
+    else if constexpr (sizeof(T) == 2) return std::is_signed_v<T> ? H5T_NATIVE_INT16 : H5T_NATIVE_UINT16;
+    else if constexpr (sizeof(T) == 4) return std::is_signed_v<T> ? H5T_NATIVE_INT32 : H5T_NATIVE_UINT32;
+    else return std::is_signed_v<T> ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64;
+}
+
+/// How data sets are looked up: a link to another file fails.
+hid_t access_inside_file() {
+    const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+    H5Pset_elink_cb(
+        access, [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; }, nullptr);
+    return access;
+}
+
+/// The values lie in the file itself, not in others that it names.
+bool lies_inside_file(hid_t data) {
+    const Handle creation(H5Dget_create_plist(data), H5Pclose);
+    return creation.good() && H5Pget_external_count(creation) == 0 && H5Pget_layout(creation) != H5D_VIRTUAL;
+}
+
+/// Selects the box; its size in `dimensions`.
+bool select(hid_t space, const Box& box, std::vector<std::uint64_t>& dimensions) {
+    if (box.count.empty()) return true;
+    if (box.count.size() != dimensions.size() || box.start.size() != dimensions.size() || box.stride.size() != dimensions.size()) return false;
+    std::vector<hsize_t> start, stride, count;
+    for (std::size_t i = 0; i < dimensions.size(); ++i) {
+        if (box.count[i] == 0 || box.stride[i] == 0 || box.start[i] >= dimensions[i] ||
+            (box.count[i] - 1) > (dimensions[i] - 1 - box.start[i]) / box.stride[i])
+            return false;
+        start.push_back(box.start[i]);
+        stride.push_back(box.stride[i]);
+        count.push_back(box.count[i]);
+    }
+    dimensions = box.count;
+    return H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), stride.data(), count.data(), nullptr) >= 0;
+}
+
+} // namespace
+
+std::uint64_t ShapedValues::count() const {
+    std::uint64_t count = 1;
+    for (const std::uint64_t length : dimensions) {
+        if (length != 0 && count > too_many / length) return too_many;
+        count *= length;
+    }
+    return count;
+}
+
+Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth) {
+    const auto failed = [&](std::string_view what) {
+        return broken(file, fmt::format("data set \"{}\" {}", escaped(name), what));
+    };
+    if (auto complete = check_hdf5_length(file); !complete) return complete.error();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are returned, not printed
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!opened.good()) return broken(file, "not an HDF5 file, or a broken one");
+    const Handle access(access_inside_file(), H5Pclose);
+    const Handle data(H5Dopen2(opened, name.c_str(), access), H5Dclose);
+    if (!data.good()) return failed("is not there, or is a link to another file");
+    if (!lies_inside_file(data)) return failed("has its values in another file");
+    const Handle stored(H5Dget_type(data), H5Tclose);
+    const auto type = type_of(stored);
+    if (!type) return failed("does not hold numbers of 1, 2, 4 or 8 bytes");
+
+    const Handle space(H5Dget_space(data), H5Sclose);
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank < 0) return failed("has no shape");
+    std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
+    H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+    ShapedValues result;
+    result.dimensions.assign(extent.begin(), extent.end());
+    if (!select(space, box, result.dimensions)) return failed("does not have the part that is wanted of it");
+    const std::uint64_t count = result.count();
+    if (count == too_many) return failed("is too large");
+    result.values = Array(*type, nullptr, 0, 1, nullptr);
+    if (depth == Depth::description) return result;
+    const hsize_t memory_count = count;
+    const Handle memory(H5Screate_simple(1, &memory_count, nullptr), H5Sclose);
+    return Array(result.values).visit([&](auto none) -> Result<ShapedValues> {
+        using T = typename decltype(none)::value_type;
+        std::vector<std::remove_const_t<T>> values(count);
+        if (count > 0 && H5Dread(data, native_type<std::remove_const_t<T>>(), memory, space, H5P_DEFAULT, values.data()) < 0)
+            return failed("cannot be read");
+        result.values = Array::own(std::move(values));
+        return std::move(result);
+    });
+}
+
+} // namespace isotet::io::vtk

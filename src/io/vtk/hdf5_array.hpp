@@ -1,0 +1,32 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/result.hpp>
+
+#include "io/vtk/loaded.hpp"
+
+namespace isotet::io::vtk {
+
+/// A box in a data set, one entry a dimension; all empty: the whole data set.
+struct Box {
+    std::vector<std::uint64_t> start, stride, count;
+};
+
+struct ShapedValues {
+    std::vector<std::uint64_t> dimensions;
+    Array values; ///< in the type of the file, one component; for a description of the type only, empty
+
+    std::uint64_t count() const;
+};
+
+/// Reads a data set of numbers, or only its type and shape. Other files are never opened, whatever links say.
+///
+/// Errors   invalid_data: no such file or data set, not numbers, the box does not fit; the file is shorter than it says
+Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth);
+
+} // namespace isotet::io::vtk

@@ -1,0 +1,21 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Is all there that a file's header promises? VTK's readers fill in zeros, or stop early, where it is not.
+#pragma once
+
+#include <string>
+
+#include <isotet/result.hpp>
+
+namespace isotet::io::vtk {
+
+/// VTK XML files: the end tag is there, and every block of raw appended data ends inside the file.
+Result<void> check_xml_length(const std::string& path);
+
+/// netCDF classic, 64-bit offset and 64-bit data files (Exodus): the file is as long as its header needs. Files of other
+/// kinds (HDF5, which checks itself) pass.
+Result<void> check_netcdf_length(const std::string& path);
+
+/// HDF5: the end of file that the superblock states is there.
+Result<void> check_hdf5_length(const std::string& path);
+
+} // namespace isotet::io::vtk

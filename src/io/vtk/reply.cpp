@@ -1,0 +1,294 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Replies in a memory file:
+//
+//   Header | array | array | ... | description
+//
+// Arrays start at multiples of 64 bytes. The description (plain bytes: sentences, names, and for each array its type,
+// place and size) comes last, and the header after everything else, so an unfinished reply has no valid header.
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <limits>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "io/vtk/messages.hpp"
+#include "io/vtk/wire.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+constexpr std::uint64_t magic = 0x3130795f74657469; // "iteT_y01", and the byte order with it
+constexpr std::uint64_t alignment = 64;
+
+struct Header {
+    std::uint64_t magic = 0;
+    std::uint64_t description_begin = 0;
+    std::uint64_t description_size = 0;
+};
+
+/// Appends to the memory file; remembers the first failure.
+class MemoryFile {
+public:
+    explicit MemoryFile(int descriptor) : descriptor_(descriptor), end_(alignment) {}
+
+    std::uint64_t append(const void* data, std::uint64_t size) {
+        const std::uint64_t begin = (end_ + alignment - 1) / alignment * alignment;
+        put(data, size, begin);
+        end_ = begin + size;
+        return begin;
+    }
+    void put(const void* data, std::uint64_t size, std::uint64_t at) {
+        const char* bytes = static_cast<const char*>(data);
+        while (size > 0 && error_ == 0) {
+            const ssize_t written = ::pwrite(descriptor_, bytes, std::min<std::uint64_t>(size, 1 << 26), static_cast<off_t>(at));
+            if (written < 0 && errno == EINTR) continue;
+            if (written <= 0) {
+                error_ = written < 0 ? errno : ENOSPC;
+                return;
+            }
+            bytes += written;
+            size -= static_cast<std::uint64_t>(written);
+            at += static_cast<std::uint64_t>(written);
+        }
+    }
+    int error() const noexcept { return error_; }
+
+private:
+    int descriptor_;
+    std::uint64_t end_;
+    int error_ = 0;
+};
+
+/// Writes what a reply holds: arrays into the file, everything else into the description.
+class Describer {
+public:
+    Describer(Encoder& out, MemoryFile& file) : out_(out), file_(file) {}
+
+    void array(Array& values) {
+        out_.number(values.type());
+        out_.number<std::uint64_t>(values.tuples());
+        out_.number<std::uint64_t>(values.components());
+        out_.number<std::uint64_t>(values.empty() ? 0 : file_.append(values.data(), values.bytes()));
+        values = Array(); // lets go of the memory
+    }
+    void fields(std::vector<Field>& fields) {
+        out_.list(fields, [&](Field& field) {
+            out_.text(field.name);
+            array(field.values);
+        });
+    }
+    void fields(std::vector<SurfaceField>& fields) {
+        out_.list(fields, [&](SurfaceField& field) {
+            out_.text(field.name);
+            out_.number(field.offset);
+            out_.number(field.scale);
+            array(field.values);
+        });
+    }
+    void describe(const Error& error) {
+        out_.number(error.code);
+        out_.text(error.message);
+    }
+    void describe(const FileInfo& info) {
+        out_.text(info.format);
+        out_.list(info.fields, [&](const FieldInfo& field) {
+            out_.text(field.name);
+            out_.number(field.association);
+            out_.number(field.type);
+            out_.number<std::uint64_t>(field.components);
+        });
+        out_.list(info.times, [&](double time) { out_.number(time); });
+    }
+    void describe(ReadResult& result) {
+        describe(result.info);
+        out_.number<std::uint64_t>(result.step);
+        out_.list(result.notes, [&](const std::string& note) { out_.text(note); });
+        Grid& grid = result.grid;
+        array(grid.points);
+        array(grid.cells.connectivity);
+        array(grid.cells.offsets);
+        array(grid.cells.types);
+        out_.number(grid.cells.uniform_type);
+        fields(grid.point_fields);
+        fields(grid.cell_fields);
+    }
+    void describe(SurfaceFile& file) {
+        out_.text(file.format);
+        for (double coordinate : file.surface.origin) out_.number(coordinate);
+        array(file.surface.positions);
+        array(file.surface.triangles);
+        out_.number(file.surface.normals_kind);
+        array(file.surface.normals);
+        array(file.surface.edge_ends);
+        array(file.surface.edge_weights);
+        array(file.surface.source_cells);
+        fields(file.surface.point_fields);
+        fields(file.surface.cell_fields);
+    }
+
+private:
+    Encoder& out_;
+    MemoryFile& file_;
+};
+
+/// Reads what Describer wrote, with every place checked against the size of the mapping.
+class Undescriber {
+public:
+    Undescriber(Decoder& in, const std::byte* mapping, std::uint64_t arrays_end, std::shared_ptr<const void> owner)
+        : in_(in), mapping_(mapping), arrays_end_(arrays_end), owner_(std::move(owner)) {}
+
+    Array array() {
+        const auto type = in_.enumerator(ScalarType::float64);
+        const auto tuples = in_.number<std::uint64_t>();
+        const auto components = in_.number<std::uint64_t>();
+        const auto begin = in_.number<std::uint64_t>();
+        if (tuples == 0 || components == 0) return Array(type, nullptr, tuples, components == 0 ? 1 : components, nullptr);
+        const std::uint64_t most = arrays_end_ / size_of(type);
+        if (components > most || tuples > most / components || begin % alignment != 0 || begin < alignment ||
+            begin > arrays_end_ || tuples * components * size_of(type) > arrays_end_ - begin)
+            return in_.fail(), Array();
+        return Array(type, mapping_ + begin, tuples, components, owner_);
+    }
+    std::vector<Field> fields() {
+        std::vector<Field> result;
+        in_.list([&] {
+            Field& field = result.emplace_back();
+            field.name = in_.text();
+            field.values = array();
+        });
+        return result;
+    }
+    std::vector<SurfaceField> surface_fields() {
+        std::vector<SurfaceField> result;
+        in_.list([&] {
+            SurfaceField& field = result.emplace_back();
+            field.name = in_.text();
+            field.offset = in_.number<double>();
+            field.scale = in_.number<double>();
+            field.values = array();
+        });
+        return result;
+    }
+    Error error() {
+        const auto code = in_.enumerator(ErrorCode::internal);
+        return {code, in_.text()};
+    }
+    FileInfo info() {
+        FileInfo result;
+        result.format = in_.text();
+        in_.list([&] {
+            FieldInfo& field = result.fields.emplace_back();
+            field.name = in_.text();
+            field.association = in_.enumerator(Association::cell);
+            field.type = in_.enumerator(ScalarType::float64);
+            field.components = in_.number<std::uint64_t>();
+        });
+        in_.list([&] { result.times.push_back(in_.number<double>()); });
+        return result;
+    }
+    ReadResult result() {
+        ReadResult result;
+        result.info = info();
+        result.step = in_.number<std::uint64_t>();
+        in_.list([&] { result.notes.push_back(in_.text()); });
+        Grid& grid = result.grid;
+        grid.points = array();
+        grid.cells.connectivity = array();
+        grid.cells.offsets = array();
+        grid.cells.types = array();
+        grid.cells.uniform_type = in_.number<CellType>();
+        grid.point_fields = fields();
+        grid.cell_fields = fields();
+        return result;
+    }
+    SurfaceFile surface() {
+        SurfaceFile file;
+        file.format = in_.text();
+        for (double& coordinate : file.surface.origin) coordinate = in_.number<double>();
+        file.surface.positions = array();
+        file.surface.triangles = array();
+        file.surface.normals_kind = in_.enumerator(Normals::face);
+        file.surface.normals = array();
+        file.surface.edge_ends = array();
+        file.surface.edge_weights = array();
+        file.surface.source_cells = array();
+        file.surface.point_fields = surface_fields();
+        file.surface.cell_fields = surface_fields();
+        return file;
+    }
+
+private:
+    Decoder& in_;
+    const std::byte* mapping_;
+    std::uint64_t arrays_end_;
+    std::shared_ptr<const void> owner_;
+};
+
+/// Unmapped with the last array that lies in it.
+class Mapping {
+public:
+    Mapping(void* begin, std::size_t size) : begin_(begin), size_(size) {}
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+    ~Mapping() { ::munmap(begin_, size_); }
+
+private:
+    void* begin_;
+    std::size_t size_;
+};
+
+} // namespace
+
+Result<void> write_reply(int descriptor, Reply reply) {
+    MemoryFile file(descriptor);
+    Encoder out;
+    Describer describer(out, file);
+    out.number<std::uint8_t>(static_cast<std::uint8_t>(reply.index()));
+    std::visit([&](auto& content) { describer.describe(content); }, reply);
+    Header header{magic, 0, out.bytes().size()};
+    header.description_begin = file.append(out.bytes().data(), out.bytes().size());
+    file.put(&header, sizeof header, 0);
+    if (file.error() != 0)
+        return Error{ErrorCode::out_of_memory,
+                     fmt::format("the reader process could not hand the grid over: {}", std::strerror(file.error()))};
+    return {};
+}
+
+Result<Reply> map_reply(int descriptor) {
+    const Error incomplete{ErrorCode::internal, "the reader process ended without a complete reply"};
+    if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0)
+        return Error{ErrorCode::machine, fmt::format("the reply of the reader process cannot be sealed: {}", std::strerror(errno))};
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0 || status.st_size < static_cast<off_t>(alignment)) return incomplete;
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    void* begin = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+    if (begin == MAP_FAILED)
+        return Error{ErrorCode::machine,
+                     fmt::format("the reply of the reader process, {} bytes, cannot be mapped: {}", size, std::strerror(errno))};
+    auto mapping = std::make_shared<const Mapping>(begin, size);
+
+    Header header;
+    std::memcpy(&header, begin, sizeof header);
+    if (header.magic != magic || header.description_begin < alignment || header.description_begin > size ||
+        header.description_size > size - header.description_begin)
+        return incomplete;
+    const auto* bytes = static_cast<const std::byte*>(begin);
+    Decoder in({reinterpret_cast<const char*>(bytes) + header.description_begin, header.description_size});
+    Undescriber undescriber(in, bytes, header.description_begin, mapping);
+    Reply reply;
+    switch (in.number<std::uint8_t>()) {
+    case 0: reply = undescriber.error(); break;
+    case 1: reply = undescriber.info(); break;
+    case 2: reply = undescriber.result(); break;
+    case 3: reply = undescriber.surface(); break;
+    default: in.fail();
+    }
+    if (!in.finished()) return incomplete;
+    return reply;
+}
+
+} // namespace isotet::io::vtk

@@ -1,0 +1,67 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Requests as bytes and back.
+#include "io/vtk/messages.hpp"
+#include "io/vtk/wire.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+constexpr std::uint32_t request_version = 0x69730001;
+
+using Names = std::optional<std::vector<std::string>>;
+
+void encode_names(Encoder& out, const Names& names) {
+    out.number<std::uint8_t>(names.has_value());
+    if (names) out.list(*names, [&](const std::string& name) { out.text(name); });
+}
+
+Names decode_names(Decoder& in) {
+    if (in.number<std::uint8_t>() == 0) return std::nullopt;
+    std::vector<std::string> names;
+    in.list([&] { names.push_back(in.text()); });
+    return names;
+}
+
+} // namespace
+
+std::string encode(const Request& request) {
+    Encoder out;
+    out.number(request_version);
+    out.number(request.task);
+    out.text(request.format);
+    out.text(request.path);
+    const ReadOptions& options = request.options;
+    encode_names(out, options.point_fields);
+    encode_names(out, options.cell_fields);
+    out.number<std::uint8_t>(options.step.has_value());
+    out.number<std::uint64_t>(options.step.value_or(0));
+    out.number<std::uint8_t>(options.merge_pieces_by_coordinates);
+    out.number<std::uint8_t>(options.allow_outside);
+    out.text(options.displace);
+    out.number(options.memory_limit);
+    return out.bytes();
+}
+
+Result<Request> decode_request(std::string_view bytes) {
+    Decoder in(bytes);
+    const bool known = in.number<std::uint32_t>() == request_version;
+    Request request;
+    request.task = in.enumerator(Task::read_surface);
+    request.format = in.text();
+    request.path = in.text();
+    ReadOptions& options = request.options;
+    options.point_fields = decode_names(in);
+    options.cell_fields = decode_names(in);
+    const bool has_step = in.number<std::uint8_t>() != 0;
+    const auto step = in.number<std::uint64_t>();
+    if (has_step) options.step = step;
+    options.merge_pieces_by_coordinates = in.number<std::uint8_t>() != 0;
+    options.allow_outside = in.number<std::uint8_t>() != 0;
+    options.displace = in.text();
+    options.memory_limit = in.number<std::uint64_t>();
+    if (!known || !in.finished())
+        return Error{ErrorCode::internal, "the reader process was sent a request that is not of its version"};
+    return request;
+}
+
+} // namespace isotet::io::vtk
