@@ -1,5 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// CGNS in ADF or HDF5. Fields keep the names of the file (VelocityX), zones are pieces.
+// CGNS in ADF or HDF5; zones are pieces. VTK glues VelocityX, VelocityY and VelocityZ into Velocity; here they come apart
+// again, so that fields have the names of the file.
+#include <array>
+
 #include <vtkCGNSReader.h>
 #include <vtkNew.h>
 
@@ -8,18 +11,78 @@
 #include "io/vtk/vtk_load.hpp"
 
 namespace isotet::io::vtk {
+namespace {
+
+constexpr std::array<char, 3> axes = {'X', 'Y', 'Z'};
+
+/// Arrays in CGNS are scalar: whatever has components was glued.
+bool is_glued(std::size_t components) { return components == 2 || components == 3; }
+
+/// With every name its names with an axis, and without: what VTK has to read so that the wanted names can be had.
+ReadOptions with_glued_names(ReadOptions options) {
+    for (auto* names : {&options.point_fields, &options.cell_fields}) {
+        if (!*names) continue;
+        const std::vector<std::string> asked = **names;
+        for (const std::string& name : asked)
+            for (const char axis : axes)
+                if (name.size() > 1 && name.back() == axis) (*names)->push_back(name.substr(0, name.size() - 1));
+    }
+    return options;
+}
+
+Array component(const Array& values, std::size_t which) {
+    return values.visit([&](auto from) {
+        std::vector<std::remove_const_t<typename decltype(from)::value_type>> to(values.tuples());
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i * values.components() + which];
+        return Array::own(std::move(to));
+    });
+}
+
+std::vector<Field> unglued(std::vector<Field> fields, const ReadOptions& options, Association association) {
+    std::vector<Field> result;
+    for (Field& field : fields) {
+        if (!is_glued(field.values.components())) {
+            if (wanted(options, association, field.name)) result.push_back(std::move(field));
+            continue;
+        }
+        for (std::size_t i = 0; i < field.values.components(); ++i)
+            if (const std::string name = field.name + axes[i]; wanted(options, association, name))
+                result.push_back({name, component(field.values, i)});
+    }
+    return result;
+}
+
+std::vector<FieldInfo> unglued(const std::vector<FieldInfo>& fields) {
+    std::vector<FieldInfo> result;
+    for (const FieldInfo& field : fields) {
+        if (!is_glued(field.components)) result.push_back(field);
+        else
+            for (std::size_t i = 0; i < field.components; ++i)
+                result.push_back({field.name + axes[i], field.association, field.type, 1});
+    }
+    return result;
+}
+
+} // namespace
 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     vtkNew<vtkCGNSReader> reader;
     reader->SetFileName(path.c_str());
-    reader->SetUse3DVector(false);
+    reader->SetUse3DVector(false); // no third component where the file has two
     reader->SetLoadBndPatch(false);
-    reader->SetDoublePrecisionMesh(1); // float32 meshes stay float32 all the same: their zones say so
-    return load_with(*reader, path, options, depth, [&](const ReadOptions& chosen, FileInfo& info) {
+    reader->SetDoublePrecisionMesh(1); // exact for coordinates of either precision
+    auto loaded = load_with(*reader, path, with_glued_names(options), depth, [&](const ReadOptions& chosen, FileInfo& info) {
         reader->EnableAllBases();
         choose_arrays_by_name(*reader, chosen, info);
     });
+    if (!loaded) return loaded;
+    loaded->info.fields = unglued(loaded->info.fields);
+    for (Piece& piece : loaded->pieces) {
+        piece.grid.point_fields = unglued(std::move(piece.grid.point_fields), options, Association::point);
+        piece.grid.cell_fields = unglued(std::move(piece.grid.cell_fields), options, Association::cell);
+    }
+    return loaded;
 }
 
 } // namespace isotet::io::vtk

@@ -71,8 +71,8 @@ private:
     void section(const std::string& keyword) {
         if (keyword == "dataset") layout_.dataset = lower(scanner_.word_of_line());
         else if (keyword == "dimensions" || keyword == "origin" || keyword == "spacing" || keyword == "aspect_ratio") numbers_of_line(3);
-        else if (keyword == "points") values(keyword, number(), 3, scanner_.word_of_line());
-        else if (keyword.ends_with("_coordinates") && keyword.size() == 13) values(keyword, number(), 1, scanner_.word_of_line());
+        else if (keyword == "points") counted_values(keyword, 3);
+        else if (keyword.ends_with("_coordinates") && keyword.size() == 13) counted_values(keyword, 1);
         else if (keyword == "cells") cells();
         else if (keyword == "cell_types") values(keyword, number(), 1, "int");
         else if (keyword == "point_data" || keyword == "cell_data") {
@@ -119,14 +119,17 @@ private:
             }
             const auto name = scanner_.word();
             if (name.empty()) return fail(fmt::format("a FIELD of {} arrays ends after {}", count, i));
-            const std::uint64_t components = number(), tuples = number();
-            if (in_data_) array(name, tuples, components, scanner_.word_of_line());
-            else values(name, tuples, components, scanner_.word_of_line());
+            const std::uint64_t components = number();
+            const std::uint64_t tuples = number();
+            const auto type = scanner_.word_of_line();
+            if (in_data_) array(name, tuples, components, type);
+            else values(name, tuples, components, type);
         }
     }
     /// Version 5: "CELLS offsets size", then both arrays with types; before that n and all numbers in one list.
     void cells() {
-        const std::uint64_t first = number(), size = number();
+        const std::uint64_t first = number();
+        const std::uint64_t size = number();
         const std::size_t before = scanner_.position();
         if (lower(scanner_.word()) == "offsets") {
             values("offsets", first, 1, scanner_.word_of_line());
@@ -146,6 +149,11 @@ private:
         const auto type = type_of(type_name);
         if (type && !stopped_ && components > 0) announce(layout_.info, {decoded(name), association_, *type, components});
         values(name, tuples, components, type_name);
+    }
+    /// A count and a type, then values.
+    void counted_values(std::string_view what, std::uint64_t components) {
+        const std::uint64_t tuples = number();
+        values(what, tuples, components, scanner_.word_of_line());
     }
     /// Steps over values.
     void values(std::string_view what, std::uint64_t tuples, std::uint64_t components, std::string_view type_name) {
