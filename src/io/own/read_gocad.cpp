@@ -100,6 +100,7 @@ public:
             if (!pace_.goes_on(scanner_.position())) return Pace::cancelled();
         }
         if (!ended) return Error{ErrorCode::invalid_data, "has no END: the file is cut short"};
+        if (points_.empty()) return Error{ErrorCode::invalid_data, "has no vertices before END"};
         another_ =
             text_.find("\nGOCAD ", scanner_.position() == 0 ? 0 : scanner_.position() - 1) != std::string_view::npos;
         return {};
@@ -321,9 +322,9 @@ private:
         if (depth_)
             notes.emplace_back("z is depth in the file (ZPOSITIVE Depth): its sign is changed, so that up is positive");
         if (!atoms_.empty()) notes.push_back(fmt::format("{} atoms are the points that they refer to", atoms_.size()));
-        if (dropped_ > 0)
-            notes.push_back(
-                fmt::format("{} properties of atoms differ from those of their points and are dropped", dropped_));
+        if (dropped_ > 0) {
+            notes.push_back(fmt::format("properties of atoms that differ from those of their points are dropped: {}", dropped_));
+        }
         if (volumes_.size() > 1) {
             constexpr std::size_t most = 16;
             std::vector<std::string> names;
