@@ -83,7 +83,7 @@ private:
         const Components<Index> components(mesh_);
         if (progress_.cancelled()) return;
         progress_("check", 0.2);
-        Stars<Index> stars(mesh_);
+        Stars<Index> stars = stars_of<Index>(mesh_);
         progress_("check", 0.4);
         const bool keep_all = options_.grid && !options_.closed;
         std::vector<Share> shares(components.count(), Share{});
@@ -246,7 +246,7 @@ Result<void> check_edge_ends(const Array& ends, const Mesh& mesh) {
     if (mesh.vertices() == 0 || (integral && ends.components() == 2 && ends.tuples() == mesh.vertices())) return {};
     return Error{ErrorCode::invalid_argument,
                  fmt::format("edge_ends has {} tuples of {} {}, but to check against a grid it must have one of 2 integers "
-                             "for each of the {} vertices (extract with --edge-ends)",
+                             "for each of the {} vertices",
                              ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertices())};
 }
 

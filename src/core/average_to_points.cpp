@@ -1,0 +1,88 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "core/average_to_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/buffer.hpp"
+#include "core/incidence.hpp"
+#include "core/orientation.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet::core {
+
+namespace {
+
+constexpr std::size_t grain = 1 << 14;
+constexpr double left_out = -1; // a volume that no cell has
+
+Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar) {
+    const PointReader points(grid.points);
+    Buffer<double> volumes(cells.count());
+    parallel_each(cells.count(), grain, [&](std::size_t cell) {
+        volumes[cell] = left_out;
+        if (!is_contoured(cells.type(cell)) || std::isnan(scalar_at(values, scalar, cell))) return;
+        double volume = 0;
+        for (const Tet& tet : cells.tets(cell)) volume += std::abs(points.six_volumes(tet));
+        volumes[cell] = volume;
+    });
+    return volumes;
+}
+
+/// Adds values to a mean one by one, so that equal values stay as they are and large ones do not overflow.
+struct RunningMean {
+    double mean = 0, weights = 0;
+
+    void add(double value, double weight) {
+        if (weight == 0) return;
+        const bool is_first = weights == 0;
+        weights += weight;
+        if (is_first) mean = value;
+        else if (std::isinf(value)) mean = std::isinf(mean) && mean != value ? std::numeric_limits<double>::quiet_NaN() : value;
+        else if (!std::isinf(mean)) mean += (value - mean) * (weight / weights);
+    }
+};
+
+template <class Index>
+Incidence<Index> cells_around_points(const CellReader& cells, const Buffer<double>& volumes) {
+    return {cells.points(), cells.count(), [&](std::size_t cell, const auto& body) {
+                if (volumes[cell] == left_out) return;
+                const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
+                for (std::uint64_t i = first; i < end; ++i) {
+                    const std::uint64_t point = cells.corner(i);
+                    bool is_new = true; // a collapsed cell has a point twice, but weighs once
+                    for (std::uint64_t j = first; j < i; ++j) is_new &= cells.corner(j) != point;
+                    if (is_new) body(point);
+                }
+            }};
+}
+
+template <class Value, class Index>
+Array average(const CellReader& cells, const Buffer<double>& volumes, const Array& values, Scalar scalar) {
+    Incidence<Index> around = cells_around_points<Index>(cells, volumes);
+    Buffer<Value> means(cells.points());
+    parallel_each(means.size(), grain, [&](std::size_t point) {
+        const std::span<Index> list = around.of(point);
+        std::ranges::sort(list);
+        const bool flat = std::ranges::all_of(list, [&](Index cell) { return volumes[cell] == 0; });
+        RunningMean mean;
+        for (const Index cell : list) mean.add(scalar_at(values, scalar, cell), flat ? 1 : volumes[cell]);
+        means[point] = list.empty() ? std::numeric_limits<Value>::quiet_NaN() : static_cast<Value>(mean.mean);
+    });
+    return std::move(means).to_array();
+}
+
+} // namespace
+
+Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar) {
+    const Buffer<double> volumes = volumes_of(grid, cells, values, scalar);
+    const bool narrow = cells.count() <= std::numeric_limits<std::uint32_t>::max();
+    if (values.type() == ScalarType::float32)
+        return narrow ? average<float, std::uint32_t>(cells, volumes, values, scalar)
+                      : average<float, std::uint64_t>(cells, volumes, values, scalar);
+    return narrow ? average<double, std::uint32_t>(cells, volumes, values, scalar)
+                  : average<double, std::uint64_t>(cells, volumes, values, scalar);
+}
+
+} // namespace isotet::core

@@ -1,0 +1,122 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// find_field(): which field a name means, and its values as one scalar a point.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <isotet/grid.hpp>
+
+#include "core/average_to_points.hpp"
+#include "core/cells.hpp"
+#include "core/guard.hpp"
+#include "core/parallel.hpp"
+#include "core/scalar_of.hpp"
+
+namespace isotet {
+
+namespace {
+
+using Prefer = FindFieldOptions::Prefer;
+
+Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+/// Names of point and cell fields, each once, in the order of the grid.
+std::vector<std::string> names_of(const Grid& grid) {
+    std::vector<std::string> names;
+    for (const auto* fields : {&grid.point_fields, &grid.cell_fields})
+        for (const Field& field : *fields)
+            if (std::ranges::find(names, field.name) == names.end()) names.push_back(field.name);
+    return names;
+}
+
+std::string in_quotes(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", name);
+    return list;
+}
+
+const Field* find(const std::vector<Field>& fields, std::string_view name) {
+    const auto found = std::ranges::find(fields, name, &Field::name);
+    return found == fields.end() ? nullptr : &*found;
+}
+
+Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
+    const std::size_t components = field.values.components();
+    if (!component && components != 1)
+        return invalid(fmt::format("the field '{}' has {} components, but one scalar is needed: ask for '{}:x', '{}:mag' or the "
+                                   "like",
+                                   field.name, components, field.name, field.name));
+    if (!component) return core::Scalar{};
+    const auto scalar = core::parse_scalar(*component);
+    if (!scalar || scalar->component >= components)
+        return invalid(fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)", *component,
+                                   field.name, components));
+    return *scalar;
+}
+
+Result<void> check_length(const Field& field, std::string_view what, std::size_t expected) {
+    if (field.values.tuples() == expected && field.values.components() > 0) return {};
+    return invalid(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s", what, field.name,
+                               field.values.tuples(), field.values.components(), expected, what));
+}
+
+Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar) {
+    const Grid bare{grid.points, grid.cells, {}, {}};
+    const auto cells = core::CellReader::open(bare);
+    if (!cells) return cells.error();
+    if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
+    if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
+    return core::average_to_points(bare, *cells, field.values, scalar);
+}
+
+Result<PointField> coordinate(const Grid& grid, std::string_view name) {
+    if (!is_floating(grid.points.type()) || grid.points.components() != 3)
+        return Error{ErrorCode::invalid_data, fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
+                                                          name_of(grid.points.type()), grid.points.components())};
+    return PointField{std::string(name), core::scalar_of(grid.points, *core::parse_scalar(name)), false, {}};
+}
+
+Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer prefer) {
+    const std::vector<std::string> names = names_of(grid);
+    if (name.empty()) {
+        if (names.size() != 1)
+            return invalid(names.empty() ? "no field is named, and the grid has none"
+                                         : fmt::format("no field is named, but the grid has {}: {}", names.size(), in_quotes(names)));
+        name = names[0];
+    }
+    const auto match = match_field_name(name, names);
+    if (!match && (name == "x" || name == "y" || name == "z")) return coordinate(grid, name);
+    if (!match)
+        return invalid(names.empty() ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
+                                     : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
+    const Field* of_points = find(grid.point_fields, match->field);
+    const Field* of_cells = find(grid.cell_fields, match->field);
+    const bool take_cells = of_cells && (!of_points || prefer == Prefer::cell);
+    const Field& field = take_cells ? *of_cells : *of_points;
+    const auto scalar = choose_scalar(field, match->component);
+    if (!scalar) return scalar.error();
+
+    PointField found{std::string(name), {}, take_cells, {}};
+    if (take_cells) {
+        auto values = average(grid, field, *scalar);
+        if (!values) return values.error();
+        found.values = std::move(*values);
+    } else {
+        if (auto fits = check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
+        found.values = core::scalar_of(field.values, *scalar);
+        if (of_cells) found.note = fmt::format("'{}' is both a point field and a cell field; the point field is taken", field.name);
+    }
+    return found;
+}
+
+} // namespace
+
+Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options) {
+    return core::guarded("finding the field", [&]() -> Result<PointField> {
+        Result<PointField> found = Error{};
+        core::with_threads(options.threads, [&] { found = find_by_name(grid, name, options.prefer); });
+        return found;
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,114 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// merge_points(): a grid whose cells use one of several points at one place.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <isotet/grid.hpp>
+
+#include "core/buffer.hpp"
+#include "core/cells.hpp"
+#include "core/close_points.hpp"
+#include "core/guard.hpp"
+#include "core/orientation.hpp"
+#include "core/parallel.hpp"
+#include "core/same_place.hpp"
+
+namespace isotet {
+
+namespace {
+
+constexpr std::size_t grain = 1 << 14;
+
+Error cancelled() { return {ErrorCode::cancelled, "merging points was cancelled"}; }
+
+/// A byte a point: 1 where a contoured cell uses it.
+std::vector<std::uint8_t> used_points(const core::CellReader& cells) {
+    std::vector<std::uint8_t> used(cells.points());
+    core::parallel_each(cells.count(), grain, [&](std::size_t cell) {
+        if (!core::is_contoured(cells.type(cell))) return;
+        const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
+        for (std::uint64_t i = first; i < end; ++i) std::atomic_ref(used[cells.corner(i)]).store(1, std::memory_order_relaxed);
+    });
+    return used;
+}
+
+struct Box {
+    core::Point lower{}, upper{};
+    double length() const { return std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]}); }
+};
+
+Box box_of(const Array& points, const std::vector<std::uint8_t>& used) {
+    const core::PointReader reader(points);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (std::uint64_t point = 0; point < used.size(); ++point) {
+        if (!used[point]) continue;
+        const core::Point p = reader[point];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            box.lower[axis] = std::min(box.lower[axis], p[axis]);
+            box.upper[axis] = std::max(box.upper[axis], p[axis]);
+        }
+    }
+    return box;
+}
+
+/// The connectivity with every point of a contoured cell replaced; other cells stay as they are.
+Array replaced(const Array& connectivity, const core::CellReader& cells, const std::vector<std::uint64_t>& lowest) {
+    return connectivity.visit([&](auto old) -> Array {
+        using Index = std::remove_const_t<typename decltype(old)::element_type>;
+        core::Buffer<Index> numbers(old.size());
+        core::parallel_ranges(old.size(), grain, [&](std::size_t begin, std::size_t end) {
+            std::copy(old.begin() + static_cast<std::ptrdiff_t>(begin), old.begin() + static_cast<std::ptrdiff_t>(end),
+                      numbers.data() + begin);
+        });
+        core::parallel_each(cells.count(), grain, [&](std::size_t cell) {
+            if (!core::is_contoured(cells.type(cell))) return;
+            const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
+            for (std::uint64_t i = first; i < end; ++i) numbers[i] = static_cast<Index>(lowest[cells.corner(i)]);
+        });
+        return std::move(numbers).to_array();
+    });
+}
+
+Result<MergedPoints> merge(const Grid& grid, double tolerance, const Progress& progress) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
+    progress("merge points", 0.2);
+    const std::vector<std::uint8_t> used = used_points(*cells);
+    std::vector<std::uint64_t> lowest;
+    if (tolerance > 0) {
+        const Box box = box_of(grid.points, used);
+        if (box.length() > 0x1p40 * tolerance)
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("the tolerance is {}, but for a grid of length {} it must be 0 or at least {}", tolerance,
+                                     box.length(), 0x1p-40 * box.length())};
+        lowest = core::lowest_of_chain(grid.points, used, box.lower, tolerance);
+    } else {
+        lowest = core::lowest_at_same_place(grid.points, used.data());
+    }
+    if (progress.cancelled()) return cancelled();
+    progress("merge points", 0.8);
+
+    MergedPoints result{grid, 0};
+    for (std::uint64_t point = 0; point < lowest.size(); ++point) result.merged += lowest[point] != point;
+    if (result.merged > 0) result.grid.cells.connectivity = replaced(grid.cells.connectivity, *cells, lowest);
+    progress("merge points", 1);
+    return result;
+}
+
+} // namespace
+
+Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Progress& progress) {
+    if (!(tolerance >= 0) || std::isinf(tolerance))
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("the tolerance is {}, but must be finite and not negative", tolerance)};
+    if (progress.cancelled()) return cancelled();
+    return core::guarded("merging points", [&] { return merge(grid, tolerance, progress); });
+}
+
+} // namespace isotet
