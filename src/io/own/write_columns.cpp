@@ -34,7 +34,7 @@ Result<void> check_shapes(const Surface& surface) {
     if (!is_floating(surface.positions.type())) {
         return wrong(fmt::format("the surface's positions are {}, not floating", name_of(surface.positions.type())));
     }
-    if (!holds_indices(surface.triangles.type())) {
+    if (triangles && !holds_indices(surface.triangles.type())) {
         return wrong(fmt::format("the surface's triangles are {}, not 32- or 64-bit integers", name_of(surface.triangles.type())));
     }
     for (const auto* numbers : {&surface.edge_ends, &surface.source_cells}) {

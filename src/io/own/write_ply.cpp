@@ -2,7 +2,6 @@
 // PLY, binary little endian: every scalar field is a property of the vertices or faces.
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -16,7 +15,7 @@
 namespace isotet::io {
 namespace {
 
-constexpr double largest_exact = 9007199254740992.0; // 2^53
+constexpr std::int64_t largest_exact = std::int64_t{1} << 53; // integers up to here are doubles
 
 std::string_view ply_type(ScalarType type) {
     switch (type) {
@@ -62,7 +61,7 @@ Column narrowed(const Column& column, std::vector<std::string>& notes) {
     for_each_piece<Integer>(column, [&](std::span<const Integer> values) {
         for (const Integer value : values) {
             fits = fits && std::in_range<std::int32_t>(value);
-            exact = exact && std::abs(static_cast<double>(value)) <= largest_exact;
+            exact = exact && std::cmp_less_equal(value, largest_exact) && std::cmp_greater_equal(value, -largest_exact);
         }
     });
     if (fits) return cast_column<Integer, std::int32_t>(column);

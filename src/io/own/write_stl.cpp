@@ -83,8 +83,9 @@ Result<WriteReport> write_stl(const SurfaceToWrite& input) {
 
     const std::uint64_t expected = header_bytes + sizeof(std::uint32_t) + std::uint64_t{triangles} * facet_bytes;
     return write_file(input.path, input.progress, expected, [&](WriteStream& stream) {
-        std::string header = "isotet"; // must not start with "solid", by which a text STL is told
-        header.resize(header_bytes, ' ');
+        // A text STL is told by "solid" at the start; VTK takes a file without a NUL in its header for one, too.
+        std::string header = "isotet";
+        header.resize(header_bytes, '\0');
         stream.text(header);
         stream.number(static_cast<std::uint32_t>(triangles), std::endian::little);
         stream.rows(triangles, [&](std::size_t begin, std::size_t end, std::string& out) {
