@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,11 @@ struct WriteReport {
 ///
 /// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the old
 /// file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file differs
-/// between runs.
+/// between runs. A symbolic link stays: what it points to is replaced. Permission bits of an old file are kept.
 ///
-/// Errors   invalid_argument: unknown format, `path` is a folder or not a plain file; machine: disk full, not writable; cancelled
+/// Errors   invalid_argument: unknown format, arrays that do not fit together, `path` is a folder or not a plain file;
+///          invalid_data: a triangle with a vertex that is not there; file: the folder of `path` is not there;
+///          machine: disk full, not writable; out_of_memory; cancelled
 Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format = {},
                                   const Progress& progress = {});
 
