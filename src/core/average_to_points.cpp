@@ -39,7 +39,8 @@ struct RunningMean {
         const bool is_first = weights == 0;
         weights += weight;
         if (is_first) mean = value;
-        else if (std::isinf(value)) mean = std::isinf(mean) && mean != value ? std::numeric_limits<double>::quiet_NaN() : value;
+        else if (std::isinf(value))
+            mean = std::isinf(mean) && mean != value ? std::numeric_limits<double>::quiet_NaN() : value;
         else if (!std::isinf(mean)) mean += (value - mean) * (weight / weights);
     }
 };

@@ -9,16 +9,16 @@
 
 namespace isotet::core {
 
-/// At each point the mean of the values of the contoured cells around it, weighted by their volumes (the sum over the cell's
-/// tets, each taken as positive; where all are zero, all cells weigh the same). Cells whose value is NaN are left out; a
-/// point without a cell left is NaN.
+/// At each point the mean of the values of the contoured cells around it, weighted by their volumes (the sum over the
+/// cell's tets, each taken as positive; where all are zero, all cells weigh the same). Cells whose value is NaN are
+/// left out; a point without a cell left is NaN.
 ///
 /// `grid`, `cells`   checked (check_cells); a tuple of `values` for each cell
 ///
-/// Guarantees   the same bytes for any thread count: cells are added in ascending order; where all cells agree, the mean is
-///              their value exactly
-/// Cost         two passes over the cells and one over the points; 8 bytes a cell, 8 a point and 4 a corner (8 above 2^32
-///              cells) beside the result, which is float32 for float32 and float64 for all other types
+/// Guarantees   the same bytes for any thread count: cells are added in ascending order; where all cells agree, the
+///              mean is their value exactly
+/// Cost         two passes over the cells and one over the points; 8 bytes a cell, 8 a point and 4 a corner (8 above
+///              2^32 cells) beside the result, which is float32 for float32 and float64 for all other types
 Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar);
 
 } // namespace isotet::core

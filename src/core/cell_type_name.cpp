@@ -82,7 +82,8 @@ constexpr std::array<std::pair<std::uint8_t, std::string_view>, 64> cell_type_na
 } // namespace
 
 std::string name_of_cell_type(std::uint8_t vtk_type) {
-    const auto found = std::ranges::lower_bound(cell_type_names, vtk_type, {}, &std::pair<std::uint8_t, std::string_view>::first);
+    const auto found =
+        std::ranges::lower_bound(cell_type_names, vtk_type, {}, &std::pair<std::uint8_t, std::string_view>::first);
     if (found != cell_type_names.end() && found->first == vtk_type) return std::string(found->second);
     return fmt::format("cell type {}", vtk_type);
 }

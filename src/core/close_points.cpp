@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Space is cut into small cells, so small that all points of one are close to each other. A chain then runs from cell to
-// cell, and the cells that it can reach in one step are at most two further along each axis.
+// Space is cut into small cells, so small that all points of one are close to each other. A chain then runs from cell
+// to cell, and the cells that it can reach in one step are at most two further along each axis.
 #include "core/close_points.hpp"
 
 #include <algorithm>
@@ -41,7 +41,8 @@ public:
             if (!wanted[point]) continue;
             const Point p = points_[point];
             Cell cell;
-            for (std::size_t axis = 0; axis < 3; ++axis) cell[axis] = static_cast<std::int64_t>(std::floor((p[axis] - lower[axis]) / size));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                cell[axis] = static_cast<std::int64_t>(std::floor((p[axis] - lower[axis]) / size));
             placed_.push_back({cell, point});
         }
         tbb::parallel_sort(placed_.begin(), placed_.end());
@@ -76,7 +77,8 @@ private:
                 const Cell last_of_plane{cell[0] + x, cell[1] + 2, cell[2] + 2};
                 if (place == placed_.end() || (y > -2 && place->cell > last_of_plane)) break;
                 const Cell first{cell[0] + x, cell[1] + y, cell[2] - 2}, last{cell[0] + x, cell[1] + y, cell[2] + 2};
-                place = std::lower_bound(place, placed_.end(), first, [](const Placed& p, const Cell& c) { return p.cell < c; });
+                place = std::lower_bound(place, placed_.end(), first,
+                                         [](const Placed& p, const Cell& c) { return p.cell < c; });
                 while (place != placed_.end() && place->cell <= last) {
                     const auto there = cell_from(static_cast<std::size_t>(place - placed_.begin()));
                     join_cells(here, there);
@@ -104,8 +106,8 @@ private:
 
 } // namespace
 
-std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted, const Point& lower,
-                                           double tolerance) {
+std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted,
+                                           const Point& lower, double tolerance) {
     return Chains(points, wanted, lower, tolerance).lowest();
 }
 

@@ -11,8 +11,8 @@
 
 namespace isotet::core {
 
-/// For each point the lowest-numbered point of its chain: points are in one chain when they are at most `tolerance` apart,
-/// or when other points of the chain lie between.
+/// For each point the lowest-numbered point of its chain: points are in one chain when they are at most `tolerance`
+/// apart, or when other points of the chain lie between.
 ///
 /// `points`      float32 or float64, 3 components
 /// `wanted`      a byte a point: points with 0 are in no chain
@@ -21,7 +21,7 @@ namespace isotet::core {
 ///
 /// Guarantees   the same for any thread count
 /// Cost         O(n log n), 40 bytes a point; more only where crowds of points are just out of each other's reach
-std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted, const Point& lower,
-                                           double tolerance);
+std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted,
+                                           const Point& lower, double tolerance);
 
 } // namespace isotet::core

@@ -10,14 +10,17 @@
 
 namespace isotet::core {
 
-/// The numbers 0 .. n - 1, at first each a set of its own. Whatever the threads do, the root of a set is its lowest number.
+/// The numbers 0 .. n - 1, at first each a set of its own. Whatever the threads do, the root of a set is its lowest
+/// number.
 ///
 /// `Index`   an integer that can hold n
 /// Method    union-find without locks, the higher root linked to the lower (Anderson and Woll 1991), path halving
 template <class Index>
 class DisjointSets {
 public:
-    explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+    explicit DisjointSets(std::size_t count) : parents_(count) {
+        std::iota(parents_.begin(), parents_.end(), Index{0});
+    }
 
     std::size_t size() const noexcept { return parents_.size(); }
 

@@ -43,21 +43,20 @@ const Field* find(const std::vector<Field>& fields, std::string_view name) {
 Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
     const std::size_t components = field.values.components();
     if (!component && components != 1)
-        return invalid(fmt::format("the field '{}' has {} components, but one scalar is needed: ask for '{}:x', '{}:mag' or the "
-                                   "like",
-                                   field.name, components, field.name, field.name));
+        return invalid(fmt::format("the field '{}' has {} components, but one is needed: ask for '{}:x', '{}:0' or '{}:mag'",
+                                   field.name, components, field.name, field.name, field.name));
     if (!component) return core::Scalar{};
     const auto scalar = core::parse_scalar(*component);
     if (!scalar || scalar->component >= components)
-        return invalid(fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)", *component,
-                                   field.name, components));
+        return invalid(fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)",
+                                   *component, field.name, components));
     return *scalar;
 }
 
 Result<void> check_length(const Field& field, std::string_view what, std::size_t expected) {
     if (field.values.tuples() == expected && field.values.components() > 0) return {};
-    return invalid(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s", what, field.name,
-                               field.values.tuples(), field.values.components(), expected, what));
+    return invalid(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s", what,
+                               field.name, field.values.tuples(), field.values.components(), expected, what));
 }
 
 Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar) {
@@ -71,8 +70,9 @@ Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar)
 
 Result<PointField> coordinate(const Grid& grid, std::string_view name) {
     if (!is_floating(grid.points.type()) || grid.points.components() != 3)
-        return Error{ErrorCode::invalid_data, fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
-                                                          name_of(grid.points.type()), grid.points.components())};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
+                                 name_of(grid.points.type()), grid.points.components())};
     return PointField{std::string(name), core::scalar_of(grid.points, *core::parse_scalar(name)), false, {}};
 }
 
@@ -81,14 +81,17 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer 
     if (name.empty()) {
         if (names.size() != 1)
             return invalid(names.empty() ? "no field is named, and the grid has none"
-                                         : fmt::format("no field is named, but the grid has {}: {}", names.size(), in_quotes(names)));
+                                         : fmt::format("no field is named, but the grid has {}: {}", names.size(),
+                                                       in_quotes(names)));
         name = names[0];
     }
     const auto match = match_field_name(name, names);
     if (!match && (name == "x" || name == "y" || name == "z")) return coordinate(grid, name);
     if (!match)
-        return invalid(names.empty() ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
-                                     : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
+        return invalid(
+            names.empty()
+                ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
+                : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
     const Field* of_points = find(grid.point_fields, match->field);
     const Field* of_cells = find(grid.cell_fields, match->field);
     const bool take_cells = of_cells && (!of_points || prefer == Prefer::cell);
@@ -104,7 +107,9 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer 
     } else {
         if (auto fits = check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
         found.values = core::scalar_of(field.values, *scalar);
-        if (of_cells) found.note = fmt::format("'{}' is both a point field and a cell field; the point field is taken", field.name);
+        if (of_cells)
+            found.note =
+                fmt::format("'{}' is both a point field and a cell field; the point field is taken", field.name);
     }
     return found;
 }

@@ -31,7 +31,8 @@ std::vector<std::uint8_t> used_points(const core::CellReader& cells) {
     core::parallel_each(cells.count(), grain, [&](std::size_t cell) {
         if (!core::is_contoured(cells.type(cell))) return;
         const std::uint64_t first = cells.first(cell), end = first + cells.corners(cell);
-        for (std::uint64_t i = first; i < end; ++i) std::atomic_ref(used[cells.corner(i)]).store(1, std::memory_order_relaxed);
+        for (std::uint64_t i = first; i < end; ++i)
+            std::atomic_ref(used[cells.corner(i)]).store(1, std::memory_order_relaxed);
     });
     return used;
 }
@@ -85,8 +86,8 @@ Result<MergedPoints> merge(const Grid& grid, double tolerance, const Progress& p
         const Box box = box_of(grid.points, used);
         if (box.length() > 0x1p40 * tolerance)
             return Error{ErrorCode::invalid_argument,
-                         fmt::format("the tolerance is {}, but for a grid of length {} it must be 0 or at least {}", tolerance,
-                                     box.length(), 0x1p-40 * box.length())};
+                         fmt::format("the tolerance is {}, but for a grid of length {} it must be 0 or at least {}",
+                                     tolerance, box.length(), 0x1p-40 * box.length())};
         lowest = core::lowest_of_chain(grid.points, used, box.lower, tolerance);
     } else {
         lowest = core::lowest_at_same_place(grid.points, used.data());

@@ -9,8 +9,8 @@
 
 namespace isotet::core {
 
-/// For each point the lowest-numbered point with the same coordinates (-0 equals +0; NaN equals nothing), itself if there
-/// is no other.
+/// For each point the lowest-numbered point with the same coordinates (-0 equals +0; NaN equals nothing), itself if
+/// there is no other.
 ///
 /// `points`   float32 or float64, 3 components, n tuples
 /// `wanted`   null, or n bytes: points with 0 equal nothing

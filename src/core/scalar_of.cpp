@@ -65,9 +65,11 @@ Array scalar_of(const Array& array, Scalar scalar) {
     return array.visit([&](auto values) {
         using Value = std::remove_const_t<typename decltype(values)::element_type>;
         if (!scalar.magnitude)
-            return fill<Value>(array.tuples(), [&](std::size_t tuple) { return values[tuple * components + scalar.component]; });
+            return fill<Value>(array.tuples(),
+                               [&](std::size_t tuple) { return values[tuple * components + scalar.component]; });
         using Magnitude = std::conditional_t<std::is_same_v<Value, float>, float, double>;
-        return fill<Magnitude>(array.tuples(), [&](std::size_t tuple) { return magnitude(&values[tuple * components], components); });
+        return fill<Magnitude>(array.tuples(),
+                               [&](std::size_t tuple) { return magnitude(&values[tuple * components], components); });
     });
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "cpu/cut_cluster.hpp"
+#include "cpu/plain_cluster.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {
@@ -64,29 +65,54 @@ void count_tied(const Packed& packed, std::size_t cluster, std::size_t place, co
         if (core::test_bit(cut.used_tied.data(), local)) set_shared_bit(masks.tied(place), local - h.foreign_points);
 }
 
+/// One thread's memory: the general path for any cluster, the fast one for plain clusters of single precision.
+template <class Real>
+struct Scratch {
+    CutCluster<Real> cut;
+    PlainScratch plain;
+};
+
+template <class Real>
+void count_cluster(const Packed& packed, const Request<Real>& request, const Selection& selection, Masks& masks, std::size_t place,
+                   Scratch<Real>& scratch, Counted& out) {
+    if constexpr (sizeof(Real) == sizeof(float)) {
+        out.records[place] = cut_plain_cluster(packed, request, selection, masks, place, scratch.plain, out.counts[place]);
+        if (out.records[place]) return;
+    } else {
+        out.records[place] = nullptr;
+    }
+    const std::size_t cluster = selection.clusters[place];
+    CutCluster<Real>& cut = scratch.cut;
+    cut.cut(packed, cluster, request);
+    const std::uint32_t seams = count_seams(packed, cluster, place, selection, masks, cut);
+    if (cut.has_tied()) count_tied(packed, cluster, place, selection, masks, cut);
+    out.counts[place] = {cut.edges.count() - seams, cut.triangles};
+}
+
 } // namespace
 
 template <class Real>
-core::Buffer<Count> count(const Packed& packed, const Request<Real>& request, const Selection& selection, Masks& masks,
-                          const Progress& progress) {
-    core::Buffer<Count> counts(selection.clusters.size());
-    tbb::enumerable_thread_specific<std::unique_ptr<CutCluster<Real>>> scratch([] { return std::make_unique<CutCluster<Real>>(); });
-    core::parallel_ranges(counts.size(), 16, [&](std::size_t begin, std::size_t end) {
+Counted count(const Packed& packed, const Request<Real>& request, const Selection& selection, Masks& masks, const Progress& progress) {
+    Counted out;
+    out.counts = core::Buffer<Count>(selection.clusters.size());
+    out.records = core::Buffer<const Record*>(selection.clusters.size());
+    using Memory = Scratch<Real>;
+    tbb::enumerable_thread_specific<std::shared_ptr<Memory>> scratch([] { return std::make_shared<Memory>(); });
+    core::parallel_ranges(selection.clusters.size(), 16, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
-        CutCluster<Real>& cut = *scratch.local();
-        for (std::size_t place = begin; place < end; ++place) {
-            const std::size_t cluster = selection.clusters[place];
-            cut.cut(packed, cluster, request);
-            const std::uint32_t seams = count_seams(packed, cluster, place, selection, masks, cut);
-            if (cut.has_tied()) count_tied(packed, cluster, place, selection, masks, cut);
-            counts[place] = {cut.edges.count() - seams, cut.triangles};
-        }
+        Memory& memory = *scratch.local();
+        for (std::size_t place = begin; place < end; ++place)
+            count_cluster(packed, request, selection, masks, place, memory, out);
     });
-    return counts;
+    for (std::shared_ptr<Memory>& memory : scratch) {
+        out.record_bytes += memory->plain.arena.bytes();
+        out.memory.push_back(std::move(memory));
+    }
+    return out;
 }
 
-template core::Buffer<Count> count<float>(const Packed&, const Request<float>&, const Selection&, Masks&, const Progress&);
-template core::Buffer<Count> count<double>(const Packed&, const Request<double>&, const Selection&, Masks&, const Progress&);
+template Counted count<float>(const Packed&, const Request<float>&, const Selection&, Masks&, const Progress&);
+template Counted count<double>(const Packed&, const Request<double>&, const Selection&, Masks&, const Progress&);
 
 core::Buffer<Start> scan(const core::Buffer<Count>& counts, const Masks& masks) {
     core::Buffer<Start> starts(counts.size() + 1);

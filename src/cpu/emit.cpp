@@ -27,15 +27,17 @@ template <class Real, class Index>
 class Emitter {
 public:
     Emitter(const Packed& packed, const Request<Real>& request, const Selection& selection, const Masks& masks,
-            const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles)
-        : packed_(packed), request_(request), selection_(selection), masks_(masks), starts_(starts), target_(target),
-          triangles_(triangles) {}
+            const Counted& counted, const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles)
+        : packed_(packed), request_(request), selection_(selection), masks_(masks), counted_(counted), starts_(starts),
+          target_(target), triangles_(triangles) {}
 
     void emit_cluster(std::size_t place, Scratch<Real, Index>& s) const {
         const Start start = starts_[place];
         const bool has_vertices = starts_[place + 1].vertex != start.vertex;
         if (!has_vertices && starts_[place + 1].triangle == start.triangle) return;
         const std::size_t cluster = selection_.clusters[place];
+        if constexpr (sizeof(Real) == sizeof(float))
+            if (const Record* record = counted_.records[place]) return copy_record(cluster, *record, start, s);
         s.cut.cut(packed_, cluster, request_);
         if (has_vertices) {
             core::load_positions(packed_, cluster, s.positions.data());
@@ -47,6 +49,32 @@ public:
     }
 
 private:
+    /// The number of the vertex on a seam edge, given its owner.
+    Index seam_number(std::size_t owner, std::size_t seam) const {
+        return static_cast<Index>(starts_[owner].vertex + core::count_bits(masks_.tied(owner), Masks::tied_words) +
+                                  core::rank_of_bit(masks_.seams(owner), seam));
+    }
+
+    /// A plain cluster: everything but the numbers is in the record.
+    void copy_record(std::size_t cluster, const Record& record, Start start, Scratch<Real, Index>& s) const {
+        std::copy_n(record.positions(), 3 * std::size_t{record.own}, target_.positions + 3 * start.vertex);
+        Index* const numbers = s.edge_numbers.data(); // local number -> number; there are fewer than entries
+        for (std::size_t i = 0; i < record.own; ++i) numbers[i] = static_cast<Index>(start.vertex + i);
+        const ForeignVertex* foreign = record.foreign_vertices();
+        for (std::size_t i = 0; i < record.foreign; ++i) numbers[record.own + i] = seam_number(foreign[i].owner, foreign[i].seam);
+        const std::uint16_t* corners = record.corners();
+        Index* const out = triangles_ + 3 * start.triangle;
+        for (std::size_t i = 0; i < 3 * std::size_t{record.triangles}; ++i) out[i] = numbers[corners[i]];
+
+        if (record.ends_at) {
+            core::local_points(packed_, cluster, s.packed_points.data());
+            for (std::size_t i = 0; i < record.own; ++i)
+                emit_ends(s, start.vertex + i, record.ends()[i].below, record.ends()[i].above, record.weights()[i]);
+        }
+        if (record.tets_at)
+            for (std::size_t t = 0; t < record.triangles; ++t) emit_source(cluster, start.triangle + t, record.tets()[t]);
+    }
+
     /// Numbers of vertices that other clusters emit; their edges leave the matrix.
     void number_foreign(std::size_t cluster, Scratch<Real, Index>& s) const {
         const core::ClusterLinks links = packed_.cluster_links(cluster);
@@ -65,9 +93,7 @@ private:
                 if (!s.cut.edges.test(foreign.edge)) continue;
                 s.cut.edges.remove(foreign.edge);
                 const std::size_t owner = selection_.place[neighbour.cluster];
-                number(s, foreign.edge) =
-                    static_cast<Index>(starts_[owner].vertex + core::count_bits(masks_.tied(owner), Masks::tied_words) +
-                                       core::rank_of_bit(masks_.seams(owner), foreign.index));
+                number(s, foreign.edge) = seam_number(owner, foreign.index);
             }
         }
     }
@@ -102,6 +128,11 @@ private:
         for (std::size_t axis = 0; axis < 3; ++axis)
             target_.positions[3 * vertex + axis] =
                 core::interpolate(s.positions[3 * below + axis], s.positions[3 * above + axis], t);
+        emit_ends(s, vertex, below, above, t);
+    }
+
+    /// What else depends on the ends of a vertex.
+    void emit_ends(const Scratch<Real, Index>& s, std::uint64_t vertex, std::size_t below, std::size_t above, Real t) const {
         if (target_.ends) {
             target_.ends[2 * vertex] = static_cast<std::int64_t>(packed_.user_point(s.packed_points[below]));
             target_.ends[2 * vertex + 1] = static_cast<std::int64_t>(packed_.user_point(s.packed_points[above]));
@@ -114,9 +145,13 @@ private:
         }
     }
 
+    void emit_source(std::size_t cluster, std::uint64_t triangle, std::size_t tet) const {
+        const std::uint64_t first_stored = core::group_size * std::uint64_t{packed_.headers[cluster].first_group};
+        target_.source_cells[triangle] = static_cast<std::int64_t>(packed_.user_cell(first_stored + tet));
+    }
+
     void emit_triangles(std::size_t cluster, std::uint64_t next, Scratch<Real, Index>& s) const {
         const auto tets = packed_.cluster_tets(cluster);
-        const std::uint64_t first_stored = core::group_size * std::uint64_t{packed_.headers[cluster].first_group};
         const bool has_tied = s.cut.has_tied();
         for (std::size_t i = 0; i < s.cut.cut_count; ++i) {
             const auto [tet, index] = s.cut.cut_tet[i];
@@ -136,7 +171,7 @@ private:
                 triangles_[3 * next] = a;
                 triangles_[3 * next + 1] = b;
                 triangles_[3 * next + 2] = d;
-                if (target_.source_cells) target_.source_cells[next] = static_cast<std::int64_t>(packed_.user_cell(first_stored + tet));
+                if (target_.source_cells) emit_source(cluster, next, tet);
                 ++next;
             }
         }
@@ -150,6 +185,7 @@ private:
     const Request<Real>& request_;
     const Selection& selection_;
     const Masks& masks_;
+    const Counted& counted_;
     const core::Buffer<Start>& starts_;
     const Target<Real>& target_;
     Index* triangles_;
@@ -159,8 +195,9 @@ private:
 
 template <class Real, class Index>
 void emit(const Packed& packed, const Request<Real>& request, const Selection& selection, const Masks& masks,
-          const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles, const Progress& progress) {
-    const Emitter<Real, Index> emitter(packed, request, selection, masks, starts, target, triangles);
+          const Counted& counted, const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles,
+          const Progress& progress) {
+    const Emitter<Real, Index> emitter(packed, request, selection, masks, counted, starts, target, triangles);
     using Memory = Scratch<Real, Index>;
     tbb::enumerable_thread_specific<std::unique_ptr<Memory>> scratch([] { return std::make_unique_for_overwrite<Memory>(); });
     core::parallel_ranges(selection.clusters.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -172,7 +209,7 @@ void emit(const Packed& packed, const Request<Real>& request, const Selection& s
 
 #define ISOTET_EMIT(Real, Index)                                                                                          \
     template void emit<Real, Index>(const Packed&, const Request<Real>&, const Selection&, const Masks&,                  \
-                                    const core::Buffer<Start>&, const Target<Real>&, Index*, const Progress&)
+                                    const Counted&, const core::Buffer<Start>&, const Target<Real>&, Index*, const Progress&)
 ISOTET_EMIT(float, std::uint32_t);
 ISOTET_EMIT(float, std::uint64_t);
 ISOTET_EMIT(double, std::uint32_t);

@@ -11,9 +11,9 @@ Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<R
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "extraction was cancelled"}; };
     const Selection selection = select(packed, request.isovalue);
     Masks masks(packed, selection);
-    core::Buffer<Count> counts = count(packed, request, selection, masks, progress);
+    const Counted counted = count(packed, request, selection, masks, progress);
     if (progress.cancelled()) return cancelled();
-    const core::Buffer<Start> starts = scan(counts, masks);
+    const core::Buffer<Start> starts = scan(counted.counts, masks);
     const Start total = starts[selection.clusters.size()];
 
     const std::size_t index_bytes = total.vertex < wide_from ? 4 : 8;
@@ -35,7 +35,7 @@ Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<R
 
     ops::RawSurface surface;
     const auto emit_with = [&]<class Index>(core::Buffer<Index> triangles) {
-        emit(packed, request, selection, masks, starts, target, triangles.data(), progress);
+        emit(packed, request, selection, masks, counted, starts, target, triangles.data(), progress);
         surface.triangles = std::move(triangles).to_array(3);
     };
     if (index_bytes == 4) emit_with(core::Buffer<std::uint32_t>(3 * total.triangle));
@@ -50,7 +50,8 @@ Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<R
     }
     if (request.source_cells) surface.source_cells = std::move(source_cells).to_array();
     surface.selected_clusters = selection.clusters.size();
-    surface.transient_bytes = selection.clusters.bytes() + selection.place.bytes() + masks.bytes() + counts.bytes() + starts.bytes();
+    surface.transient_bytes = selection.clusters.bytes() + selection.place.bytes() + masks.bytes() +
+                              counted.counts.bytes() + counted.records.bytes() + counted.record_bytes + starts.bytes();
     return surface;
 }
 

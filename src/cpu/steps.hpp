@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <memory>
+#include <vector>
 
 #include "core/bits.hpp"
 #include "core/buffer.hpp"
 #include "core/packed.hpp"
+#include "cpu/record.hpp"
 #include "ops/extraction.hpp"
 
 namespace isotet::cpu {
@@ -48,6 +50,14 @@ struct Count {
     std::uint32_t triangles;
 };
 
+/// What counting hands to scan and emit.
+struct Counted {
+    core::Buffer<Count> counts;           ///< N
+    core::Buffer<const Record*> records;  ///< N; null where the cluster is not plain: emit then looks at its tets again
+    std::vector<std::shared_ptr<const void>> memory; ///< keeps the records
+    std::size_t record_bytes = 0;
+};
+
 /// The numbers of the first vertex and triangle of each selected cluster.
 struct Start {
     std::uint64_t vertex;
@@ -58,8 +68,7 @@ template <class Real>
 Selection select(const Packed& packed, Real isovalue);
 
 template <class Real>
-core::Buffer<Count> count(const Packed& packed, const Request<Real>& request, const Selection& selection, Masks& masks,
-                          const Progress& progress);
+Counted count(const Packed& packed, const Request<Real>& request, const Selection& selection, Masks& masks, const Progress& progress);
 
 /// N + 1 starts; the last one holds the totals.
 core::Buffer<Start> scan(const core::Buffer<Count>& counts, const Masks& masks);
@@ -76,6 +85,6 @@ struct Target {
 
 template <class Real, class Index>
 void emit(const Packed& packed, const Request<Real>& request, const Selection& selection, const Masks& masks,
-          const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles, const Progress& progress);
+          const Counted& counted, const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles, const Progress& progress);
 
 } // namespace isotet::cpu
