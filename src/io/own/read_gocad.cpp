@@ -323,7 +323,8 @@ private:
             notes.emplace_back("z is depth in the file (ZPOSITIVE Depth): its sign is changed, so that up is positive");
         if (!atoms_.empty()) notes.push_back(fmt::format("{} atoms are the points that they refer to", atoms_.size()));
         if (dropped_ > 0) {
-            notes.push_back(fmt::format("properties of atoms that differ from those of their points are dropped: {}", dropped_));
+            notes.push_back(
+                fmt::format("properties of atoms that differ from those of their points are dropped: {}", dropped_));
         }
         if (volumes_.size() > 1) {
             constexpr std::size_t most = 16;
