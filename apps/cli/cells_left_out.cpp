@@ -35,9 +35,11 @@ std::string cells_left_out_note(const Grid& grid) {
     const Histogram counts = count_types(grid.cells.types);
     std::string list;
     for (std::size_t type = 0; type < counts.size(); ++type) {
-        const bool contoured = type >= static_cast<std::size_t>(CellType::tetrahedron) && type <= static_cast<std::size_t>(CellType::pyramid);
+        const bool contoured = type >= static_cast<std::size_t>(CellType::tetrahedron) &&
+                               type <= static_cast<std::size_t>(CellType::pyramid);
         if (counts[type] == 0 || contoured) continue;
-        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(counts[type]), name_of_cell_type(static_cast<std::uint8_t>(type)));
+        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(counts[type]),
+                            name_of_cell_type(static_cast<std::uint8_t>(type)));
     }
     return list.empty() ? list : "cells left out, their types are not contoured: " + list;
 }

@@ -95,8 +95,9 @@ std::string coincident_points_note(const Grid& grid) {
     if (!many()) return {};
     keep_used(samples, grid);
     if (!many()) return {};
-    return fmt::format("{}{} points lie exactly on others of lower numbers: the surface is open there; --merge-points 0 welds them",
-                       zero_bits ? "about " : "", grouped(static_cast<std::uint64_t>(repeated(samples)) << zero_bits));
+    return fmt::format(
+        "{}{} points lie exactly on others of lower numbers: the surface is open there; --merge-points 0 welds them",
+        zero_bits ? "about " : "", grouped(static_cast<std::uint64_t>(repeated(samples)) << zero_bits));
 }
 
 } // namespace isotet::cli

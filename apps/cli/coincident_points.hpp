@@ -8,12 +8,12 @@
 
 namespace isotet::cli {
 
-/// A sentence for the user when more than a thousandth of the points that cells use have the coordinates of another one;
-/// empty otherwise.
+/// A sentence for the user when more than a thousandth of the points that cells use have the coordinates of another
+/// one; empty otherwise.
 ///
-/// On large grids one point in a few is looked at, chosen by its coordinates, so that points that coincide are all looked
-/// at or none is. The grid need not have been checked.
-/// Cost   one pass over the points; one over the connectivity only when there may be something to say
+/// On large grids one point in a few is looked at, chosen by its coordinates, so that points that coincide are all
+/// looked at or none is. The grid need not have been checked. Cost   one pass over the points; one over the
+/// connectivity only when there may be something to say
 std::string coincident_points_note(const Grid& grid);
 
 } // namespace isotet::cli

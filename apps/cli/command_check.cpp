@@ -39,14 +39,16 @@ Result<Origin> read_origin(const CheckCommand& command, Console& console) {
         fields = {chosen->point, chosen->cell};
         found = *std::move(chosen);
     } else if (!source->info().fields.empty()) {
-        console.note("no field was named with --grid: every tet counts, also where the field has no data; -f names one");
+        console.note(
+            "no field was named with --grid: every tet counts, also where the field has no data; -f names one");
     }
     Result<Grid> grid = source->read(fields, steps->front(), console);
     if (!grid) return grid.error();
     Origin origin{*std::move(grid), std::nullopt};
     if (!found) return origin;
     const auto prefer = command.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field = find_field(origin.grid, found->name, {.prefer = prefer, .threads = command.common.threads});
+    Result<PointField> field =
+        find_field(origin.grid, found->name, {.prefer = prefer, .threads = command.common.threads});
     if (!field) return field.error();
     console.note(field->note);
     origin.field = *std::move(field);
@@ -59,7 +61,8 @@ std::string genus_text(const std::vector<std::int64_t>& genus) {
     for (const std::int64_t value : genus) ++counts[value];
     std::string text;
     for (const auto& [value, count] : counts) {
-        text += fmt::format("{}{}", text.empty() ? "" : ", ", count == 1 ? std::to_string(value) : fmt::format("{} x {}", grouped(count), value));
+        text += fmt::format("{}{}", text.empty() ? "" : ", ",
+                            count == 1 ? std::to_string(value) : fmt::format("{} x {}", grouped(count), value));
     }
     return text.empty() ? "no closed, manifold, oriented component" : text;
 }
@@ -75,33 +78,36 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     };
     count("boundary edges", report.boundary_edges);
     count("inconsistent edges", report.inconsistent_edges);
-    if (command.closed || !command.grid.file.empty()) count("edges not allowed", report.blamed_edges, "of both kinds above");
+    if (command.closed || !command.grid.file.empty())
+        count("edges not allowed", report.blamed_edges, "of both kinds above");
     count("equal-corner triangles", report.equal_corner_triangles);
     count("repeated triangles", report.duplicate_triangles,
-          report.duplicate_triangles == report.blamed_duplicates ? "" : grouped(report.blamed_duplicates) + " not explained by the grid");
+          report.duplicate_triangles == report.blamed_duplicates
+              ? ""
+              : grouped(report.blamed_duplicates) + " not explained by the grid");
     count("zero-area triangles", report.zero_area_triangles);
     count("non-manifold edges", report.non_manifold_edges);
     count("double sheets", report.double_sheets);
     count("touching vertices", report.touching_vertices);
     count("coincident vertices", report.coincident_vertices);
     if (report.unused_vertices > 0) count("unused vertices", report.unused_vertices);
-    if (report.collapsed_by_welding > 0) count("collapsed by welding", report.collapsed_by_welding, "counted, not blamed");
+    if (report.collapsed_by_welding > 0)
+        count("collapsed by welding", report.collapsed_by_welding, "counted, not blamed");
     count("components", report.components);
     table.row({"Euler characteristic", std::to_string(report.euler)});
     table.row({"genus", genus_text(report.genus)});
     table.row({"area", rounded(report.area)});
     table.row({"volume", report.closed ? rounded(report.volume) : "not closed"});
-    const bool says_no = !report.sound || (command.strict && !report.clean);
-    table.row({"verdict", says_no                        ? "not sound"
-                          : command.strict && report.clean ? "sound and clean"
-                                                           : "sound"});
+    const std::string unclean = command.strict ? "sound, but not clean" : "sound";
+    table.row({"verdict", !report.sound ? "not sound" : report.clean ? "sound and clean" : unclean});
     return table.text();
 }
 
 std::string findings_table(const std::vector<Finding>& findings) {
     Table table = facts();
     for (const Finding& finding : findings) {
-        table.row({finding.what, fmt::format("at {}, {}, {}", shortest(finding.where[0]), shortest(finding.where[1]), shortest(finding.where[2]))});
+        table.row({finding.what, fmt::format("at {}, {}, {}", shortest(finding.where[0]), shortest(finding.where[1]),
+                                             shortest(finding.where[2]))});
     }
     return table.empty() ? "" : "\n" + table.text();
 }
@@ -134,7 +140,8 @@ Json check_json(const SurfaceReport& report, const SurfaceFile& file, const Chec
     json["sound"] = report.sound;
     json["clean"] = report.clean;
     Json findings = Json::array();
-    for (const Finding& finding : report.findings) findings.push_back({{"what", json_text(finding.what)}, {"where", finding.where}});
+    for (const Finding& finding : report.findings)
+        findings.push_back({{"what", json_text(finding.what)}, {"where", finding.where}});
     json["findings"] = std::move(findings);
     return json;
 }
@@ -143,7 +150,8 @@ Json check_json(const SurfaceReport& report, const SurfaceFile& file, const Chec
 
 Result<ExitCode> run_check(const CheckCommand& command) {
     Console console(command.common);
-    if (Result<void> paths = check_output_paths({command.surface, command.grid.file}, {command.common.json}); !paths) return paths.error();
+    if (Result<void> paths = check_output_paths({command.surface, command.grid.file}, {command.common.json}); !paths)
+        return paths.error();
     const Result<SurfaceFile> file = read_surface(command.surface, command.format, console.progress());
     if (!file) return file.error();
 
@@ -153,9 +161,12 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     std::optional<Origin> origin;
     if (!command.grid.file.empty()) {
         if (file->surface.edge_ends.empty()) {
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends writes it "
-                                     "into .vtp and .vtk", command.surface)};
+            return Error{
+                ErrorCode::invalid_argument,
+                fmt::format(
+                    "{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends writes it "
+                    "into .vtp and .vtk",
+                    command.surface)};
         }
         Result<Origin> read = read_origin(command, console);
         if (!read) return read.error();
@@ -170,7 +181,8 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     if (Result<void> printed = console.print(text); !printed) return printed.error();
     Json json = check_json(*report, *file, command);
     json["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(json, command.common.json, console.progress()); !written) return written.error();
+    if (Result<void> written = write_json(json, command.common.json, console.progress()); !written)
+        return written.error();
     return report->sound && (report->clean || !command.strict) ? ExitCode::done : ExitCode::check_says_no;
 }
 

@@ -53,7 +53,9 @@ Result<void> ExtractRun::open() {
     const Stopwatch reading;
     const OutputNames names(command_.out);
     const bool fixed_name = !names.by_value() && !names.by_time();
-    if (Result<void> paths = check_output_paths({command_.grid.file}, {fixed_name ? command_.out : "", command_.common.json}); !paths) {
+    if (Result<void> paths =
+            check_output_paths({command_.grid.file}, {fixed_name ? command_.out : "", command_.common.json});
+        !paths) {
         return paths;
     }
     console_.detail("looking at " + command_.grid.file);
@@ -82,7 +84,8 @@ Result<void> ExtractRun::load(std::size_t step) {
     const Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
     const auto prefer = command_.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    const Result<PointField> field = find_field(*grid, plan_.field.name, {.prefer = prefer, .threads = command_.common.threads});
+    const Result<PointField> field =
+        find_field(*grid, plan_.field.name, {.prefer = prefer, .threads = command_.common.threads});
     if (!field) return field.error();
     console_.note(field->note);
     Result<StepFields> fields = carried_fields(plan_, *grid);
@@ -94,7 +97,8 @@ Result<void> ExtractRun::load(std::size_t step) {
     console_.detail("packing");
     const Result<PackedSeries::Work> work = series_->load(*grid, *field, console_.progress());
     if (!work) return work.error();
-    if (*work != PackedSeries::Work::packed) console_.detail("the cells are those of the step before: not packed again");
+    if (*work != PackedSeries::Work::packed)
+        console_.detail("the cells are those of the step before: not packed again");
     numbers_.pack_seconds += packing.seconds();
     numbers_.cells = grid->cells.count();
     numbers_.pack = series_->packed().report();
@@ -112,7 +116,8 @@ Result<void> ExtractRun::choose_values(const PointField& field) {
     for (const std::size_t step : plan_.steps) {
         for (const double isovalue : isovalues_) {
             const std::string name = plan_.names.name(isovalue, time_of(source_->info(), step));
-            if (Result<void> path = check_output_paths({command_.grid.file, command_.common.json}, {name}); !path) return path;
+            if (Result<void> path = check_output_paths({command_.grid.file, command_.common.json}, {name}); !path)
+                return path;
             if (!plan_.names.by_value()) break; // all values go into the same file
         }
     }
@@ -123,28 +128,34 @@ void ExtractRun::say_what_packing_found(const Grid& grid) {
     const PackReport& pack = numbers_.pack;
     if (pack.cells_left_out > 0) console_.note(cells_left_out_note(grid));
     if (pack.coarse_clusters > 0) {
-        console_.note(fmt::format("in {} of {} clusters rounding to float32 moves points by over a thousandth of the shortest edge; "
-                                  "--precision double keeps them", grouped(pack.coarse_clusters), grouped(pack.clusters)));
+        console_.note(fmt::format(
+            "in {} of {} clusters rounding to float32 moves points by over a thousandth of the shortest edge; "
+            "--precision double keeps them",
+            grouped(pack.coarse_clusters), grouped(pack.clusters)));
     }
     if (numbers_.field.flushed > 0) {
-        console_.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0", grouped(numbers_.field.flushed),
-                                  numbers_.field.name));
+        console_.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0",
+                                  grouped(numbers_.field.flushed), numbers_.field.name));
     }
 }
 
 void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
     const FieldReport& field = numbers_.field;
     if (!(field.lower <= field.upper)) {
-        console_.note(fmt::format("isovalue {} gives no surface: field '{}' has no finite value", shortest(surface.isovalue), field.name));
+        console_.note(fmt::format("isovalue {} gives no surface: field '{}' has no finite value",
+                                  shortest(surface.isovalue), field.name));
     } else if (surface.triangles == 0) {
         const bool outside = surface.isovalue < field.lower || surface.isovalue > field.upper;
-        console_.note(fmt::format("isovalue {} {}: the surface is empty; the range of '{}' is {} to {}", shortest(surface.isovalue),
-                                  outside ? "is outside the range" : "has nothing below it or is cut by no tet", field.name,
-                                  shortest(field.lower), shortest(field.upper)));
+        console_.note(fmt::format("isovalue {} {}: the surface is empty; the range of '{}' is {} to {}",
+                                  shortest(surface.isovalue),
+                                  outside ? "is outside the range" : "has nothing below it or is cut by no tet",
+                                  field.name, shortest(field.lower), shortest(field.upper)));
     }
     if (surface.report.near_tie) {
-        console_.note(fmt::format("no point has the value {}, but points have the nearest one that the type of '{}' can hold; --snap "
-                                  "takes that", shortest(surface.isovalue), field.name));
+        console_.note(fmt::format(
+            "no point has the value {}, but points have the nearest one that the type of '{}' can hold; --snap "
+            "takes that",
+            shortest(surface.isovalue), field.name));
     }
 }
 
@@ -219,7 +230,8 @@ Result<ExitCode> run_extract(const ExtractCommand& command) {
     if (Result<void> printed = console.print(extract_table(run.numbers())); !printed) return printed.error();
     Json report = extract_json(run.numbers());
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+        return written.error();
     return ExitCode::done;
 }
 

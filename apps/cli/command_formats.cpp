@@ -33,8 +33,8 @@ Result<ExitCode> run_formats(const FormatsCommand& command) {
     table.row({"name", "grid", "surface", "endings", "what it is"});
     Json list = Json::array();
     for (const Format& format : formats()) {
-        table.row({format.name, access(format.reads_grid, format.writes_grid), access(format.reads_surface, format.writes_surface),
-                   joined(format.extensions), format.title});
+        table.row({format.name, access(format.reads_grid, format.writes_grid),
+                   access(format.reads_surface, format.writes_surface), joined(format.extensions), format.title});
         list.push_back({{"name", format.name},
                         {"title", format.title},
                         {"extensions", format.extensions},
@@ -47,7 +47,8 @@ Result<ExitCode> run_formats(const FormatsCommand& command) {
     if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
     Json report = json_report("formats");
     report["formats"] = std::move(list);
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+        return written.error();
     return ExitCode::done;
 }
 

@@ -38,15 +38,21 @@ std::vector<DescribedField> describe_fields(const Grid& grid) {
     return described;
 }
 
-std::string range_text(const ComponentStatistics& component) {
+/// The shortest decimal that reads back in the field's own type.
+std::string value_text(double value, ScalarType type) {
+    return type == ScalarType::float32 ? fmt::format("{}", static_cast<float>(value)) : shortest(value);
+}
+
+std::string range_text(const ComponentStatistics& component, ScalarType type) {
     if (component.lower > component.upper) return "no finite value";
-    return fmt::format("{} to {}", shortest(component.lower), shortest(component.upper));
+    return fmt::format("{} to {}", value_text(component.lower, type), value_text(component.upper, type));
 }
 
 std::string holes_text(const ComponentStatistics& component) {
     std::string text;
     if (component.not_a_number > 0) text = fmt::format("no data {}", grouped(component.not_a_number));
-    if (component.infinite > 0) text += fmt::format("{}infinite {}", text.empty() ? "" : ", ", grouped(component.infinite));
+    if (component.infinite > 0)
+        text += fmt::format("{}infinite {}", text.empty() ? "" : ", ", grouped(component.infinite));
     return text;
 }
 
@@ -56,7 +62,8 @@ std::string grid_table(const Findings& found, const std::string& path) {
     table.row({"file", fmt::format("{} ({})", path, found.file.format)});
     table.row({"points", fmt::format("{} ({})", grouped(report.points), name_of(found.grid.points.type()))});
     table.row({"cells", grouped(report.cells)});
-    for (const auto& [type, count] : report.cells_by_type) table.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
+    for (const auto& [type, count] : report.cells_by_type)
+        table.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
     table.row({"tets", grouped(report.tets)});
     for (const auto& [count, what] : {std::pair{report.cells_left_out, "cells left out: their type is not contoured"},
                                       {report.collapsed_tets, "collapsed tets, dropped"},
@@ -70,12 +77,14 @@ std::string grid_table(const Findings& found, const std::string& path) {
     }
     table.row({"boundary faces", grouped(report.boundary_faces)});
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        table.row({axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], shortest(report.lower[axis]), shortest(report.upper[axis]))});
+        table.row({axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], shortest(report.lower[axis]),
+                                                          shortest(report.upper[axis]))});
     }
     const std::vector<double>& times = found.file.times;
     if (!times.empty()) {
-        table.row({"time steps", fmt::format("{}, times {} to {}; this is step {}, time {}", times.size(), shortest(times.front()),
-                                             shortest(times.back()), found.step, shortest(times[found.step]))});
+        table.row({"time steps",
+                   fmt::format("{}, times {} to {}; this is step {}, time {}", times.size(), shortest(times.front()),
+                               shortest(times.back()), found.step, shortest(times[found.step]))});
     }
     return table.text();
 }
@@ -87,11 +96,13 @@ std::string field_table(const std::vector<DescribedField>& fields) {
         const std::size_t count = described.components.size();
         const Array& values = described.field.values;
         const std::string type = std::string(name_of(values.type())) + (count > 1 ? fmt::format(" x {}", count) : "");
-        table.row({"field", described.field.name, described.association, type, count == 1 ? range_text(described.components[0]) : "",
+        table.row({"field", described.field.name, described.association, type,
+                   count == 1 ? range_text(described.components[0], values.type()) : "",
                    count == 1 ? holes_text(described.components[0]) : ""});
         for (std::size_t c = 0; count > 1 && c < count; ++c) {
             const std::string component = count <= 3 ? std::string(1, "xyz"[c]) : std::to_string(c);
-            table.row({"", "  :" + component, "", "", range_text(described.components[c]), holes_text(described.components[c])});
+            table.row({"", "  :" + component, "", "", range_text(described.components[c], values.type()),
+                       holes_text(described.components[c])});
         }
     }
     return table.text();
@@ -163,11 +174,13 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed)};
     const std::vector<DescribedField> fields = describe_fields(*grid);
 
-    if (Result<void> printed = console.print(grid_table(found, path) + field_table(fields)); !printed) return printed.error();
+    if (Result<void> printed = console.print(grid_table(found, path) + field_table(fields)); !printed)
+        return printed.error();
     Json report = json_of(found, path);
     report["fields"] = json_of(fields);
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+        return written.error();
     return ExitCode::done;
 }
 

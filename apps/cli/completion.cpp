@@ -24,13 +24,14 @@ std::string command_case(const CommandText& command) {
         if (option.positional || option.value.empty()) continue;
         std::string pattern;
         for (const std::string& flag : option.flags) pattern += (pattern.empty() ? "" : "|") + flag;
-        const std::string reply = option.is_file           ? "_isotet_reply -f; "
-                                  : option.choices.empty() ? ""
-                                                           : fmt::format("_isotet_reply -W \"{}\"; ", joined(option.choices));
+        const std::string reply = option.is_file ? "_isotet_reply -f; "
+                                  : option.choices.empty()
+                                      ? ""
+                                      : fmt::format("_isotet_reply -W \"{}\"; ", joined(option.choices));
         values += fmt::format("        {}) {}return ;;\n", pattern, reply);
     }
-    return fmt::format("    {})\n        case \"$previous\" in\n{}        esac\n        flags=\"{}\" ;;\n", command.word, values,
-                       joined(flags));
+    return fmt::format("    {})\n        case \"$previous\" in\n{}        esac\n        flags=\"{}\" ;;\n",
+                       command.word, values, joined(flags));
 }
 
 } // namespace
@@ -45,15 +46,17 @@ std::string bash_completion(const std::vector<CommandText>& commands) {
         program_flags.insert(program_flags.end(), option.flags.begin(), option.flags.end());
     }
     // mapfile keeps names with spaces whole.
-    std::string text = "# bash completion for isotet\n"
-                       "_isotet_reply() {\n"
-                       "    mapfile -t COMPREPLY < <(compgen \"$@\" -- \"${COMP_WORDS[COMP_CWORD]}\")\n"
-                       "}\n"
-                       "_isotet() {\n"
-                       "    local word=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD-1]}\" flags=\"\"\n"
-                       "    COMPREPLY=()\n"
-                       "    if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
-    text += fmt::format("        _isotet_reply -f -W \"{} {}\"\n        return\n    fi\n", joined(words), joined(program_flags));
+    std::string text =
+        "# bash completion for isotet\n"
+        "_isotet_reply() {\n"
+        "    mapfile -t COMPREPLY < <(compgen \"$@\" -- \"${COMP_WORDS[COMP_CWORD]}\")\n"
+        "}\n"
+        "_isotet() {\n"
+        "    local word=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD-1]}\" flags=\"\"\n"
+        "    COMPREPLY=()\n"
+        "    if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
+    text += fmt::format("        _isotet_reply -f -W \"{} {}\"\n        return\n    fi\n", joined(words),
+                        joined(program_flags));
     text += "    case \"${COMP_WORDS[1]}\" in\n";
     for (const CommandText& command : commands) {
         if (!command.word.empty()) text += command_case(command);

@@ -18,7 +18,8 @@ class Console {
 public:
     explicit Console(const CommonOptions& options);
 
-    /// A sentence for the user, on standard error and in the JSON; said once however often it is noted. Not with --quiet.
+    /// A sentence for the user, on standard error and in the JSON; said once however often it is noted. Not with
+    /// --quiet.
     void note(const std::string& sentence);
     void notes(const std::vector<std::string>& sentences);
 

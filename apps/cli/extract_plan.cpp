@@ -25,10 +25,12 @@ Result<Holds> holds(const ExtractCommand& command) {
     const Result<Format> format = format_for_writing(command.out, Writes::surface);
     if (!format) return format.error();
     const bool vtk = format->name == "vtp" || format->name == "vtk";
-    for (const auto& [asked, option] : {std::pair{command.edge_ends, "--edge-ends"}, {command.source_cells, "--source-cells"}}) {
+    for (const auto& [asked, option] :
+         {std::pair{command.edge_ends, "--edge-ends"}, {command.source_cells, "--source-cells"}}) {
         if (asked && !vtk) {
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name)};
+            return Error{
+                ErrorCode::invalid_argument,
+                fmt::format("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name)};
         }
     }
     return Holds{format->name != "stl" && format->name != "obj", vtk};
@@ -37,9 +39,10 @@ Result<Holds> holds(const ExtractCommand& command) {
 Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan, const FileInfo& info) {
     if (plan.names.none()) return {};
     if (plan.steps.size() > 1 && !plan.names.by_time()) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("--all-steps has {} time steps, but OUT, '{}', has no {{time}}: there is one file a step",
-                                 plan.steps.size(), command.out)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("--all-steps has {} time steps, but OUT, '{}', has no {{time}}: there is one file a step",
+                        plan.steps.size(), command.out)};
     }
     if (!plan.names.by_time()) return {};
     std::set<double> times;
@@ -50,16 +53,18 @@ Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan,
                          fmt::format("OUT, '{}', has {{time}}, but the grid knows no time", command.out)};
         }
         if (!times.insert(*time).second) {
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("several time steps have the time {}, but each needs a file of its own: choose by --step",
-                                     shortest(*time))};
+            return Error{
+                ErrorCode::invalid_argument,
+                fmt::format("several time steps have the time {}, but each needs a file of its own: choose by --step",
+                            shortest(*time))};
         }
     }
     return {};
 }
 
 /// --with, or all point fields that the format can hold; nothing means all.
-Result<std::optional<CarriedFields>> plan_carried(const ExtractCommand& command, const GridSource& source, bool format_holds_fields) {
+Result<std::optional<CarriedFields>> plan_carried(const ExtractCommand& command, const GridSource& source,
+                                                  bool format_holds_fields) {
     if (!command.with && format_holds_fields) return std::optional<CarriedFields>{};
     Result<CarriedFields> carried = choose_carried(source, command.with.value_or(std::vector<std::string>{}));
     if (!carried) return carried.error();
@@ -127,14 +132,16 @@ std::vector<double> levels_of(double lower, double upper, std::uint64_t count) {
 
 } // namespace
 
-Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field, const FieldReport& packed,
-                                             Console& console) {
+Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field,
+                                             const FieldReport& packed, Console& console) {
     std::vector<double> isovalues = command.isovalues;
     if (isovalues.empty()) {
         if (!(packed.lower <= packed.upper)) {
-            return Error{ErrorCode::invalid_data,
-                         fmt::format("field '{}' has no finite value at the points of the tets: without an isovalue (-i) there "
-                                     "is nothing to choose one from", packed.name)};
+            return Error{
+                ErrorCode::invalid_data,
+                fmt::format("field '{}' has no finite value at the points of the tets: without an isovalue (-i) there "
+                            "is nothing to choose one from",
+                            packed.name)};
         }
         isovalues = levels_of(packed.lower, packed.upper, std::max<std::uint64_t>(command.levels, 1));
         if (command.levels == 0) {
@@ -148,7 +155,9 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
         if (command.snap) value = snap(field.values, value);
         if (value == 0) value = 0; // -0 equals +0, and is called 0
         if (seen.insert(value).second) distinct.push_back(value);
-        else console.note(fmt::format("the isovalue {} was given more than once: it is extracted once", shortest(value)));
+        else
+            console.note(
+                fmt::format("the isovalue {} was given more than once: it is extracted once", shortest(value)));
     }
     return distinct;
 }

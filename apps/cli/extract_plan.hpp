@@ -34,8 +34,8 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
 
 /// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
 /// Errors   invalid_data: levels of a field without a finite value
-Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field, const FieldReport& packed,
-                                             Console& console);
+Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field,
+                                             const FieldReport& packed, Console& console);
 
 /// The fields of the plan, taken from the grid of one step.
 struct StepFields {

@@ -21,7 +21,7 @@ std::uint64_t ExtractNumbers::transient_peak() const {
 namespace {
 
 std::uint64_t process_peak_bytes() {
-    struct rusage usage {};
+    struct rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
@@ -72,7 +72,8 @@ std::string facts_table(const ExtractNumbers& numbers) {
                                      numbers.precision == Precision::single ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
-    table.row({"time", fmt::format("read {}, pack {}", seconds_text(numbers.read_seconds), seconds_text(numbers.pack_seconds))});
+    table.row({"time", fmt::format("read {}, pack {}", seconds_text(numbers.read_seconds),
+                                   seconds_text(numbers.pack_seconds))});
     return table.text();
 }
 
@@ -85,17 +86,20 @@ std::string ties_text(const ExtractReport& report) {
 } // namespace
 
 std::string extract_table(const ExtractNumbers& numbers) {
-    const auto any = [&](const auto& holds) { return std::any_of(numbers.surfaces.begin(), numbers.surfaces.end(), holds); };
+    const auto any = [&](const auto& holds) {
+        return std::any_of(numbers.surfaces.begin(), numbers.surfaces.end(), holds);
+    };
     const bool times = any([](const SurfaceNumbers& surface) { return surface.time.has_value(); });
     const bool files = any([](const SurfaceNumbers& surface) { return !surface.file.empty(); });
     using enum Table::Align;
     Table table({right, right, right, right, right, right, right, right, left});
-    table.row({"isovalue", times ? "time" : "", "tied points", "vertices", "triangles", "area", "extract", files ? "write" : "",
-               files ? "file" : ""});
+    table.row({"isovalue", times ? "time" : "", "tied points", "vertices", "triangles", "area", "extract",
+               files ? "write" : "", files ? "file" : ""});
     for (const SurfaceNumbers& surface : numbers.surfaces) {
         table.row({shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "", ties_text(surface.report),
                    grouped(surface.vertices), grouped(surface.triangles), rounded(surface.area),
-                   seconds_text(surface.extract_seconds), files ? seconds_text(surface.write_seconds) : "", surface.file});
+                   seconds_text(surface.extract_seconds), files ? seconds_text(surface.write_seconds) : "",
+                   surface.file});
     }
     return facts_table(numbers) + "\n" + table.text();
 }

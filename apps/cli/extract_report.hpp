@@ -31,8 +31,8 @@ struct SurfaceNumbers {
 struct ExtractNumbers {
     std::string grid, format;
     std::size_t cells = 0;
-    PackReport pack;     ///< of the last packing
-    FieldReport field;   ///< of the last time step
+    PackReport pack;   ///< of the last packing
+    FieldReport field; ///< of the last time step
     bool averaged = false;
     Precision precision = Precision::single;
     EngineChoice engine = EngineChoice::automatic;

@@ -26,12 +26,13 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
 
 /// The fields to carry onto a surface.
 struct CarriedFields {
-    std::vector<std::string> point; ///< whole point fields
-    std::vector<std::string> cell;  ///< whole cell fields
+    std::vector<std::string> point;     ///< whole point fields
+    std::vector<std::string> cell;      ///< whole cell fields
     std::vector<FoundField> components; ///< components of point fields
 };
 
-/// What --with names; each a point field, else a cell field, else a component of a point field. Empty names are no field.
+/// What --with names; each a point field, else a cell field, else a component of a point field. Empty names are no
+/// field.
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names);
 
 /// The fields of one read: without repetition.

@@ -42,7 +42,8 @@ std::vector<ComponentStatistics> statistics(const Array& values) {
         core::parallel_ranges(values.tuples(), grain, [&](std::size_t begin, std::size_t end) {
             std::vector<ComponentStatistics> parts(components, nothing);
             for (std::size_t tuple = begin; tuple < end; ++tuple) {
-                for (std::size_t c = 0; c < components; ++c) add(parts[c], static_cast<double>(scalars[tuple * components + c]));
+                for (std::size_t c = 0; c < components; ++c)
+                    add(parts[c], static_cast<double>(scalars[tuple * components + c]));
             }
             const std::lock_guard lock(mutex);
             for (std::size_t c = 0; c < components; ++c) add(totals[c], parts[c]);

@@ -42,7 +42,8 @@ Fingerprint fingerprint(const Array& array) {
     std::vector<Fingerprint> prints(blocks);
     core::parallel_each(blocks, 1, [&](std::size_t i) {
         const std::size_t begin = i * block;
-        prints[i] = of_block(static_cast<const std::byte*>(array.data()) + begin, std::min(block, array.bytes() - begin));
+        prints[i] =
+            of_block(static_cast<const std::byte*>(array.data()) + begin, std::min(block, array.bytes() - begin));
     });
     Fingerprint print{array.tuples(), array.components()};
     stir(print, static_cast<std::uint64_t>(array.type()));

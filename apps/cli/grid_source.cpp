@@ -109,9 +109,11 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
     }
     constexpr double tolerance = 1e-12; // relative: a time that went through text and back
     if (times.empty()) {
-        return Error{ErrorCode::invalid_argument, fmt::format("time {} was asked for, but the file knows no time", shortest(time))};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("time {} was asked for, but the file knows no time", shortest(time))};
     }
-    if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest]))) return nearest;
+    if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
+        return nearest;
     return Error{ErrorCode::invalid_argument,
                  fmt::format("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
                              times.size(), list_of(times), shortest(times[nearest]))};
@@ -119,7 +121,8 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
 
 } // namespace
 
-Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps, Console& console) {
+Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
+                                              Console& console) {
     const std::size_t count = std::max<std::size_t>(info.times.size(), 1);
     if (steps == Steps::all) {
         std::vector<std::size_t> all(count);
@@ -134,12 +137,13 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
     if (options.step) {
         if (*options.step < count) return std::vector<std::size_t>{static_cast<std::size_t>(*options.step)};
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step, count,
-                                 count == 1 ? "" : "s")};
+                     fmt::format("step {} was asked for, but the file has {} time step{}, numbered from 0",
+                                 *options.step, count, count == 1 ? "" : "s")};
     }
     if (count > 1) {
-        console.note(fmt::format("the file has {} time steps: step 0, time {}, was taken (--time, --step and --all-steps choose)",
-                                 count, shortest(info.times[0])));
+        console.note(fmt::format(
+            "the file has {} time steps: step 0, time {}, was taken (--time, --step and --all-steps choose)", count,
+            shortest(info.times[0])));
     }
     return std::vector<std::size_t>{0};
 }

@@ -46,7 +46,8 @@ private:
 /// The steps that --time, --step or --all-steps ask for; the first, with a note, when none does and there are several.
 /// Errors   invalid_argument: a step or time that the file does not have, with those that it has
 enum class Steps { one, all };
-Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps, Console& console);
+Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
+                                              Console& console);
 
 /// The time of a step; nothing where the file knows no time.
 std::optional<double> time_of(const FileInfo& info, std::size_t step);

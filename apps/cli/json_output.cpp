@@ -29,7 +29,8 @@ Result<void> write_json(const Json& report, const std::string& where, const Prog
     const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     if (where == "-") {
         if (stdout_was_closed()) {
-            return Error{ErrorCode::machine, "--json - writes to standard output, which was closed when isotet started"};
+            return Error{ErrorCode::machine,
+                         "--json - writes to standard output, which was closed when isotet started"};
         }
         return write_to_stdout(text);
     }

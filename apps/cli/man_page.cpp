@@ -27,7 +27,8 @@ std::string roff(std::string_view text) {
 std::string details(const std::string& text) {
     std::string result;
     for (const Paragraph& paragraph : paragraphs(text)) {
-        result += paragraph.preformatted ? ".RS 4\n.nf\n" + roff(paragraph.text) + ".fi\n.RE\n" : ".PP\n" + roff(paragraph.text) + "\n";
+        result += paragraph.preformatted ? ".RS 4\n.nf\n" + roff(paragraph.text) + ".fi\n.RE\n"
+                                         : ".PP\n" + roff(paragraph.text) + "\n";
     }
     return result;
 }
@@ -52,7 +53,8 @@ std::string man_page(const std::vector<CommandText>& commands) {
     text += ".SH DESCRIPTION\n" + details(program.details) + ".SH OPTIONS\n" + options(program) + ".SH COMMANDS\n";
     for (const CommandText& command : commands) {
         if (command.word.empty()) continue;
-        text += ".SS " + roff(command.usage) + "\n" + roff(command.summary) + ".\n" + options(command) + details(command.details);
+        text += ".SS " + roff(command.usage) + "\n" + roff(command.summary) + ".\n" + options(command) +
+                details(command.details);
     }
     return text;
 }

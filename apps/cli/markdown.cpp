@@ -40,8 +40,9 @@ std::string details(const std::string& text) {
 } // namespace
 
 std::string markdown(const std::vector<CommandText>& commands) {
-    std::string text = "# Command line\n\nThis page is what `isotet docs markdown` prints; a test compares them. The keys of "
-                       "`--json` are in [json.md](json.md).\n";
+    std::string text =
+        "# Command line\n\nThis page is what `isotet docs markdown` prints; a test compares them. The keys of "
+        "`--json` are in [json.md](json.md).\n";
     for (const CommandText& command : commands) {
         text += fmt::format("\n## {}\n\n{}.\n\n```\n{}\n```\n\n", command.name, command.summary, command.usage);
         text += options(command) + details(command.details);

@@ -7,89 +7,100 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr const char* program_details =
-    "isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid "
-    "made in memory, make:kuhn:64:gyroid for example.\n"
-    "\n"
-    "Tables go to standard output, notes and errors to standard error. Ctrl-C stops within a second and leaves no half "
-    "written file; a second Ctrl-C ends the program at once.\n"
-    "\n"
-    "Exit status:\n"
-    "  0    done\n"
-    "  1    a check says no\n"
-    "  2    usage: an option or a name is wrong\n"
-    "  3    a file, or the data in it\n"
-    "  4    the machine: memory, disk, device, standard output\n"
-    "  5    a fault of isotet: please report it\n"
-    "  130  interrupted\n";
+constexpr const char* program_details = R"(
+isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid
+made in memory, make:kuhn:64:gyroid for example.
 
-constexpr const char* info_details =
-    "A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is "
-    "not that of most; boundary faces are those that the tets do not use equally often in both directions.\n";
+Tables go to standard output, notes and errors to standard error. Ctrl-C stops within a second and leaves no half
+written file; a second Ctrl-C ends the program at once.
 
-constexpr const char* extract_details =
-    "FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, "
-    "mag, or a number from 0. x, y and z alone are the coordinates, unless fields are called so. A cell field is averaged "
-    "to the points, weighted by volume.\n"
-    "\n"
-    "OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field "
-    "isovalue; with {value} or {time} in OUT there is one file each, named by the shortest decimal that reads back. "
-    "Files that were complete when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the "
-    "middle of the range is taken.\n"
-    "\n"
-    "A point whose value equals the isovalue counts as above it. Triangles face the side of higher values.\n"
-    "\n"
-    "Examples:\n"
-    "  isotet extract grid.vtu surface.vtp -f pressure -i 0.5\n"
-    "  isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400\n"
-    "  isotet extract run.pvd 'front-{time}.vtp' -f c -i 0.5 --all-steps\n"
-    "  isotet extract make:kuhn:64:gyroid -i 0\n";
+Exit status:
+  0    done
+  1    a check says no
+  2    usage: an option or a name is wrong
+  3    a file, or the data in it
+  4    the machine: memory, disk, device, standard output
+  5    a fault of isotet: please report it
+  130  interrupted
+)";
 
-constexpr const char* check_details =
-    "Says no (exit status 1) when the surface has: an edge that is used unequally often in the two directions where it "
-    "must not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.\n"
-    "\n"
-    "Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid "
-    "points all lie in one boundary face of the grid's valid tets; with neither they are only counted. --grid needs the "
-    "point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle "
-    "on a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points.\n"
-    "\n"
-    "With --strict it also says no to: triangles of zero area, edges with more than two triangles, double sheets (two "
-    "triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), "
-    "coincident vertices.\n"
-    "\n"
-    "STL has no vertex numbers: its triangles are welded by exact coordinates first. What that collapses is counted, not "
-    "blamed.\n";
+constexpr const char* info_details = R"(
+A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is not
+that of most; boundary faces are those that the tets do not use equally often in both directions.
+)";
 
-constexpr const char* make_details =
-    "Shapes, on the cube from -1 to 1: kuhn (six tets a cube), perturbed (inner points moved), shuffled (perturbed, points "
-    "and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell "
-    "types). The same bytes for any number of threads.\n"
-    "\n"
-    "Fields: sphere, torus, plane, gyroid, wavelet, integer (many ties).\n"
-    "\n"
-    "Examples:\n"
-    "  isotet make kuhn --side 64 -o kuhn.vtu\n"
-    "  isotet make mixed --side 20 --fields sphere,integer -o mixed.vtk\n";
+constexpr const char* extract_details = R"(
+FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, mag,
+or a number from 0. x, y and z alone are the coordinates, unless fields are called so. A cell field is averaged to the
+points, weighted by volume.
 
-constexpr const char* formats_details = "--format takes the names in the first column.\n";
+OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
+isovalue; with {value} or {time} in OUT there is one file each, named by the shortest decimal that reads back. Files
+that were complete when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of
+the range is taken.
+
+A point whose value equals the isovalue counts as above it. Triangles face the side of higher values.
+
+Examples:
+  isotet extract grid.vtu surface.vtp -f pressure -i 0.5
+  isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
+  isotet extract run.pvd 'front-{time}.vtp' -f c -i 0.5 --all-steps
+  isotet extract make:kuhn:64:gyroid -i 0
+)";
+
+constexpr const char* check_details = R"(
+Says no (exit status 1) when the surface has: an edge that is used unequally often in the two directions where it must
+not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.
+
+Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
+points all lie in one boundary face of the grid's valid tets; with neither they are only counted. --grid needs the
+point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
+a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points.
+
+With --strict it also says no to: triangles of zero area, edges with more than two triangles, double sheets (two
+triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
+vertices.
+
+STL has no vertex numbers: its triangles are welded by exact coordinates first. What that collapses is counted, not
+blamed.
+)";
+
+constexpr const char* make_details = R"(
+Shapes, on the cube from -1 to 1: kuhn (six tets a cube), perturbed (inner points moved), shuffled (perturbed, points
+and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell types).
+The same bytes for any number of threads.
+
+Fields: sphere, torus, plane, gyroid, wavelet, integer (many ties).
+
+Examples:
+  isotet make kuhn --side 64 -o kuhn.vtu
+  isotet make mixed --side 20 --fields sphere,integer -o mixed.vtk
+)";
+
+constexpr const char* formats_details = R"(--format takes the names in the first column.
+)";
 
 void add_common(CLI::App& app, CommonOptions& common) {
-    add_text(app, "--json", common.json, "JSON_FILE", "Write the numbers as JSON too; - is standard output, which then has no table");
-    add_count(app, "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
-              "Threads; 0, and without it: all");
+    add_text(app, "--json", common.json, "FILE",
+             "Write the numbers as JSON too; - is standard output, which then has no table");
+    add_count(
+        app, "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
+        "Threads; 0, and without it: all");
     CLI::Option* quiet = app.add_flag("-q,--quiet", common.quiet, "No table, no notes, no progress: only errors");
     app.add_flag("-v,--verbose", common.verbose, "Say more")->excludes(quiet);
 }
 
 void add_time(CLI::App& app, GridOptions& grid) {
-    CLI::Option* time = add_number(app, "--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
-    add_count(app, "--step", {}, [&](std::uint64_t n) { grid.step = n; }, "N", "The time step with this number, from 0")
+    CLI::Option* time =
+        add_number(app, "--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
+    add_count(
+        app, "--step", {}, [&](std::uint64_t n) { grid.step = n; }, "N", "The time step with this number, from 0")
         ->excludes(time);
 }
 
 void add_reading(CLI::App& app, GridOptions& grid, const std::string& format_option) {
-    add_text(app, format_option, grid.format, "FORMAT", "Format of the grid; without it content decides, then the name");
+    add_text(app, format_option, grid.format, "FORMAT",
+             "Format of the grid; without it content decides, then the name");
     add_text(app, "--displace", grid.displace, "FIELD", "Move the points by this vector field");
     add_number(
         app, "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
@@ -100,7 +111,7 @@ void add_reading(CLI::App& app, GridOptions& grid, const std::string& format_opt
 
 CLI::App& add_info(CLI::App& program, InfoCommand& info) {
     CLI::App& app = *program.add_subcommand("info", "Tell what a grid file holds");
-    add_text(app, "file", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
+    add_text(app, "FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
     add_time(app, info.grid);
     add_reading(app, info.grid, "--format");
     add_common(app, info.common);
@@ -125,22 +136,26 @@ void add_surface_arrays(CLI::App& app, ExtractCommand& extract) {
                         "Normals: of the field's gradient, a vertex; of the triangles, a face");
     app.add_option_function<std::vector<std::string>>(
            "--with", [&](const std::vector<std::string>& names) { extract.with = names; },
-           "Carry this point or cell field onto the surface; may be repeated; an empty name carries none. Without it: all "
+           "Carry this point or cell field onto the surface; may be repeated; an empty name carries none. Without it: "
            "point fields that the format can hold")
         ->type_name("FIELD")
         ->allow_extra_args(false);
-    app.add_flag("--edge-ends", extract.edge_ends,
-                 "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
-    app.add_flag("--source-cells", extract.source_cells, "Write the grid cell of each triangle (source_cell); .vtp, .vtk");
+    app.add_flag(
+        "--edge-ends", extract.edge_ends,
+        "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
+    app.add_flag("--source-cells", extract.source_cells,
+                 "Write the grid cell of each triangle (source_cell); .vtp, .vtk");
 }
 
 CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
     CLI::App& app = *program.add_subcommand("extract", "Extract isosurfaces and write them into files");
-    add_text(app, "file", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
-    CLI::Option* out = add_text(app, "out", extract.out, "OUT_FILE", "The surface, as -o");
+    add_text(app, "FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
+    CLI::Option* out = add_text(app, "OUT", extract.out, "OUT_FILE", "The surface, as -o");
     add_text(app, "-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format")->excludes(out);
-    add_text(app, "-f,--field", extract.field.name, "FIELD", "The field to contour; may be left out where there is only one");
-    app.add_flag("--cell-field", extract.field.cell_field, "Of a name that is both a point and a cell field, the cell field");
+    add_text(app, "-f,--field", extract.field.name, "FIELD",
+             "The field to contour; may be left out where there is only one");
+    app.add_flag("--cell-field", extract.field.cell_field,
+                 "Of a name that is both a point and a cell field, the cell field");
     add_isovalues(app, extract);
     add_time(app, extract.grid);
     app.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {time}")
@@ -150,7 +165,8 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
     app.add_flag("--keep-degenerate", extract.keep_degenerate,
                  "One vertex for every crossed edge and one or two triangles for every cut tet, ties or not");
     add_choice<Precision>(app, "--precision", extract.precision,
-                          {{"float", Precision::single}, {"double", Precision::double_}}, "Precision of the packed grid");
+                          {{"float", Precision::single}, {"double", Precision::double_}},
+                          "Precision of the packed grid");
     add_choice<EngineChoice>(
         app, "--engine", extract.engine,
         {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"reference", EngineChoice::reference}},
@@ -163,13 +179,16 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
 
 CLI::App& add_check(CLI::App& program, CheckCommand& check) {
     CLI::App& app = *program.add_subcommand("check", "Measure a surface and look for what should not be there");
-    add_text(app, "surface", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")->required();
+    add_text(app, "SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
+        ->required();
     app.add_flag("--closed", check.closed, "Blame every edge that is used unequally often in the two directions");
     CLI::Option* grid = add_text(app, "--grid", check.grid.file, "FILE",
                                  "Blame such edges unless they lie in one boundary face of this grid");
-    add_text(app, "-f,--field", check.field.name, "FIELD", "The field that was contoured: tets without a value do not count")
+    add_text(app, "-f,--field", check.field.name, "FIELD",
+             "The field that was contoured: tets without a value do not count")
         ->needs(grid);
-    app.add_flag("--cell-field", check.field.cell_field, "Of a name that is both a point and a cell field, the cell field")
+    app.add_flag("--cell-field", check.field.cell_field,
+                 "Of a name that is both a point and a cell field, the cell field")
         ->needs(grid);
     add_time(app, check.grid);
     app.add_flag("--strict", check.strict, "Say no to more: see below");
@@ -185,13 +204,15 @@ CLI::App& add_check(CLI::App& program, CheckCommand& check) {
 
 CLI::App& add_make(CLI::App& program, MakeCommand& make) {
     CLI::App& app = *program.add_subcommand("make", "Make a test grid with analytic fields");
-    add_text(app, "shape", make.grid.shape, "SHAPE", "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid or mixed")->required();
+    add_text(app, "SHAPE", make.grid.shape, "SHAPE", "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid or mixed")
+        ->required();
     add_count(app, "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge")->required();
     app.add_option("--fields", make.grid.fields, "Fields, separated by commas; without it sphere,gyroid")
         ->type_name("A[,B...]")
         ->delimiter(',')
         ->allow_extra_args(false);
-    add_count(app, "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; without it 1");
+    add_count(
+        app, "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; without it 1");
     add_text(app, "-o,--output", make.out, "OUT_FILE", "The grid: .vtu or .vtk")->required();
     add_common(app, make.common);
     app.footer(make_details);
@@ -207,7 +228,7 @@ CLI::App& add_formats(CLI::App& program, FormatsCommand& formats) {
 
 CLI::App& add_docs(CLI::App& program, DocsCommand& docs) {
     CLI::App& app = *program.add_subcommand("docs", "Print the man page, the bash completion or docs/command-line.md");
-    app.add_option("kind", docs.kind)->required()->type_name("man|completion|markdown");
+    app.add_option("KIND", docs.kind)->required()->type_name("man|completion|markdown");
     app.group(""); // for the build, not for users
     return app;
 }
@@ -219,9 +240,9 @@ std::unique_ptr<CLI::App> make_option_tree(CommandLine& line) {
     program->footer(program_details);
     program->add_flag("--version", line.version, "Print the version and the facts of the build");
     program->require_subcommand(0, 1);
-    for (CLI::App* command : {&add_info(*program, line.info), &add_extract(*program, line.extract),
-                              &add_check(*program, line.check), &add_make(*program, line.make),
-                              &add_formats(*program, line.formats), &add_docs(*program, line.docs)}) {
+    for (CLI::App* command :
+         {&add_info(*program, line.info), &add_extract(*program, line.extract), &add_check(*program, line.check),
+          &add_make(*program, line.make), &add_formats(*program, line.formats), &add_docs(*program, line.docs)}) {
         command->callback([&line, command] { line.command = command->get_name(); });
     }
     return program;

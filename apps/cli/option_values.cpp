@@ -14,38 +14,43 @@ namespace {
 
 double finite_number(const std::string& names, std::string_view text) {
     const std::optional<double> value = parse_number(text);
-    if (!value || !std::isfinite(*value)) {
-        throw CLI::ValidationError(names, fmt::format("got '{}', but it takes a finite number", text));
-    }
+    if (!value || !std::isfinite(*value)) throw wrong_value(names, text, "a finite number");
     return *value;
 }
 
 } // namespace
+
+CLI::ValidationError wrong_value(const std::string& names, std::string_view given, std::string_view rule) {
+    const std::string name = names.substr(names.rfind(',') + 1); // npos + 1 is 0
+    return CLI::ValidationError(fmt::format("{} got '{}', but it takes {}", name, given, rule));
+}
 
 CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& type,
                       const std::string& description) {
     return app.add_option(names, target, description)->type_name(type);
 }
 
-CLI::Option* add_number(CLI::App& app, const std::string& names, std::function<void(double)> set, const std::string& type,
-                        const std::string& description) {
+CLI::Option* add_number(CLI::App& app, const std::string& names, std::function<void(double)> set,
+                        const std::string& type, const std::string& description) {
     return app
         .add_option_function<std::string>(
-            names, [set = std::move(set), names](const std::string& text) { set(finite_number(names, text)); }, description)
+            names, [set = std::move(set), names](const std::string& text) { set(finite_number(names, text)); },
+            description)
         ->type_name(type);
 }
 
-CLI::Option* add_count(CLI::App& app, const std::string& names, CountLimits limits, std::function<void(std::uint64_t)> set,
-                       const std::string& type, const std::string& description) {
+CLI::Option* add_count(CLI::App& app, const std::string& names, CountLimits limits,
+                       std::function<void(std::uint64_t)> set, const std::string& type,
+                       const std::string& description) {
     return app
         .add_option_function<std::string>(
             names,
             [set = std::move(set), names, limits](const std::string& text) {
                 const std::optional<std::uint64_t> value = parse_count(text);
                 if (!value || *value < limits.lowest || *value > limits.highest) {
-                    const std::string upwards = limits.highest == UINT64_MAX ? "on" : fmt::format("to {}", limits.highest);
-                    throw CLI::ValidationError(names, fmt::format("got '{}', but it takes a whole number from {} {}", text,
-                                                                  limits.lowest, upwards));
+                    const std::string upwards =
+                        limits.highest == UINT64_MAX ? "on" : fmt::format("to {}", limits.highest);
+                    throw wrong_value(names, text, fmt::format("a whole number from {} {}", limits.lowest, upwards));
                 }
                 set(*value);
             },

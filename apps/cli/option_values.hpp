@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,21 +14,24 @@
 
 namespace isotet::cli {
 
+/// "--side got 'x', but it takes a whole number". `names` is the option's, the long one last.
+CLI::ValidationError wrong_value(const std::string& names, std::string_view given, std::string_view rule);
+
 /// An option with one value, kept as it is.
 CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& type,
                       const std::string& description);
 
 /// A finite number.
-CLI::Option* add_number(CLI::App& app, const std::string& names, std::function<void(double)> set, const std::string& type,
-                        const std::string& description);
+CLI::Option* add_number(CLI::App& app, const std::string& names, std::function<void(double)> set,
+                        const std::string& type, const std::string& description);
 
 /// A whole number from `lowest` to `highest`.
 struct CountLimits {
     std::uint64_t lowest = 0;
     std::uint64_t highest = UINT64_MAX;
 };
-CLI::Option* add_count(CLI::App& app, const std::string& names, CountLimits limits, std::function<void(std::uint64_t)> set,
-                       const std::string& type, const std::string& description);
+CLI::Option* add_count(CLI::App& app, const std::string& names, CountLimits limits,
+                       std::function<void(std::uint64_t)> set, const std::string& type, const std::string& description);
 
 /// Finite numbers separated by commas; the option may be repeated.
 CLI::Option* add_numbers(CLI::App& app, const std::string& names, std::vector<double>& target, const std::string& type,
@@ -48,7 +52,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& names, Value& target,
                     return;
                 }
             }
-            throw CLI::ValidationError(names, "got '" + given + "', but it takes " + words);
+            throw wrong_value(names, given, words);
         },
         description);
     return option->type_name(words);

@@ -16,7 +16,7 @@ struct OptionText {
     std::vector<std::string> choices; ///< "none", "gradient", "face"
     std::string description;
     bool positional = false, required = false, repeatable = false;
-    bool is_file = false;             ///< the value is a file's name
+    bool is_file = false; ///< the value is a file's name
 };
 
 struct CommandText {

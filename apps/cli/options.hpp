@@ -17,8 +17,8 @@ namespace isotet::cli {
 struct CommonOptions {
     bool quiet = false;
     bool verbose = false;
-    std::string json;  ///< a file, "-" for standard output, empty for none
-    int threads = 0;   ///< 0: all
+    std::string json; ///< a file, "-" for standard output, empty for none
+    int threads = 0;  ///< 0: all
 };
 
 /// Which grid, and how it is read.

@@ -12,11 +12,13 @@ namespace isotet::cli {
 
 Result<Format> format_for_writing(const std::string& path, Writes what) {
     std::string ending = std::filesystem::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
     std::string endings;
     for (const Format& format : formats()) {
         if (!(what == Writes::surface ? format.writes_surface : format.writes_grid)) continue;
-        if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end()) return format;
+        if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end())
+            return format;
         for (const std::string& other : format.extensions) endings += (endings.empty() ? "" : ", ") + other;
     }
     return Error{ErrorCode::invalid_argument,

@@ -14,8 +14,8 @@ namespace isotet::cli {
 enum class Writes { grid, surface };
 Result<Format> format_for_writing(const std::string& path, Writes what);
 
-/// Refuses an output that is one of the inputs (the same file, however it is spelled), two outputs that are one file, and
-/// an output that cannot be written at all. Empty names and "-" are passed over.
+/// Refuses an output that is one of the inputs (the same file, however it is spelled), two outputs that are one file,
+/// and an output that cannot be written at all. Empty names and "-" are passed over.
 Result<void> check_output_paths(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
 /// True when both names lead to the same file, or would once it is there.

@@ -3,7 +3,8 @@
 
 namespace isotet::cli {
 
-Result<PackedSeries::Work> PackedSeries::pack_again(const Grid& grid, const PointField& field, const Progress& progress) {
+Result<PackedSeries::Work> PackedSeries::pack_again(const Grid& grid, const PointField& field,
+                                                    const Progress& progress) {
     packed_ = PackedGrid(); // the old one goes before the new one comes
     Result<PackedGrid> packed = pack(grid, field, options_, progress);
     if (!packed) return packed.error();

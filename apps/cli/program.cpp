@@ -24,8 +24,9 @@ bool is_command(const CLI::App& program, const std::string& word) {
 
 /// True for a word that is more likely a mistyped command than a file: short, plain, and no file is called so.
 bool looks_like_command(const std::string& word) {
-    return !word.empty() && word.size() < 20 && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos &&
-           word.front() != '-' && !std::filesystem::exists(std::filesystem::path(word));
+    return !word.empty() && word.size() < 20 &&
+           word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos && word.front() != '-' &&
+           !std::filesystem::exists(std::filesystem::path(word));
 }
 
 /// `isotet FILE` is short for `isotet info FILE`.
@@ -35,8 +36,10 @@ Result<void> complete_bare_file(std::vector<std::string>& words, const CLI::App&
         if (words[1] == own) return {};
     }
     if (looks_like_command(words[1])) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("'{}' is neither a command nor a file; commands are info, extract, check, make and formats", words[1])};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("'{}' is neither a command nor a file; commands are info, extract, check, make and formats",
+                        words[1])};
     }
     words.insert(words.begin() + 1, "info");
     return {};

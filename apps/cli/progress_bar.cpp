@@ -25,7 +25,8 @@ void ProgressBar::show(std::string_view step, double fraction) {
     constexpr int cells = 30;
     const double done = fraction >= 0 ? std::min(fraction, 1.0) : 0.0; // NaN counts as nothing done
     const int full = static_cast<int>(done * cells);
-    write_to_stderr(fmt::format("\r\x1b[K{:<8} [{:#<{}}{:<{}}] {:3.0f} %", printable(step), "", full, "", cells - full, done * 100));
+    write_to_stderr(fmt::format("\r\x1b[K{:<8} [{:#<{}}{:<{}}] {:3.0f} %", printable(step), "", full, "", cells - full,
+                                done * 100));
     drawn_ = true;
 }
 

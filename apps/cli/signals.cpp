@@ -21,10 +21,10 @@ extern "C" void stop(int) {
 
 void install_signal_handlers() {
     for (const int number : stopping_signals) {
-        struct sigaction old {};
+        struct sigaction old{};
         sigaction(number, nullptr, &old);
         if (old.sa_handler == SIG_IGN) continue;
-        struct sigaction action {};
+        struct sigaction action{};
         action.sa_handler = stop;
         action.sa_flags = SA_RESTART;
         sigemptyset(&action.sa_mask);

@@ -45,8 +45,8 @@ bool stdout_was_closed() noexcept {
 
 Result<void> write_to_stdout(std::string_view text) {
     if (const int error = write_all(STDOUT_FILENO, text)) {
-        return Error{ErrorCode::machine, fmt::format("standard output cannot be written: {}",
-                                                     std::generic_category().message(error))};
+        return Error{ErrorCode::machine,
+                     fmt::format("standard output cannot be written: {}", std::generic_category().message(error))};
     }
     return {};
 }

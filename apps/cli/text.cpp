@@ -59,8 +59,10 @@ std::string printable(std::string_view text) {
     return rewritten(text, [](std::string& result, Character character, std::string_view bytes) {
         if (character.code == '\n') result += "\\n";
         else if (character.code == '\t') result += "\\t";
-        else if (character.code < 0x20 || character.code == 0x7F) result += fmt::format("\\x{:02x}", std::uint32_t{character.code});
-        else if (misleads_a_terminal(character.code)) result += fmt::format("\\u{{{:04x}}}", std::uint32_t{character.code});
+        else if (character.code < 0x20 || character.code == 0x7F)
+            result += fmt::format("\\x{:02x}", std::uint32_t{character.code});
+        else if (misleads_a_terminal(character.code))
+            result += fmt::format("\\u{{{:04x}}}", std::uint32_t{character.code});
         else result += bytes;
     });
 }

@@ -27,11 +27,13 @@ std::string version_text() {
     const std::string commit = ISOTET_COMMIT;
     table.row({"isotet", ISOTET_VERSION});
     table.row({"commit", commit.empty() ? "unknown" : commit});
-    table.row({"compiler", fmt::format("{}, {} build{}", compiler, ISOTET_BUILD_TYPE, *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
+    table.row({"compiler", fmt::format("{}, {} build{}", compiler, ISOTET_BUILD_TYPE,
+                                       *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
     table.row({"files through VTK", *ISOTET_VTK_VERSION ? "on, VTK " ISOTET_VTK_VERSION : "off (-DISOTET_IO=OFF)"});
-    table.row({"libraries", fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}", ISOTET_TBB_VERSION,
-                                        FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,
-                                        NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)});
+    table.row({"libraries",
+               fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}", ISOTET_TBB_VERSION,
+                           FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,
+                           NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)});
     return table.text();
 }
 
