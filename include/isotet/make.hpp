@@ -19,11 +19,11 @@ namespace isotet {
 /// `shape`    "kuhn": six tets a cube, side^3 cubes (Kuhn 1960); points and cubes along x first, then y, then z
 ///            "perturbed": kuhn with each inner point moved, in any direction, by up to a fifth of the spacing
 ///            "shuffled": perturbed with points, tets and the corners of each tet in random order
-///            "layer": kuhn with z graded geometrically so that the thinnest cells, at z = -1, have aspect ratio 1000 (from
-///            side 2 on)
+///            "layer": kuhn with z graded geometrically so that the thinnest cells, at z = -1, have aspect ratio 1000
+///            (from side 2 on)
 ///            "hex"; "wedge" (two a cube); "pyramid" (six a cube, with a centre point)
-///            "mixed": layers of hexahedra, pyramids and tets, wedges, pyramids and tets, over and over: all four types from
-///            side 3 on
+///            "mixed": layers of hexahedra, pyramids and tets, wedges, pyramids and tets, over and over: all four types
+///            from side 3 on
 /// `side`     cubes along an edge, 1 to 4096
 /// `fields`   names, each once; float32, computed in double:
 ///            "sphere"   sqrt(x^2 + y^2 + z^2)
@@ -34,10 +34,10 @@ namespace isotet {
 ///            "integer"  int32, 0 to 4, drawn for each point: many ties
 /// `seed`     of everything that is drawn: it changes perturbed and shuffled grids, and the field integer
 ///
-/// Guarantees   the same bytes for any thread count; points, cells, sphere, torus, plane and integer are the same on every
-///              machine, gyroid and wavelet as far as its sin, cos and exp are
-/// Errors       invalid_argument for an unknown shape or field (what there is, nearest first), a field asked for twice, or
-///              a side out of range; out_of_memory; cancelled
+/// Guarantees   the same bytes for any thread count; points, cells, sphere, torus, plane and integer are the same on
+///              every machine, gyroid and wavelet as far as its sin, cos and exp are
+/// Errors       invalid_argument for an unknown shape or field (what there is, nearest first), a field asked for twice,
+///              or a side out of range; out_of_memory; cancelled
 /// Cost         memory of the grid itself: 12 bytes a point, 4 a point and field, 4 a corner (8 above 2^31 points)
 struct MakeOptions {
     std::string shape = "kuhn";

@@ -52,7 +52,6 @@ public:
         if (options_.closed || !options_.grid) blame_without_grid();
         else if (auto blamed = blame_with_grid(); !blamed) return blamed.error();
         progress_("check", 0.7);
-        find_equal_corners();
         find_measures();
         progress_("check", 0.8);
         find_listed();
@@ -95,7 +94,8 @@ private:
             std::uint64_t component = 0;
             Share sum;
             const auto hand_over = [&] {
-                if (sum.euler != 0) std::atomic_ref(shares[component].euler).fetch_add(sum.euler, std::memory_order_relaxed);
+                if (sum.euler != 0)
+                    std::atomic_ref(shares[component].euler).fetch_add(sum.euler, std::memory_order_relaxed);
                 if (!sum.proper) std::atomic_ref(shares[component].proper).store(false, std::memory_order_relaxed);
                 sum = {};
             };
@@ -194,30 +194,25 @@ private:
         return {};
     }
 
-    void find_equal_corners() {
-        for (std::uint64_t triangle = 0; triangle < mesh_.triangles(); ++triangle) {
-            const Corners c = mesh_.corners(triangle);
-            if (has_equal_corners(c) && report_.equal_corner_triangles++ < most_)
-                find_triangle(triangle, fmt::format("triangle {} has the corners {}, {}, {}", triangle, c[0], c[1], c[2]));
-        }
-    }
-
     void find_measures() {
         const Measures measures = measure(mesh_, most_);
         report_.area = measures.area;
         report_.volume = measures.volume;
+        report_.equal_corner_triangles = measures.equal_corners;
         report_.zero_area_triangles = measures.zero_area;
-        first_few(measures.zero_area_list, [&](std::uint64_t triangle) {
+        const auto find_one = [&](std::uint64_t triangle, std::string_view what) {
             const Corners c = mesh_.corners(triangle);
-            find_triangle(triangle, fmt::format("triangle {} ({}, {}, {}) has no area", triangle, c[0], c[1], c[2]));
-        });
+            find_triangle(triangle, fmt::format("triangle {} ({}, {}, {}) has {}", triangle, c[0], c[1], c[2], what));
+        };
+        first_few(measures.equal_corners_list, [&](std::uint64_t t) { find_one(t, "equal corners"); });
+        first_few(measures.zero_area_list, [&](std::uint64_t t) { find_one(t, "no area"); });
     }
 
     void find_listed() {
         first_few(lists_.non_manifold_list, [&](const EdgeUse& edge) { find_edge(edge); });
         first_few(lists_.double_sheet_list, [&](const Repeat& pair) {
-            find_triangle(pair.triangle,
-                          fmt::format("triangles {} and {} lie on the same corners, back to back", pair.earlier, pair.triangle));
+            find_triangle(pair.triangle, fmt::format("triangles {} and {} lie on the same corners, back to back",
+                                                     pair.earlier, pair.triangle));
         });
         first_few(lists_.touching_list, [&](std::uint64_t vertex) {
             find(fmt::format("the triangles around vertex {} are not one fan", vertex), mesh_.place(vertex));
@@ -229,7 +224,8 @@ private:
         const std::vector<std::uint64_t> lowest = core::lowest_at_same_place(surface_.positions);
         for (std::uint64_t vertex = 0; vertex < lowest.size(); ++vertex)
             if (lowest[vertex] != vertex && report_.coincident_vertices++ < most_)
-                find(fmt::format("vertex {} is at the place of vertex {}", vertex, lowest[vertex]), mesh_.place(vertex));
+                find(fmt::format("vertex {} is at the place of vertex {}", vertex, lowest[vertex]),
+                     mesh_.place(vertex));
     }
 
     const Surface& surface_;
@@ -244,10 +240,11 @@ private:
 Result<void> check_edge_ends(const Array& ends, const Mesh& mesh) {
     const bool integral = !is_floating(ends.type()) && size_of(ends.type()) >= 4;
     if (mesh.vertices() == 0 || (integral && ends.components() == 2 && ends.tuples() == mesh.vertices())) return {};
-    return Error{ErrorCode::invalid_argument,
-                 fmt::format("edge_ends has {} tuples of {} {}, but to check against a grid it must have one of 2 integers "
-                             "for each of the {} vertices",
-                             ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertices())};
+    return Error{
+        ErrorCode::invalid_argument,
+        fmt::format("edge_ends has {} tuples of {} {}, but to check against a grid it must have one of 2 integers "
+                    "for each of the {} vertices",
+                    ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertices())};
 }
 
 } // namespace

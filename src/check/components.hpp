@@ -27,7 +27,8 @@ public:
             sets.unite(static_cast<Index>(corners[0]), static_cast<Index>(corners[1]));
             sets.unite(static_cast<Index>(corners[0]), static_cast<Index>(corners[2]));
         });
-        core::parallel_each(mesh.vertices(), grain, [&](std::size_t v) { numbers_[v] = sets.root(static_cast<Index>(v)); });
+        core::parallel_each(mesh.vertices(), grain,
+                            [&](std::size_t v) { numbers_[v] = sets.root(static_cast<Index>(v)); });
         // A root comes before all others of its component, so it has its number when they ask for it.
         for (std::uint64_t v = 0; v < numbers_.size(); ++v) {
             if (numbers_[v] != v) numbers_[v] = numbers_[numbers_[v]];

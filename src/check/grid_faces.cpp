@@ -70,7 +70,8 @@ std::vector<FoundTet> tets_near(const core::CellReader& cells, const core::Orien
             for (unsigned piece = 0; piece < static_cast<unsigned>(tets.count); ++piece) {
                 const Tet& t = tets.tets[piece];
                 if (marks.enough(t) && std::ranges::all_of(t, has_data))
-                    near.push_back({orienter.stored(cells.type(cell), tets, piece, seen), core::TetId::make(cell, piece)});
+                    near.push_back(
+                        {orienter.stored(cells.type(cell), tets, piece, seen), core::TetId::make(cell, piece)});
             }
         }
         const std::lock_guard lock(mutex);
@@ -117,8 +118,8 @@ Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, con
     if (!cells) return cells.error();
     if (field && (field->values.components() != 1 || field->values.tuples() != cells->points()))
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("the field '{}' has {} values of {} components, but the grid has {} points", field->name,
-                                 field->values.tuples(), field->values.components(), cells->points())};
+                     fmt::format("the field '{}' has {} values of {} components, but the grid has {} points",
+                                 field->name, field->values.tuples(), field->values.components(), cells->points())};
     if (auto checked = core::check_cells(grid, *cells, progress); !checked) return checked.error();
     GridFaces faces;
     if (sets.empty()) return faces;

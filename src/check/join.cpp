@@ -39,7 +39,8 @@ Array concatenate(const Parts& parts, const Get& get) {
 /// As concatenate(), but only if every part has a tuple for each of its vertices (or triangles).
 template <class Get>
 Array concatenate_full(const Parts& parts, const Get& get, std::size_t (Surface::*count)() const noexcept) {
-    const bool full = std::ranges::all_of(parts, [&](const Surface* part) { return get(*part).tuples() == (part->*count)(); });
+    const bool full =
+        std::ranges::all_of(parts, [&](const Surface* part) { return get(*part).tuples() == (part->*count)(); });
     return full ? concatenate(parts, get) : Array{};
 }
 
@@ -48,7 +49,8 @@ Array absolute_positions(const Parts& parts) {
     std::vector<double> all;
     for (const Surface* part : parts)
         for (std::size_t vertex = 0; vertex < part->vertices(); ++vertex)
-            for (std::size_t axis = 0; axis < 3; ++axis) all.push_back(part->positions.at(vertex, axis) + part->origin[axis]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                all.push_back(part->positions.at(vertex, axis) + part->origin[axis]);
     return Array::own(std::move(all), 3);
 }
 
@@ -81,19 +83,24 @@ Array plain(const SurfaceField& field) {
 }
 
 /// One field of all parts: as stored if all store it alike, else as doubles in the user's unit.
-std::optional<SurfaceField> join_field(const Parts& parts, const SurfaceField& field, std::vector<SurfaceField> Surface::*list,
+std::optional<SurfaceField> join_field(const Parts& parts, const SurfaceField& field,
+                                       std::vector<SurfaceField> Surface::* list,
                                        std::size_t (Surface::*count)() const noexcept) {
     bool alike = true;
     for (const Surface* part : parts) {
         const SurfaceField* other = find(part->*list, field.name);
-        if (!other || other->values.components() != field.values.components() || other->values.tuples() != (part->*count)())
+        if (!other || other->values.components() != field.values.components() ||
+            other->values.tuples() != (part->*count)())
             return std::nullopt;
-        alike &= other->values.type() == field.values.type() && other->offset == field.offset && other->scale == field.scale;
+        alike &=
+            other->values.type() == field.values.type() && other->offset == field.offset && other->scale == field.scale;
     }
     if (alike)
-        return SurfaceField{field.name,
-                            concatenate(parts, [&](const Surface& part) -> const Array& { return find(part.*list, field.name)->values; }),
-                            field.offset, field.scale};
+        return SurfaceField{
+            field.name,
+            concatenate(parts,
+                        [&](const Surface& part) -> const Array& { return find(part.*list, field.name)->values; }),
+            field.offset, field.scale};
     std::vector<double> all;
     for (const Surface* part : parts) {
         const Array values = plain(*find(part->*list, field.name));
@@ -112,7 +119,8 @@ std::vector<SurfaceField> join_fields(const Parts& parts, std::vector<SurfaceFie
 
 Array isovalue_field(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < surfaces.size(); ++i) values.insert(values.end(), surfaces[i].triangle_count(), isovalues[i]);
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+        values.insert(values.end(), surfaces[i].triangle_count(), isovalues[i]);
     return Array::own(std::move(values));
 }
 
@@ -138,18 +146,21 @@ Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& is
     joined.origin = alike ? first.origin : std::array<double, 3>{};
     joined.positions = alike ? concatenate(parts, [](const Surface& part) -> const Array& { return part.positions; })
                              : absolute_positions(parts);
-    joined.triangles = vertices <= std::numeric_limits<std::uint32_t>::max() ? join_triangles<std::uint32_t>(parts, triangles)
-                                                                               : join_triangles<std::uint64_t>(parts, triangles);
+    joined.triangles = vertices <= std::numeric_limits<std::uint32_t>::max()
+                           ? join_triangles<std::uint32_t>(parts, triangles)
+                           : join_triangles<std::uint64_t>(parts, triangles);
     if (std::ranges::all_of(parts, [&](const Surface* part) { return part->normals_kind == first.normals_kind; })) {
         const auto count = first.normals_kind == Normals::face ? &Surface::triangle_count : &Surface::vertices;
-        joined.normals = concatenate_full(parts, [](const Surface& part) -> const Array& { return part.normals; }, count);
+        joined.normals =
+            concatenate_full(parts, [](const Surface& part) -> const Array& { return part.normals; }, count);
         joined.normals_kind = joined.normals.empty() ? Normals::none : first.normals_kind;
     }
-    joined.edge_ends = concatenate_full(parts, [](const Surface& part) -> const Array& { return part.edge_ends; }, &Surface::vertices);
-    joined.edge_weights =
-        concatenate_full(parts, [](const Surface& part) -> const Array& { return part.edge_weights; }, &Surface::vertices);
-    joined.source_cells =
-        concatenate_full(parts, [](const Surface& part) -> const Array& { return part.source_cells; }, &Surface::triangle_count);
+    joined.edge_ends =
+        concatenate_full(parts, [](const Surface& part) -> const Array& { return part.edge_ends; }, &Surface::vertices);
+    joined.edge_weights = concatenate_full(
+        parts, [](const Surface& part) -> const Array& { return part.edge_weights; }, &Surface::vertices);
+    joined.source_cells = concatenate_full(
+        parts, [](const Surface& part) -> const Array& { return part.source_cells; }, &Surface::triangle_count);
     joined.point_fields = join_fields(parts, &Surface::point_fields, &Surface::vertices);
     joined.cell_fields = join_fields(parts, &Surface::cell_fields, &Surface::triangle_count);
     if (isovalues.size() == surfaces.size()) {

@@ -1,7 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "check/measure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/exact.hpp"
 #include "core/parallel.hpp"
@@ -43,27 +45,37 @@ Measures measure(const Mesh& mesh, std::size_t most) {
         const std::uint64_t end = std::min<std::uint64_t>(mesh.triangles(), (i + 1) * block_size);
         for (std::uint64_t triangle = i * block_size; triangle < end; ++triangle) {
             const Corners corners = mesh.corners(triangle);
-            if (has_equal_corners(corners)) continue;
+            if (has_equal_corners(corners)) {
+                ++block.equal_corners;
+                if (block.equal_corners_list.size() < most) block.equal_corners_list.push_back(triangle);
+                continue;
+            }
             std::array<core::Point, 3> p;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 p[corner] = mesh.position(corners[corner]);
                 for (std::size_t axis = 0; axis < 3; ++axis) p[corner][axis] -= base[axis];
             }
             bool is_zero = false;
-            block.area += twice_area(mesh.position(corners[0]), mesh.position(corners[1]), mesh.position(corners[2]), is_zero);
+            block.area +=
+                twice_area(mesh.position(corners[0]), mesh.position(corners[1]), mesh.position(corners[2]), is_zero);
             block.volume += six_volumes(p[0], p[1], p[2]);
             if (!is_zero) continue;
             ++block.zero_area;
             if (block.zero_area_list.size() < most) block.zero_area_list.push_back(triangle);
         }
     });
+    const auto append = [&](std::vector<std::uint64_t>& few, const std::vector<std::uint64_t>& more) {
+        few.insert(few.end(), more.begin(),
+                   more.begin() + static_cast<std::ptrdiff_t>(std::min(more.size(), most - few.size())));
+    };
     Measures sum;
     for (const Measures& block : blocks) {
         sum.area += block.area;
         sum.volume += block.volume;
+        sum.equal_corners += block.equal_corners;
         sum.zero_area += block.zero_area;
-        for (const std::uint64_t triangle : block.zero_area_list)
-            if (sum.zero_area_list.size() < most) sum.zero_area_list.push_back(triangle);
+        append(sum.equal_corners_list, block.equal_corners_list);
+        append(sum.zero_area_list, block.zero_area_list);
     }
     sum.area /= 2;
     sum.volume /= 6;

@@ -62,7 +62,8 @@ Result<Mesh> Mesh::open(const Surface& surface) {
     };
     if (const std::size_t vertex = lowest_bad(mesh.vertices_, is_not_finite); vertex != nothing) {
         const core::Point p = mesh.positions_[vertex];
-        return invalid(fmt::format("vertex {} is at ({}, {}, {}), but positions must be finite", vertex, p[0], p[1], p[2]));
+        return invalid(
+            fmt::format("vertex {} is at ({}, {}, {}), but positions must be finite", vertex, p[0], p[1], p[2]));
     }
     return mesh;
 }

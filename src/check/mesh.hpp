@@ -27,8 +27,8 @@ inline Corners lowest_first(Corners c) {
 /// Borrows the surface's arrays.
 class Mesh {
 public:
-    /// Errors   invalid_data when an array has the wrong type or length, a triangle has a vertex out of range, or a position
-    ///          is not finite: the lowest-numbered one
+    /// Errors   invalid_data when an array has the wrong type or length, a triangle has a vertex out of range, or a
+    ///          position is not finite: the lowest-numbered one
     static Result<Mesh> open(const Surface& surface);
 
     std::uint64_t vertices() const noexcept { return vertices_; }

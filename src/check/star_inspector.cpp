@@ -3,8 +3,8 @@
 
 namespace isotet::checking {
 
-// The triangles around a vertex, joined where they share an edge, are one fan (open or closed) if they are all joined and
-// no edge joins more than two.
+// The triangles around a vertex, joined where they share an edge, are one fan (open or closed) if they are all joined
+// and no edge joins more than two.
 void StarInspector::inspect_edges(std::uint64_t vertex, std::size_t triangles, Tally& tally, Share& share) {
     std::ranges::sort(spokes_, {}, &Spoke::other);
     leaders_.resize(triangles);
@@ -39,12 +39,14 @@ void StarInspector::inspect_edges(std::uint64_t vertex, std::size_t triangles, T
 }
 
 void StarInspector::inspect_repeats(Tally& tally) {
-    std::ranges::stable_sort(wings_, [](const Wing& a, const Wing& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+    std::ranges::stable_sort(
+        wings_, [](const Wing& a, const Wing& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
     for (std::size_t begin = 0, end = 0; begin < wings_.size(); begin = end) {
         const Wing& first = wings_[begin];
         const Wing* mirrored = nullptr; // the first triangle in the other direction
         std::uint64_t same = 0, opposite = 0;
-        for (end = begin; end < wings_.size() && wings_[end].low == first.low && wings_[end].high == first.high; ++end) {
+        for (end = begin; end < wings_.size() && wings_[end].low == first.low && wings_[end].high == first.high;
+             ++end) {
             const Wing& wing = wings_[end];
             ++(wing.rising == first.rising ? same : opposite);
             if (wing.rising != first.rising && !mirrored) mirrored = &wing;

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What is found around one vertex: edges, fans, repeated triangles. An edge or a triangle is counted at its lowest vertex.
+// What is found around one vertex: edges, fans, repeated triangles. An edge or a triangle is counted at its lowest
+// vertex.
 #pragma once
 
 #include <algorithm>

@@ -33,8 +33,8 @@ float gyroid(const Position& p) {
 
 float wavelet(const Position& p) {
     const double x = p[0], y = p[1], z = p[2];
-    return static_cast<float>(255 * std::exp(-(x * x + y * y + z * z) / 2) + 10 * std::sin(30 * x) + 18 * std::sin(15 * y) +
-                              5 * std::cos(20 * z));
+    return static_cast<float>(255 * std::exp(-(x * x + y * y + z * z) / 2) + 10 * std::sin(30 * x) +
+                              18 * std::sin(15 * y) + 5 * std::cos(20 * z));
 }
 
 } // namespace

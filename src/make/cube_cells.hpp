@@ -50,8 +50,9 @@ inline constexpr CubeCells hex_cube{tables::hex, tables::hex_types};
 inline constexpr CubeCells wedge_cube{tables::wedge, tables::wedge_types};
 inline constexpr CubeCells pyramid_cube{tables::pyramid, tables::pyramid_types};
 
-/// The layers of a mixed grid from below, over and over: hexahedra; pyramids with their upper face cut into tets; wedges;
-/// pyramids with their lower face cut. So quads meet quads and triangles meet triangles, whatever the number of layers.
+/// The layers of a mixed grid from below, over and over: hexahedra; pyramids with their upper face cut into tets;
+/// wedges; pyramids with their lower face cut. So quads meet quads and triangles meet triangles, whatever the number of
+/// layers.
 inline constexpr std::array<CubeCells, 4> mixed_layers{
     hex_cube, CubeCells{tables::cut_above, tables::cut_above_types}, wedge_cube,
     CubeCells{tables::cut_below, tables::cut_below_types}};

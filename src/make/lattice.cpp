@@ -65,12 +65,13 @@ Position Lattice::position(std::uint64_t point) const noexcept {
     }
     const std::uint64_t centre = point - corner_points_, layer = centre / (side_ * side_);
     const std::uint64_t i = centre % side_, j = centre / side_ % side_;
-    const std::uint64_t k = layer / centres_per_period_ * centres_before_.size() + centre_layers_[layer % centres_per_period_];
+    const std::uint64_t k =
+        layer / centres_per_period_ * centres_before_.size() + centre_layers_[layer % centres_per_period_];
     return {(across_[i] + across_[i + 1]) / 2, (across_[j] + across_[j + 1]) / 2, (up_[k] + up_[k + 1]) / 2};
 }
 
-// A tet of the Kuhn division is h / sqrt(3) wide at its narrowest, so it stays upright while every corner moves by less than
-// half of that, 0.288 h. A fifth leaves room for rounding.
+// A tet of the Kuhn division is h / sqrt(3) wide at its narrowest, so it stays upright while every corner moves by less
+// than half of that, 0.288 h. A fifth leaves room for rounding.
 Position Lattice::moved(const Position& at, std::uint64_t point) const noexcept {
     std::array<double, 3> way{};
     std::uint64_t bits = draw(seed_, Stream::position, point);

@@ -49,7 +49,8 @@ class Maker {
 public:
     Maker(const Shape& shape, const MakeOptions& options, const Progress& progress)
         : shape_(shape), options_(options), progress_(progress), lattice_(shape, options.side, options.seed),
-          shuffled_(shape.variant == Variant::shuffled), point_order_(lattice_.points(), options.seed, Stream::point_order) {
+          shuffled_(shape.variant == Variant::shuffled),
+          point_order_(lattice_.points(), options.seed, Stream::point_order) {
         layers_.resize(options.side + 1);
         for (std::uint64_t k = 0; k < options.side; ++k) {
             const CubeCells& cube = shape.layers[k % shape.layers.size()];
@@ -57,7 +58,8 @@ public:
         }
         const std::uint64_t cubes = options.side * options.side;
         for (Sizes& sizes : layers_) sizes = {sizes.cells * cubes, sizes.corners * cubes};
-        work_ = (shuffled_ ? layers_.back().cells : cubes * options.side) + lattice_.points() * (1 + options.fields.size());
+        work_ =
+            (shuffled_ ? layers_.back().cells : cubes * options.side) + lattice_.points() * (1 + options.fields.size());
     }
 
     Result<Grid> make() {
@@ -164,7 +166,8 @@ private:
             const CubeCells& cube = shape_.layers[k % shape_.layers.size()];
             const std::uint64_t in_layer = i + side * j;
             body(cube, lattice_.corners(i, j, k),
-                 Sizes{layers_[k].cells + in_layer * cube.types.size(), layers_[k].corners + in_layer * cube.corners.size()});
+                 Sizes{layers_[k].cells + in_layer * cube.types.size(),
+                       layers_[k].corners + in_layer * cube.corners.size()});
         });
     }
 

@@ -13,8 +13,9 @@ namespace isotet::make {
 
 /// A bijection of [0, count) and its inverse.
 ///
-/// Method   Luby and Rackoff 1988 for the network; cycle walking as Black and Rogaway 2002: the network permutes a power
-///          of four, at most four times count, and a result outside is permuted again (four times on average at worst)
+/// Method   Luby and Rackoff 1988 for the network; cycle walking as Black and Rogaway 2002: the network permutes a
+///          power of four, at most four times count, and a result outside is permuted again (four times on average at
+///          worst)
 class Permutation {
 public:
     Permutation(std::uint64_t count, std::uint64_t seed, Stream stream) noexcept : count_(count) {

@@ -16,8 +16,8 @@ using Ends = std::vector<std::array<std::int64_t, 2>>;
 
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
-/// Points 0 to 3 are the corners of an upright tet, 4 lies beyond its face 0 1 3, 5 within the plane of that face, 6 behind
-/// point 2.
+/// Points 0 to 3 are the corners of an upright tet, 4 lies beyond its face 0 1 3, 5 within the plane of that face, 6
+/// behind point 2.
 Grid grid_of(const Tets& tets) {
     std::vector<float> points{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 2, 0, 2, 0, 2, 0};
     std::vector<std::int32_t> connectivity;
@@ -129,7 +129,8 @@ TEST(CheckAgainstGrid, BlamesAllOpenEdgesWhenAskedForAClosedSurfaceToo) {
 TEST(CheckAgainstGrid, SplitsOtherCellsAsExtractionDoes) {
     // The diagonal of each quad starts at its lowest corner: 1-6, not 2-5; 0-6 runs through the inside.
     Grid grid;
-    grid.points = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1}, 3);
+    grid.points =
+        Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1}, 3);
     grid.cells.connectivity = Array::own(std::vector<std::int32_t>{0, 1, 2, 3, 4, 5, 6, 7});
     grid.cells.uniform_type = CellType::hexahedron;
     EXPECT_EQ(against(grid, triangle_on({{0, 0}, {2, 2}, {1, 1}})).blamed_edges, 0u);

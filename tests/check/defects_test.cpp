@@ -42,7 +42,8 @@ TEST(CheckDefects, FindsTheThreeEdgesOfAFlippedTriangle) {
 }
 
 TEST(CheckDefects, FindsADoubleSheetAndBlamesItOnlyWhenStrict) {
-    const SurfaceReport report = check_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}}, {.closed = true});
+    const SurfaceReport report =
+        check_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}}, {.closed = true});
     EXPECT_EQ(report.double_sheets, 1u);
     EXPECT_EQ(report.duplicate_triangles, 0u);
     EXPECT_TRUE(report.sound);
@@ -63,7 +64,8 @@ TEST(CheckDefects, BlamesARepeatedTriangleInTheSameDirection) {
 }
 
 TEST(CheckDefects, PairsRepeatedTrianglesOfBothDirections) {
-    const SurfaceReport report = check_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 0, 2}, {1, 2, 0}, {0, 2, 1}, {2, 0, 1}}});
+    const SurfaceReport report =
+        check_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 0, 2}, {1, 2, 0}, {0, 2, 1}, {2, 0, 1}}});
     EXPECT_EQ(report.double_sheets, 2u);
     EXPECT_EQ(report.duplicate_triangles, 3u);
 }
@@ -136,7 +138,7 @@ TEST(CheckDefects, BlamesTrianglesWithEqualCorners) {
     EXPECT_EQ(report.euler, 2); // they are no part of the surface
     EXPECT_TRUE(report.closed);
     EXPECT_FALSE(report.sound);
-    EXPECT_TRUE(has_finding(report, "triangle 8 has the corners 0, 2, 0"));
+    EXPECT_TRUE(has_finding(report, "triangle 8 (0, 2, 0) has equal corners"));
 }
 
 TEST(CheckDefects, TellsZeroAreaFromNearlyZeroExactly) {
@@ -147,6 +149,7 @@ TEST(CheckDefects, TellsZeroAreaFromNearlyZeroExactly) {
     EXPECT_EQ(check_of(on).zero_area_triangles, 1u);
     EXPECT_FALSE(check_of(on).clean);
     EXPECT_TRUE(check_of(on).sound);
+    EXPECT_TRUE(has_finding(check_of(on), "triangle 0 (0, 1, 2) has no area"));
     EXPECT_EQ(check_of(off).zero_area_triangles, 0u);
     // Far from the origin and tiny beside the coordinates.
     Soup far{{{4e6f, 4e6f, 0}, {4e6f, 4e6f, 1e-30f}, {4e6f, 4000000.25f, 0}}, {{0, 1, 2}}};

@@ -37,7 +37,9 @@ Surface surface_of(const Soup& soup) {
     return surface;
 }
 
-SurfaceReport check_of(const Soup& soup, const CheckOptions& options) { return check(surface_of(soup), options).value(); }
+SurfaceReport check_of(const Soup& soup, const CheckOptions& options) {
+    return check(surface_of(soup), options).value();
+}
 
 Soup octahedron() {
     return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
@@ -51,7 +53,8 @@ Soup torus(std::uint32_t n) {
         for (std::uint32_t j = 0; j < n; ++j) {
             const double radius = 2 + std::cos(j * step);
             soup.vertices.push_back({static_cast<float>(radius * std::cos(i * step)),
-                                     static_cast<float>(radius * std::sin(i * step)), static_cast<float>(std::sin(j * step))});
+                                     static_cast<float>(radius * std::sin(i * step)),
+                                     static_cast<float>(std::sin(j * step))});
             const std::uint32_t a = i * n + j, b = (i + 1) % n * n + j;
             const std::uint32_t c = (i + 1) % n * n + (j + 1) % n, d = i * n + (j + 1) % n;
             soup.triangles.push_back({a, b, c});

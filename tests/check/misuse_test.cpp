@@ -24,7 +24,8 @@ TEST(CheckMisuse, NamesTheFirstTriangleWithAVertexOutOfRange) {
     Soup soup = octahedron();
     soup.triangles[3][1] = 6;
     soup.triangles[5][1] = 4000000000u;
-    expect_error(surface_of(soup), {}, ErrorCode::invalid_data, "triangles[3] has vertex 6, but the surface has 6 vertices");
+    expect_error(surface_of(soup), {}, ErrorCode::invalid_data,
+                 "triangles[3] has vertex 6, but the surface has 6 vertices");
 }
 
 TEST(CheckMisuse, RefusesNegativeNumbersOfVertices) {

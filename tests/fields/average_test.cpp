@@ -107,7 +107,8 @@ TEST(AverageToPoints, IsTheSameBytesForAnyNumberOfThreads) {
     options.side = 28; // several pieces of cells and points
     Grid grid = make_grid(options).value();
     std::vector<float> values(grid.cells.count());
-    for (std::size_t cell = 0; cell < values.size(); ++cell) values[cell] = static_cast<float>(cell * 2654435761u % 1000) / 7;
+    for (std::size_t cell = 0; cell < values.size(); ++cell)
+        values[cell] = static_cast<float>(cell * 2654435761u % 1000) / 7;
     grid.cell_fields = {{"c", Array::own(std::move(values))}};
     const Array one = find_field(grid, "c", {.threads = 1}).value().values;
     for (const int threads : {2, 7, 64}) {

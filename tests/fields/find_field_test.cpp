@@ -36,7 +36,8 @@ std::vector<T> values_of(const Grid& grid, std::string_view name) {
     return {all.begin(), all.end()};
 }
 
-void expect_error(const Grid& grid, std::string_view name, const std::string& part, ErrorCode code = ErrorCode::invalid_argument) {
+void expect_error(const Grid& grid, std::string_view name, const std::string& part,
+                  ErrorCode code = ErrorCode::invalid_argument) {
     const auto found = find_field(grid, name);
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, code);
@@ -116,7 +117,7 @@ TEST(FindField, ListsWhatThereIsNearestFirst) {
 
 TEST(FindField, AsksForAComponentAndRefusesOneThatIsNotThere) {
     const Grid grid = tet({field<float>("v", {1, 2, 3, 4, 5, 6, 7, 8}, 2)});
-    expect_error(grid, "v", "the field 'v' has 2 components, but one scalar is needed");
+    expect_error(grid, "v", "the field 'v' has 2 components, but one is needed");
     expect_error(grid, "v:z", "component 'z' of the field 'v' is asked for, but it has 2");
     expect_error(grid, "v:2", "component '2'");
     expect_error(grid, "v:99999999999999999999999", "component '99999999999999999999999'");

@@ -23,11 +23,12 @@ std::vector<std::int64_t> corners(const Grid& grid) {
     return all;
 }
 
-/// Two tets whose common face is there twice, the second time `off` along x; point 7 is a copy of point 0 without a cell.
+/// Two tets whose common face is there twice, the second time `off` along x; point 7 is a copy of point 0 without a
+/// cell.
 Grid torn(double off) {
     Grid grid;
-    grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0,  0, 0, 1, -0.0 + off, 0, 0, 1 + off, 0, 0, off, 1, 0,
-                                                 0, 0, 0, 0, 0, -1},
+    grid.points = Array::own(std::vector<double>{0, 0,       0, 1, 0,   0, 0, 1, 0, 0, 0, 1, -0.0 + off, 0,
+                                                 0, 1 + off, 0, 0, off, 1, 0, 0, 0, 0, 0, 0, -1},
                              3);
     grid.cells.connectivity = Array::own(std::vector<std::uint32_t>{0, 1, 2, 3, 6, 5, 4, 8});
     return grid;
@@ -115,7 +116,8 @@ std::vector<std::uint64_t> chains_by_force(const std::vector<float>& points, dou
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t j = 0; j < count; ++j) {
                 double sum = 0;
-                for (std::size_t axis = 0; axis < 3; ++axis) sum += std::pow(double(points[3 * i + axis]) - points[3 * j + axis], 2);
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    sum += std::pow(double(points[3 * i + axis]) - points[3 * j + axis], 2);
                 if (std::sqrt(sum) > tolerance || lowest[j] <= lowest[i]) continue;
                 lowest[j] = lowest[i];
                 changed = true;
@@ -137,7 +139,9 @@ TEST(LowestOfChain, AgreesWithComparingAllPairsAtAnyTolerance) {
     for (const double tolerance : {1e-6, 0.01, 0.03, 0.06, 0.09, 0.12, 0.2, 0.7, 3.0, 1e6}) {
         const auto expected = chains_by_force(points, tolerance);
         for (const int threads : {1, 7})
-            core::with_threads(threads, [&] { EXPECT_EQ(core::lowest_of_chain(array, wanted, {}, tolerance), expected) << tolerance; });
+            core::with_threads(threads, [&] {
+                EXPECT_EQ(core::lowest_of_chain(array, wanted, {}, tolerance), expected) << tolerance;
+            });
     }
 }
 

@@ -50,7 +50,8 @@ TEST(MakeFields, PlaneIsTheDistanceAlongItsNormal) {
 TEST(MakeFields, GyroidHasTwoPeriodsAlongEachAxis) {
     expect_values("gyroid", [](double x, double y, double z) {
         constexpr double w = 2 * std::numbers::pi;
-        return std::sin(w * x) * std::cos(w * y) + std::sin(w * y) * std::cos(w * z) + std::sin(w * z) * std::cos(w * x);
+        return std::sin(w * x) * std::cos(w * y) + std::sin(w * y) * std::cos(w * z) +
+               std::sin(w * z) * std::cos(w * x);
     });
 }
 
@@ -80,7 +81,8 @@ TEST(MakeFields, AreRefusedWhenUnknownOrAskedForTwice) {
     auto grid = make_grid(options);
     ASSERT_FALSE(grid);
     EXPECT_EQ(grid.error().code, ErrorCode::invalid_argument);
-    EXPECT_NE(grid.error().message.find("'gyriod', but must be one of gyroid, "), std::string::npos) << grid.error().message;
+    EXPECT_NE(grid.error().message.find("'gyriod', but must be one of gyroid, "), std::string::npos)
+        << grid.error().message;
     options.fields = {"sphere", "sphere"};
     grid = make_grid(options);
     ASSERT_FALSE(grid);

@@ -21,8 +21,8 @@ TEST(ParseMake, KeepsTheDefaultFieldsWhenNoneAreNamed) {
 }
 
 TEST(ParseMake, RefusesTextOfAnotherForm) {
-    for (const char* text : {"", "kuhn", "kuhn:", "kuhn:x", "kuhn:-4", "kuhn: 4", "kuhn:4.5", "kuhn:99999999999999999999",
-                             "kuhn:4:sphere:gyroid", "kuhn:0x10"}) {
+    for (const char* text : {"", "kuhn", "kuhn:", "kuhn:x", "kuhn:-4", "kuhn: 4", "kuhn:4.5",
+                             "kuhn:99999999999999999999", "kuhn:4:sphere:gyroid", "kuhn:0x10"}) {
         const auto options = parse_make(text);
         ASSERT_FALSE(options) << text;
         EXPECT_EQ(options.error().code, ErrorCode::invalid_argument);

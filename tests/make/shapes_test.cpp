@@ -61,7 +61,9 @@ double volume(const Grid& grid, std::uint64_t p, std::uint64_t q, std::uint64_t 
     const auto u = std::array{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const auto v = std::array{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
     const auto w = std::array{d[0] - a[0], d[1] - a[1], d[2] - a[2]};
-    return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
+    return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+            u[2] * (v[0] * w[1] - v[1] * w[0])) /
+           6;
 }
 
 // VTK's faces of a cell, counter-clockwise seen from outside.
@@ -88,7 +90,8 @@ void for_cells(const Grid& grid, const Body& body) {
     std::size_t start = 0;
     for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) {
         const bool uniform = grid.cells.types.empty();
-        const int type = uniform ? static_cast<int>(grid.cells.uniform_type) : grid.cells.types.as<std::uint8_t>()[cell];
+        const int type =
+            uniform ? static_cast<int>(grid.cells.uniform_type) : grid.cells.types.as<std::uint8_t>()[cell];
         if (!uniform) {
             ASSERT_EQ(static_cast<std::size_t>(grid.cells.offsets.at(cell)), start);
         }
@@ -114,7 +117,8 @@ std::map<std::vector<std::int64_t>, int> directed_faces(const Grid& grid) {
 bool is_on_cube(const Grid& grid, const std::vector<std::int64_t>& face) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0})
-            if (std::ranges::all_of(face, [&](std::int64_t p) { return grid.points.at(static_cast<std::size_t>(p), axis) == side; }))
+            if (std::ranges::all_of(
+                    face, [&](std::int64_t p) { return grid.points.at(static_cast<std::size_t>(p), axis) == side; }))
                 return true;
     return false;
 }
@@ -171,9 +175,10 @@ TEST_P(MakeShape, SharesEachInnerFaceBetweenTwoCellsInOppositeDirections) {
 
 INSTANTIATE_TEST_SUITE_P(All, MakeShape,
                          testing::Values(Case{"kuhn", 1}, Case{"kuhn", 7}, Case{"perturbed", 9}, Case{"shuffled", 1},
-                                         Case{"shuffled", 8}, Case{"layer", 1}, Case{"layer", 2}, Case{"layer", 12}, Case{"hex", 1},
-                                         Case{"hex", 6}, Case{"wedge", 1}, Case{"wedge", 6}, Case{"pyramid", 1}, Case{"pyramid", 5},
-                                         Case{"mixed", 1}, Case{"mixed", 2}, Case{"mixed", 3}, Case{"mixed", 10}),
+                                         Case{"shuffled", 8}, Case{"layer", 1}, Case{"layer", 2}, Case{"layer", 12},
+                                         Case{"hex", 1}, Case{"hex", 6}, Case{"wedge", 1}, Case{"wedge", 6},
+                                         Case{"pyramid", 1}, Case{"pyramid", 5}, Case{"mixed", 1}, Case{"mixed", 2},
+                                         Case{"mixed", 3}, Case{"mixed", 10}),
                          name_of);
 
 TEST(MakeGrid, HasAsManyPointsAndCellsAsTheShapeSays) {
