@@ -47,11 +47,12 @@ struct Surface {
     std::size_t triangle_count() const noexcept { return triangles.tuples(); }
 };
 
-/// Joins surfaces into one, vertices and triangles one after another; fields that not all of them have are dropped.
+/// Joins surfaces into one, vertices and triangles one after another; fields that not all of them have are dropped, empty
+/// surfaces aside. Origins that differ are added to the positions, in double.
 /// With `isovalues` (one a surface) the result has a cell field "isovalue", float64.
 Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues);
 
-/// Area of all triangles, summed in double in a fixed order.
+/// Area of all triangles, summed in double in a fixed order; NaN when check() would call the surface invalid.
 double area(const Surface& surface);
 
 } // namespace isotet

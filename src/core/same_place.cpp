@@ -31,20 +31,27 @@ std::uint64_t hash_of(const Point& position) {
 
 bool is_comparable(const Point& p) { return p[0] == p[0] && p[1] == p[1] && p[2] == p[2]; }
 
-/// Points of one hash, ascending: nearly always all at one place.
-void settle(std::span<Entry> group, const PointReader& points, std::vector<std::uint64_t>& lowest) {
-    const Point first = points[group[0].point];
-    const auto at_first = [&](const Entry& entry) { return points[entry.point] == first; };
-    if (!std::ranges::all_of(group, at_first))
-        std::ranges::sort(group, [&](const Entry& a, const Entry& b) {
-            const Point p = points[a.point], q = points[b.point];
-            return p != q ? p < q : a.point < b.point;
-        });
+/// Gives each point of a group, ascending, the first one at the same place.
+void lead_by_first(std::span<const Entry> group, const PointReader& points, std::vector<std::uint64_t>& lowest) {
     std::uint64_t leader = group[0].point;
     for (const Entry& entry : group) {
         if (points[entry.point] != points[leader]) leader = entry.point;
         lowest[entry.point] = leader;
     }
+}
+
+/// Points of one hash, ascending: nearly always all at one place. The group is not sorted where it lies, because other
+/// threads look at its hashes.
+void settle(std::span<const Entry> group, const PointReader& points, std::vector<std::uint64_t>& lowest) {
+    const Point first = points[group[0].point];
+    if (std::ranges::all_of(group, [&](const Entry& entry) { return points[entry.point] == first; }))
+        return lead_by_first(group, points, lowest);
+    std::vector<Entry> sorted(group.begin(), group.end());
+    std::ranges::sort(sorted, [&](const Entry& a, const Entry& b) {
+        const Point p = points[a.point], q = points[b.point];
+        return p != q ? p < q : a.point < b.point;
+    });
+    lead_by_first(sorted, points, lowest);
 }
 
 } // namespace
@@ -67,7 +74,7 @@ std::vector<std::uint64_t> lowest_at_same_place(const Array& points, const std::
         if (i > 0 && entries[i - 1].hash == entries[i].hash) return;
         std::size_t end = i + 1;
         while (end < entries.size() && entries[end].hash == entries[i].hash) ++end;
-        if (end > i + 1) settle(std::span(entries).subspan(i, end - i), reader, lowest);
+        if (end > i + 1) settle(std::span<const Entry>(entries).subspan(i, end - i), reader, lowest);
     });
     return lowest;
 }
