@@ -20,8 +20,8 @@ Storage choose_offset(ScalarType type, const ValueStatistics& statistics, Precis
 void choose_scale(Storage& storage, double smallest_magnitude, double largest_magnitude) {
     if (largest_magnitude == 0) return;
     if (largest_magnitude < largest_stored && smallest_magnitude >= tiny) return;
-    // A field of denormals alone would need more than a double can hold; 2^1000 lifts it far enough.
-    storage.scale = std::scalbn(1.0, std::min(56 - std::ilogb(largest_magnitude), 1000));
+    // A field of denormals alone would need more than a double can hold; 2^1023 lifts the smallest of them to 2^-51.
+    storage.scale = std::scalbn(1.0, std::min(56 - std::ilogb(largest_magnitude), 1023));
 }
 
 } // namespace isotet::core
