@@ -54,12 +54,11 @@ std::size_t edges_open_inside(const Surface& surface, const Grid& grid, const Ar
     return open;
 }
 
-void expect_closed(std::uint32_t seed, const NastyOptions& nasty, const std::vector<double>& isovalues) {
-    const NastyGrid g = nasty_grid(seed, nasty);
+void expect_closed(const NastyGrid& g, const std::vector<double>& isovalues, const std::string& which) {
     const PackedGrid packed = pack(g.grid, g.field).value();
     for (const double isovalue : isovalues)
         for (const Ties ties : {Ties::merge, Ties::keep}) {
-            SCOPED_TRACE(testing::Message() << "seed " << seed << ", isovalue " << isovalue << ", ties " << int(ties));
+            SCOPED_TRACE(testing::Message() << which << ", isovalue " << isovalue << ", ties " << int(ties));
             ExtractOptions options;
             options.ties = ties;
             options.edge_ends = true;
@@ -74,6 +73,10 @@ void expect_closed(std::uint32_t seed, const NastyOptions& nasty, const std::vec
             ASSERT_EQ(report.unused_vertices, 0u);
             ASSERT_EQ(edges_open_inside(surface, g.grid, g.field.values), 0u);
         }
+}
+
+void expect_closed(std::uint32_t seed, const NastyOptions& nasty, const std::vector<double>& isovalues) {
+    expect_closed(nasty_grid(seed, nasty), isovalues, "seed " + std::to_string(seed));
 }
 
 TEST(Surfaces, AreClosedOffTheBoundaryWithTies) {
@@ -92,6 +95,16 @@ TEST(Surfaces, AreClosedOffTheBoundaryOfTangledGridsWithRepeatedTets) {
                       {.side = 2 + int(seed) % 6, .values = 3, .no_data = 0.03, .missing = 0.15, .inverted = 0.3,
                        .mirrored = 0.5, .repeated = 0.3},
                       {0, 0.5, 1});
+}
+
+TEST(Surfaces, AreClosedOffTheBoundaryOfFlatAndSliverGrids) {
+    for (const double height : {0.0, 1e-30, 1e-6}) {
+        NastyGrid g = nasty_grid(1300, {.side = 5, .values = 3, .no_data = 0.02, .mirrored = 0.5, .repeated = 0.1});
+        std::vector<float> squashed(g.grid.points.as<float>().begin(), g.grid.points.as<float>().end());
+        for (std::size_t i = 2; i < squashed.size(); i += 3) squashed[i] = static_cast<float>(squashed[i] * height);
+        g.grid.points = Array::own(std::move(squashed), 3);
+        expect_closed(g, {0, 0.5, 1}, "height " + std::to_string(height));
+    }
 }
 
 TEST(Surfaces, HaveNoFlatTriangleAndNoCoincidentVertexFromTies) {
