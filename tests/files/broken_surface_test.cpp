@@ -21,19 +21,25 @@ std::string written(const Surface& surface, const std::string& format) {
 /// An ascii twin of some formats, as other programs write them.
 std::string ascii_sample(const std::string& format) {
     if (format == "ply") {
-        return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty int s\nelement face 1\n"
+        return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+               "z\nproperty int s\nelement face 1\n"
                "property list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 4\n4 0 1 2 3\n";
     }
     if (format == "stl") {
-        return "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+        return "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+               "0\nendloop\nendfacet\nendsolid a\n";
     }
     if (format == "vtk") {
-        return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\nPOLYGONS 1 5\n4 0 1 2 3\n"
+        return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 "
+               "0\nPOLYGONS 1 5\n4 0 1 2 3\n"
                "POINT_DATA 4\nSCALARS s float\nLOOKUP_TABLE default\n1 2 3 4\nFIELD f 1\nw 2 4 int\n1 2 3 4 5 6 7 8\n";
     }
-    return "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"Float32\" "
-           "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" "
-           "format=\"binary\">DAAAAAAAAAABAAAAAgAAAA==</DataArray><DataArray type=\"Int32\" Name=\"offsets\">3</DataArray></Polys></Piece>"
+    return "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray "
+           "type=\"Float32\" "
+           "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0</DataArray></Points><Polys><DataArray "
+           "type=\"Int32\" Name=\"connectivity\" "
+           "format=\"binary\">DAAAAAAAAAABAAAAAgAAAA==</DataArray><DataArray type=\"Int32\" "
+           "Name=\"offsets\">3</DataArray></Polys></Piece>"
            "</PolyData></VTKFile>";
 }
 
@@ -81,11 +87,15 @@ std::string name_of_sample(const testing::TestParamInfo<Sample>& sample) {
 
 class BrokenSurface : public testing::TestWithParam<Sample> {
 protected:
-    std::string sample() const { return GetParam().ascii ? ascii_sample(GetParam().format) : written(rich_surface(), GetParam().format); }
+    std::string sample() const {
+        return GetParam().ascii ? ascii_sample(GetParam().format) : written(rich_surface(), GetParam().format);
+    }
 };
 INSTANTIATE_TEST_SUITE_P(Formats, BrokenSurface,
-                         testing::Values(Sample{"vtp", false}, Sample{"vtp", true}, Sample{"ply", false}, Sample{"ply", true}, Sample{"stl", false},
-                                         Sample{"stl", true}, Sample{"obj", false}, Sample{"vtk", false}, Sample{"vtk", true}, Sample{"ts", false}),
+                         testing::Values(Sample{"vtp", false}, Sample{"vtp", true}, Sample{"ply", false},
+                                         Sample{"ply", true}, Sample{"stl", false}, Sample{"stl", true},
+                                         Sample{"obj", false}, Sample{"vtk", false}, Sample{"vtk", true},
+                                         Sample{"ts", false}),
                          name_of_sample);
 
 TEST_P(BrokenSurface, IsAnErrorOrASurfaceWhereverItIsCut) {
@@ -102,8 +112,9 @@ TEST_P(BrokenSurface, IsAnErrorOrASurfaceWhereverItIsCut) {
 /// Of the formats that say how much there is, or where the end is: all but OBJ.
 class SurfaceCutInHalf : public BrokenSurface {};
 INSTANTIATE_TEST_SUITE_P(Formats, SurfaceCutInHalf,
-                         testing::Values(Sample{"vtp", false}, Sample{"vtp", true}, Sample{"ply", false}, Sample{"ply", true}, Sample{"stl", false},
-                                         Sample{"stl", true}, Sample{"vtk", false}, Sample{"vtk", true}, Sample{"ts", false}),
+                         testing::Values(Sample{"vtp", false}, Sample{"vtp", true}, Sample{"ply", false},
+                                         Sample{"ply", true}, Sample{"stl", false}, Sample{"stl", true},
+                                         Sample{"vtk", false}, Sample{"vtk", true}, Sample{"ts", false}),
                          name_of_sample);
 
 TEST_P(SurfaceCutInHalf, IsAnError) {

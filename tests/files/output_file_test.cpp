@@ -82,7 +82,7 @@ TEST(OutputFile, KeepsThePermissionsOfTheOldFile) {
     put_content(folder / "out", "old");
     ASSERT_EQ(::chmod((folder / "out").c_str(), 0640), 0);
     write_all(folder / "out", "new");
-    struct stat status {};
+    struct stat status{};
     ASSERT_EQ(::stat((folder / "out").c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0640U);
     EXPECT_EQ(content_of(folder / "out"), "new");
@@ -148,7 +148,8 @@ int in_child(const Folder& folder, const Body& body) {
     constexpr uid_t nobody = 65534;
     const pid_t child = ::fork();
     if (child == 0) {
-        if (::geteuid() == 0 && (::chown(folder.path().c_str(), nobody, nobody) != 0 || ::setuid(nobody) != 0)) ::_exit(100);
+        if (::geteuid() == 0 && (::chown(folder.path().c_str(), nobody, nobody) != 0 || ::setuid(nobody) != 0))
+            ::_exit(100);
         ::_exit(body());
     }
     int status = 0;

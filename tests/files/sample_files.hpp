@@ -40,7 +40,8 @@ public:
     std::string operator/(std::string_view name) const { return (path_ / name).string(); }
     const std::filesystem::path& path() const { return path_; }
     std::size_t entries() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
     }
 
 private:
@@ -62,7 +63,8 @@ inline std::vector<std::uint64_t> bits_of(const Array& array) {
         std::vector<std::uint64_t> bits;
         for (const auto value : values) {
             if constexpr (sizeof(value) == 8) bits.push_back(std::bit_cast<std::uint64_t>(value));
-            else if constexpr (std::is_same_v<decltype(value), const float>) bits.push_back(std::bit_cast<std::uint32_t>(value));
+            else if constexpr (std::is_same_v<decltype(value), const float>)
+                bits.push_back(std::bit_cast<std::uint32_t>(value));
             else bits.push_back(static_cast<std::uint64_t>(value));
         }
         return bits;
@@ -89,7 +91,8 @@ inline const SurfaceField* find_field(const std::vector<SurfaceField>& fields, s
 /// Two triangles and a third beside them, float32, origin 0, no fields.
 inline Surface bare_surface() {
     Surface surface;
-    surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0.1F, 1, 1, 0, -0.0F, 1, 1e-30F, 2.5F, 0.3F, 1e20F}, 3);
+    surface.positions =
+        Array::own(std::vector<float>{0, 0, 0, 1, 0, 0.1F, 1, 1, 0, -0.0F, 1, 1e-30F, 2.5F, 0.3F, 1e20F}, 3);
     surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 1, 4, 2}, 3);
     return surface;
 }
@@ -104,7 +107,8 @@ inline Surface rich_surface() {
     surface.point_fields = {
         {"pressure", Array::own(std::vector<float>{1, 2.5F, nan, -4, 0.1F})},
         {"temperature (K) [mean]", Array::own(std::vector<float>{-1, 0, 1, 2, nan}), 300.125, 0.5},
-        {"gmsh:velocity", Array::own(std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.1, 0.2, 0.3, 1e300, -1e-300, 0}, 3)},
+        {"gmsh:velocity",
+         Array::own(std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.1, 0.2, 0.3, 1e300, -1e-300, 0}, 3)},
         {"caf\xE9 \x01<&\"'>", Array::own(std::vector<std::int32_t>{1, -2, 3, -4, 5})},
     };
     surface.cell_fields = {

@@ -31,7 +31,9 @@ namespace {
 class ComplaintFails : public vtkCommand {
 public:
     static ComplaintFails* New() { return new ComplaintFails; }
-    void Execute(vtkObject*, unsigned long, void* message) override { ADD_FAILURE() << static_cast<const char*>(message); }
+    void Execute(vtkObject*, unsigned long, void* message) override {
+        ADD_FAILURE() << static_cast<const char*>(message);
+    }
 };
 
 template <class Reader>
@@ -136,13 +138,15 @@ Surface surface_of_every_type() {
 TEST(VtkReadsVtp, WithEveryTypeOfField) {
     const Surface surface = surface_of_every_type();
     const auto data = written_and_read<vtkXMLPolyDataReader>(surface, "vtp");
-    for (const auto& field : surface.point_fields) expect_same(data->GetPointData()->GetArray(field.name.c_str()), field.values, field.name.c_str());
+    for (const auto& field : surface.point_fields)
+        expect_same(data->GetPointData()->GetArray(field.name.c_str()), field.values, field.name.c_str());
 }
 
 TEST(VtkReadsLegacy, WithEveryTypeOfField) {
     const Surface surface = surface_of_every_type();
     const auto data = written_and_read<vtkPolyDataReader>(surface, "vtk");
-    for (const auto& field : surface.point_fields) expect_same(data->GetPointData()->GetArray(field.name.c_str()), field.values, field.name.c_str());
+    for (const auto& field : surface.point_fields)
+        expect_same(data->GetPointData()->GetArray(field.name.c_str()), field.values, field.name.c_str());
 }
 
 template <class Reader>
@@ -150,11 +154,13 @@ void expect_normals(const std::string& ending) {
     Surface surface = bare_surface();
     surface.normals_kind = Normals::gradient;
     surface.normals = Array::own(std::vector<float>{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1, 0.6F, 0.8F, 0}, 3);
-    expect_same(written_and_read<Reader>(surface, ending)->GetPointData()->GetNormals(), surface.normals, "normals of points");
+    expect_same(written_and_read<Reader>(surface, ending)->GetPointData()->GetNormals(), surface.normals,
+                "normals of points");
     if (ending == "ply" || ending == "obj") return; // VTK reads none of faces from these
     surface.normals_kind = Normals::face;
     surface.normals = Array::own(std::vector<float>{0, 0, 1, 0, 1, 0, 1, 0, 0}, 3);
-    expect_same(written_and_read<Reader>(surface, ending)->GetCellData()->GetNormals(), surface.normals, "normals of faces");
+    expect_same(written_and_read<Reader>(surface, ending)->GetCellData()->GetNormals(), surface.normals,
+                "normals of faces");
 }
 
 TEST(VtkReadsVtp, WithNormals) { expect_normals<vtkXMLPolyDataReader>("vtp"); }
@@ -185,7 +191,8 @@ TEST(VtkReadsStl, WithTheSameCorners) {
     const auto corners = corners_of(data->GetPolys()), expected = corners_of(bare_surface().triangles);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         for (int k = 0; k < 3; ++k) {
-            EXPECT_EQ(data->GetPoint(corners[i])[k], bare_surface().positions.at(static_cast<std::size_t>(expected[i]), static_cast<std::size_t>(k)));
+            EXPECT_EQ(data->GetPoint(corners[i])[k],
+                      bare_surface().positions.at(static_cast<std::size_t>(expected[i]), static_cast<std::size_t>(k)));
         }
     }
 }
@@ -223,7 +230,8 @@ void expect_grid(const Grid& grid, const std::string& ending) {
     expect_same(data->GetCellData()->GetArray("v"), grid.cell_fields[0].values, "cell field");
     const bool uniform = grid.cells.offsets.empty();
     std::vector<vtkIdType> corners = corners_of(grid.cells.connectivity);
-    if (!uniform) corners.erase(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(grid.cells.offsets.at(0)));
+    if (!uniform)
+        corners.erase(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(grid.cells.offsets.at(0)));
     EXPECT_EQ(corners_of(data->GetCells()), corners);
     ASSERT_EQ(data->GetNumberOfCells(), 2);
     EXPECT_EQ(data->GetCellType(0), 10);

@@ -20,7 +20,8 @@ Error refused(const Grid& grid, const std::string& format = "vtu") {
 TEST(WriteGrid, RefusesCellsThatDoNotFitTogether) {
     Grid grid = tet_grid();
     grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 1, 2, 3});
-    EXPECT_EQ(refused(grid).message, "the connectivity has 7 entries, not a multiple of 4, the corners of a tetrahedron");
+    EXPECT_EQ(refused(grid).message,
+              "the connectivity has 7 entries, not a multiple of 4, the corners of a tetrahedron");
     grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 1, 2, 3, -1});
     EXPECT_EQ(refused(grid).message, "connectivity[7] is point -1, but the grid has 5 points");
     grid.cells.connectivity = Array::own(std::vector<float>{0, 1, 2, 3});
@@ -61,7 +62,8 @@ TEST(WriteGrid, RefusesPointsThatAreNotThreeFloatingNumbers) {
 }
 
 TEST(WriteGrid, KnowsItsFormats) {
-    EXPECT_EQ(refused(tet_grid(), "vtp").message, "the format \"vtp\" is not one in which a grid can be written: vtu, vtk");
+    EXPECT_EQ(refused(tet_grid(), "vtp").message,
+              "the format \"vtp\" is not one in which a grid can be written: vtu, vtk");
 }
 
 TEST(WriteGrid, IsTheSameBytesWithGivenAndWithGeneratedOffsets) {

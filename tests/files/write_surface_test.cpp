@@ -74,7 +74,9 @@ TEST_P(ExactFormat, AddsTheOriginInDouble) {
     const Surface back = written_and_read(surface, GetParam());
     ASSERT_EQ(back.positions.type(), ScalarType::float64);
     for (std::size_t i = 0; i < surface.positions.size(); ++i) {
-        EXPECT_EQ(back.positions.as<double>()[i], static_cast<double>(surface.positions.as<float>()[i]) + surface.origin[i % 3]) << i;
+        EXPECT_EQ(back.positions.as<double>()[i],
+                  static_cast<double>(surface.positions.as<float>()[i]) + surface.origin[i % 3])
+            << i;
     }
 }
 
@@ -160,7 +162,8 @@ TEST(WritePly, GivesFieldsThatWouldHaveOneNameTwoNames) {
     EXPECT_EQ(report.notes.size(), 6U); // two for names taken in any format, four for words
     const auto back = read_surface(folder / "out.ply");
     ASSERT_TRUE(back) << back.error().message;
-    for (const auto* name : {"a_b", "a_b_2", "x_2", "field", "a_b_2_2"}) EXPECT_TRUE(find_field(back->surface.point_fields, name)) << name;
+    for (const auto* name : {"a_b", "a_b_2", "x_2", "field", "a_b_2_2"})
+        EXPECT_TRUE(find_field(back->surface.point_fields, name)) << name;
 }
 
 TEST(WriteVtp, GivesFieldsOfOneNameTwoNamesAndSaysSo) {
@@ -232,7 +235,9 @@ TEST_P(TextFormat, GivesBackTheSameDoubles) {
     surface.origin = {4200000.125, -0.1, 1e-9};
     const Surface back = written_and_read(surface, GetParam());
     for (std::size_t i = 0; i < surface.positions.size(); ++i) {
-        EXPECT_EQ(back.positions.as<double>()[i], static_cast<double>(surface.positions.as<float>()[i]) + surface.origin[i % 3]) << i;
+        EXPECT_EQ(back.positions.as<double>()[i],
+                  static_cast<double>(surface.positions.as<float>()[i]) + surface.origin[i % 3])
+            << i;
     }
 }
 
@@ -246,7 +251,8 @@ TEST(WriteObj, GivesBackNormalsOfVerticesAndFaces) {
 
 TEST(WriteTs, GivesBackPropertiesWithNoData) {
     Surface surface = rich_surface();
-    surface.point_fields[2].values = Array::own(std::vector<double>{1, -99999, -999999, 4, 5, 6, 7, 8, 9, 0.1, 0.2, 0.3, 1e300, NAN, 0}, 3);
+    surface.point_fields[2].values =
+        Array::own(std::vector<double>{1, -99999, -999999, 4, 5, 6, 7, 8, 9, 0.1, 0.2, 0.3, 1e300, NAN, 0}, 3);
     const Surface back = written_and_read(surface, "ts");
     ASSERT_EQ(back.point_fields.size(), 4U);
     EXPECT_EQ(back.point_fields[0].name, "pressure");

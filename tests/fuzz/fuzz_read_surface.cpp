@@ -33,7 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size == 0) return 0;
     const auto format = formats[data[0] % formats.size()];
     std::string compressed;
-    const auto file = isotet::io::parse_surface({reinterpret_cast<const char*>(data + 1), size - 1}, {}, format, {}, compressed);
+    const auto file =
+        isotet::io::parse_surface({reinterpret_cast<const char*>(data + 1), size - 1}, {}, format, {}, compressed);
     if (file) require_valid(file->surface);
     else require(!file.error().message.empty() && file.error().code != isotet::ErrorCode::internal);
     return 0;

@@ -46,7 +46,8 @@ Result<MappedFile> MappedFile::open(const std::string& path) {
     if (const auto kind = what_else_than_a_file(status.st_mode); !kind.empty()) return not_a_file(path, kind);
     if (status.st_size == 0) return Error{ErrorCode::file, fmt::format("{} is empty", path)};
     if (static_cast<std::uintmax_t>(status.st_size) > std::numeric_limits<std::size_t>::max() / 2) {
-        return Error{ErrorCode::out_of_memory, fmt::format("{} has {} bytes, more than can be addressed", path, status.st_size)};
+        return Error{ErrorCode::out_of_memory,
+                     fmt::format("{} has {} bytes, more than can be addressed", path, status.st_size)};
     }
 
     const auto size = static_cast<std::size_t>(status.st_size);

@@ -15,7 +15,8 @@ namespace isotet::io {
 /// A plain file, mapped read only. Copies share the mapping, which lives as long as the last copy or owner().
 ///
 /// Pages are taken from the system's cache, so a file larger than the free memory can be mapped. A file that another
-/// program cuts short while it is mapped ends this process (SIGBUS): writers that rename, as isotet's do, never do that.
+/// program cuts short while it is mapped ends this process (SIGBUS): writers that rename, as isotet's do,
+/// never do that.
 class MappedFile {
 public:
     /// Errors   file: not there, not readable, a folder, a pipe or a device, empty; machine: mapping failed

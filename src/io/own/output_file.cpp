@@ -97,7 +97,8 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
     struct stat status {};
     if (::stat(path.c_str(), &status) == 0) {
         if (const auto kind = what_else_than_a_file(status.st_mode); !kind.empty()) {
-            return Error{ErrorCode::invalid_argument, fmt::format("{} is {}: only a plain file can be written", path, kind)};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("{} is {}: only a plain file can be written", path, kind)};
         }
         if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0) {
             return system_error(path, "cannot be overwritten", errno);
@@ -110,11 +111,13 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
     if (!target) return target.error();
     auto [folder, name] = split_path(*target);
     if (name.empty() || name == "." || name == "..") {
-        return Error{ErrorCode::invalid_argument, fmt::format("{} is a folder: only a plain file can be written", path)};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("{} is a folder: only a plain file can be written", path)};
     }
     out.name_ = std::move(name);
     out.folder_ = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!out.folder_ && errno == EACCES) out.folder_ = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+    if (!out.folder_ && errno == EACCES)
+        out.folder_ = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (!out.folder_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
 
     static std::atomic<unsigned> counter{0};
@@ -122,7 +125,8 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
         std::string candidate = fmt::format(".isotet-{}-{}.part", ::getpid(), counter++);
         // An old file's content may be private: nobody else may see the new one before it has the same bits.
         const mode_t mode = out.mode_ ? 0600 : 0666;
-        out.file_ = Descriptor(::openat(out.folder_.number(), candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
+        out.file_ = Descriptor(
+            ::openat(out.folder_.number(), candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
         if (out.file_) out.temporary_name_ = std::move(candidate);
         else if (errno != EEXIST) break;
     }
@@ -144,9 +148,7 @@ Result<void> OutputFile::write(std::span<const std::byte> bytes) {
     return {};
 }
 
-Result<void> OutputFile::flush() {
-    return write_through({buffer_.get(), std::exchange(buffered_, 0)});
-}
+Result<void> OutputFile::flush() { return write_through({buffer_.get(), std::exchange(buffered_, 0)}); }
 
 Result<void> OutputFile::write_through(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
@@ -173,7 +175,8 @@ Result<void> OutputFile::commit() {
         return fail("cannot be replaced", errno);
     }
     temporary_name_.clear();
-    ::fsync(folder_.number()); // the new name, too, should survive a power cut; where a folder cannot be synced it need not
+    // The new name, too, should survive a power cut; where a folder cannot be synced it need not.
+    ::fsync(folder_.number());
     return {};
 }
 

@@ -50,7 +50,8 @@ std::string lower_case_ending(const std::string& path) {
     return ending;
 }
 
-Result<Surface> parse_as(std::string_view format, std::string_view content, const Progress& progress, std::string& compressed) {
+Result<Surface> parse_as(std::string_view format, std::string_view content, const Progress& progress,
+                         std::string& compressed) {
     if (format == "vtp") return parse_vtp(content, progress, compressed);
     if (format == "ply") return parse_ply(content, progress);
     if (format == "stl") return parse_stl(content, progress);
@@ -80,10 +81,12 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
         if (std::ranges::find(format_names, chosen) == format_names.end()) {
             const auto all = fmt::format("{}", fmt::join(format_names, ", "));
             if (format.empty()) {
-                return Error{ErrorCode::file, fmt::format("neither content nor name is that of a surface file ({}): it starts with {}", all,
-                                                          in_quotes(content.substr(0, 16)))};
+                return Error{ErrorCode::file,
+                             fmt::format("neither content nor name is that of a surface file ({}): it starts with {}",
+                                         all, in_quotes(content.substr(0, 16)))};
             }
-            return Error{ErrorCode::invalid_argument, fmt::format("the format {} is none of a surface: {}", in_quotes(format), all)};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("the format {} is none of a surface: {}", in_quotes(format), all)};
         }
         auto surface = parse_as(chosen, content, progress, compressed);
         if (!surface) return surface.error();
@@ -110,12 +113,14 @@ Result<SurfaceFile> read_surface(const std::string& path, const std::string& for
 #if ISOTET_IO
         return io::read_surface_with_vtk(path, progress);
 #else
-        return Error{ErrorCode::file, fmt::format("{}: the data is compressed ({}): this isotet was built without VTK, which reads that",
-                                                  path, compressed)};
+        return Error{ErrorCode::file,
+                     fmt::format("{}: the data is compressed ({}): this isotet was built without VTK, which reads that",
+                                 path, compressed)};
 #endif
     }
     Error error = std::move(surface).error();
-    if (error.code != ErrorCode::cancelled && error.code != ErrorCode::invalid_argument) error.message = fmt::format("{}: {}", path, error.message);
+    if (error.code != ErrorCode::cancelled && error.code != ErrorCode::invalid_argument)
+        error.message = fmt::format("{}: {}", path, error.message);
     return error;
 }
 

@@ -26,12 +26,20 @@ struct TypeName {
     ScalarType type;
 };
 // vtkIdType is written as int, whatever its size in memory; long has the 8 bytes that it has on 64-bit Unix.
-constexpr std::array type_names{
-    TypeName{"char", ScalarType::int8},           TypeName{"signed_char", ScalarType::int8},     TypeName{"unsigned_char", ScalarType::uint8},
-    TypeName{"short", ScalarType::int16},         TypeName{"unsigned_short", ScalarType::uint16}, TypeName{"int", ScalarType::int32},
-    TypeName{"vtkidtype", ScalarType::int32},     TypeName{"unsigned_int", ScalarType::uint32},  TypeName{"long", ScalarType::int64},
-    TypeName{"vtktypeint64", ScalarType::int64},  TypeName{"unsigned_long", ScalarType::uint64}, TypeName{"vtktypeuint64", ScalarType::uint64},
-    TypeName{"float", ScalarType::float32},       TypeName{"double", ScalarType::float64}};
+constexpr std::array type_names{TypeName{"char", ScalarType::int8},
+                                TypeName{"signed_char", ScalarType::int8},
+                                TypeName{"unsigned_char", ScalarType::uint8},
+                                TypeName{"short", ScalarType::int16},
+                                TypeName{"unsigned_short", ScalarType::uint16},
+                                TypeName{"int", ScalarType::int32},
+                                TypeName{"vtkidtype", ScalarType::int32},
+                                TypeName{"unsigned_int", ScalarType::uint32},
+                                TypeName{"long", ScalarType::int64},
+                                TypeName{"vtktypeint64", ScalarType::int64},
+                                TypeName{"unsigned_long", ScalarType::uint64},
+                                TypeName{"vtktypeuint64", ScalarType::uint64},
+                                TypeName{"float", ScalarType::float32},
+                                TypeName{"double", ScalarType::float64}};
 
 std::string lower(std::string_view word) {
     std::string result(word);
@@ -60,7 +68,8 @@ std::string decoded_name(std::string_view word) {
 
 class LegacyReader {
 public:
-    LegacyReader(std::string_view content, const Progress& progress) : content_(content), scanner_(content), progress_(progress) {}
+    LegacyReader(std::string_view content, const Progress& progress)
+        : content_(content), scanner_(content), progress_(progress) {}
 
     Result<Surface> read() {
         if (auto header = read_header(); !header) return header.error();
@@ -83,11 +92,13 @@ private:
         if (!content_.starts_with(start)) return wrong("the file does not start with \"# vtk DataFile Version\"");
         scanner_.seek(start.size());
         const auto version = scanner_.word_of_line();
-        if (!parse_number(version.substr(0, version.find('.')), version_)) return wrong(fmt::format("the version {} is not a number", in_quotes(version)));
+        if (!parse_number(version.substr(0, version.find('.')), version_))
+            return wrong(fmt::format("the version {} is not a number", in_quotes(version)));
         scanner_.next_line(); // the rest of the version
         scanner_.next_line(); // the title
         const auto form = lower(scanner_.word());
-        if (form != "ascii" && form != "binary") return wrong(fmt::format("the third line is {}, not ASCII or BINARY", in_quotes(form)));
+        if (form != "ascii" && form != "binary")
+            return wrong(fmt::format("the third line is {}, not ASCII or BINARY", in_quotes(form)));
         binary_ = form == "binary";
         return {};
     }
@@ -107,7 +118,8 @@ private:
 
     Result<void> read_dataset() {
         const auto kind = lower(scanner_.word());
-        if (kind != "polydata") return wrong(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
+        if (kind != "polydata")
+            return wrong(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
         is_polydata_ = true;
         return {};
     }
@@ -121,21 +133,24 @@ private:
     Result<ScalarType> read_type() {
         const auto name = lower(scanner_.word());
         const auto* known = std::ranges::find(type_names, name, &TypeName::name);
-        if (known == type_names.end()) return wrong(fmt::format("before {}: {} is not a type that is read", scanner_.where(), in_quotes(name)));
+        if (known == type_names.end())
+            return wrong(fmt::format("before {}: {} is not a type that is read", scanner_.where(), in_quotes(name)));
         return known->type;
     }
 
     /// Scalars from the next line on, in binary files big endian.
     Result<Array> read_scalars(ScalarType type, std::uint64_t tuples, std::uint64_t components, std::string_view what) {
-        if (components == 0 || components > most_components) return wrong(fmt::format("{} has {} components, not 1 to {}", what, components, most_components));
+        if (components == 0 || components > most_components)
+            return wrong(fmt::format("{} has {} components, not 1 to {}", what, components, most_components));
         if (!binary_) return scan_scalars(scanner_, type, tuples, components, what, progress_);
         scanner_.next_line();
         const auto bytes = bytes_needed(type, tuples, components, scanner_.left());
         if (!bytes) {
-            return wrong(fmt::format("{}: {} x {} {} were announced, but only {} bytes are left", what, tuples, components, name_of(type),
-                                     scanner_.left()));
+            return wrong(fmt::format("{}: {} x {} {} were announced, but only {} bytes are left", what, tuples,
+                                     components, name_of(type), scanner_.left()));
         }
-        auto array = decode_scalars(type, scanner_.rest().substr(0, *bytes), static_cast<std::size_t>(components), std::endian::big);
+        auto array = decode_scalars(type, scanner_.rest().substr(0, *bytes), static_cast<std::size_t>(components),
+                                    std::endian::big);
         scanner_.seek(scanner_.position() + *bytes);
         return array;
     }
@@ -150,7 +165,8 @@ private:
         auto positions = read_scalars(*type, *count, 3, "POINTS");
         if (!positions) return positions.error();
         if (!is_floating(positions->type())) {
-            positions = positions->visit([](auto values) { return Array::own(std::vector<double>(values.begin(), values.end()), 3); });
+            positions = positions->visit(
+                [](auto values) { return Array::own(std::vector<double>(values.begin(), values.end()), 3); });
         }
         parts_.positions = std::move(*positions);
         has_points_ = true;
@@ -180,7 +196,8 @@ private:
         std::size_t at = 0;
         for (std::uint64_t i = 0; i < count; ++i) {
             if (at >= numbers.size() || numbers[at] > numbers.size() - at - 1) {
-                return wrong(fmt::format("{}: cell {} of {} does not fit into the {} numbers", keyword, i, count, size));
+                return wrong(
+                    fmt::format("{}: cell {} of {} does not fit into the {} numbers", keyword, i, count, size));
             }
             const auto corners = std::span(numbers).subspan(at + 1, static_cast<std::size_t>(numbers[at]));
             cells.corners.insert(cells.corners.end(), corners.begin(), corners.end());
@@ -214,7 +231,8 @@ private:
                                          static_cast<std::int64_t>(offsets[i]), size));
             }
         }
-        if (offsets.front() != 0) return wrong(fmt::format("{}: the first offset is {}, not 0", keyword, offsets.front()));
+        if (offsets.front() != 0)
+            return wrong(fmt::format("{}: the first offset is {}, not 0", keyword, offsets.front()));
         cells.corners = std::move(numbers[1]);
         cells.ends.assign(offsets.begin() + 1, offsets.end());
         return {};
@@ -237,16 +255,20 @@ private:
 
     Result<void> read_attribute(std::string_view keyword) {
         if (keyword == "field") return read_field();
-        if (data_ == Data::none) return wrong(fmt::format("before {}: {} is not a section of polydata", scanner_.where(), in_quotes(keyword)));
+        if (data_ == Data::none)
+            return wrong(
+                fmt::format("before {}: {} is not a section of polydata", scanner_.where(), in_quotes(keyword)));
         if (keyword == "scalars") return read_scalar_attribute();
         if (keyword == "lookup_table") return read_lookup_table();
         if (keyword == "color_scalars") return read_color_scalars();
         if (keyword == "vectors" || keyword == "normals") return read_named(3, keyword == "normals");
         if (keyword == "tensors") return read_named(9, false);
         if (keyword == "tensors6") return read_named(6, false);
-        if (keyword == "global_ids" || keyword == "pedigree_ids" || keyword == "edge_flags") return read_named(1, false);
+        if (keyword == "global_ids" || keyword == "pedigree_ids" || keyword == "edge_flags")
+            return read_named(1, false);
         if (keyword == "texture_coordinates") return read_texture_coordinates();
-        return wrong(fmt::format("before {}: {} is not an attribute that is read", scanner_.where(), in_quotes(keyword)));
+        return wrong(
+            fmt::format("before {}: {} is not an attribute that is read", scanner_.where(), in_quotes(keyword)));
     }
 
     void add(std::string_view name, Array values, bool normals) {
@@ -269,7 +291,8 @@ private:
         const auto type = read_type();
         if (!type) return type.error();
         std::uint64_t components = 1;
-        if (!scanner_.at_line_end() && !scanner_.number_of_line(components)) return wrong(fmt::format("{}: not a number of components", scanner_.where()));
+        if (!scanner_.at_line_end() && !scanner_.number_of_line(components))
+            return wrong(fmt::format("{}: not a number of components", scanner_.where()));
         const auto before = scanner_.position();
         if (lower(scanner_.word()) == "lookup_table") scanner_.word_of_line(); // its name; it is optional
         else scanner_.seek(before);
@@ -293,7 +316,8 @@ private:
         const std::string name(scanner_.word());
         const auto components = read_count("the number of components");
         if (!components) return components.error();
-        auto values = read_scalars(binary_ ? ScalarType::uint8 : ScalarType::float32, tuples_, *components, in_quotes(name));
+        auto values =
+            read_scalars(binary_ ? ScalarType::uint8 : ScalarType::float32, tuples_, *components, in_quotes(name));
         if (!values) return values.error();
         add(name, std::move(*values), false);
         return {};
@@ -353,7 +377,8 @@ private:
     Result<void> skip_strings(std::uint64_t components, std::uint64_t tuples) {
         scanner_.word();
         scanner_.next_line();
-        if (components == 0 || tuples > scanner_.left() / components) return wrong(fmt::format("{} x {} strings do not fit into the file", tuples, components));
+        if (components == 0 || tuples > scanner_.left() / components)
+            return wrong(fmt::format("{} x {} strings do not fit into the file", tuples, components));
         for (std::uint64_t i = 0; i < tuples * components; ++i) {
             if (scanner_.left() == 0) return wrong("the file ends inside an array of strings");
             if (!binary_) {
@@ -365,7 +390,8 @@ private:
             const std::size_t length_bytes = std::size_t{1} << (3U - (first >> 6U));
             std::uint64_t length = first & 0x3FU;
             if (rest.size() < length_bytes) return wrong("the file ends inside an array of strings");
-            for (std::size_t k = 1; k < length_bytes; ++k) length = (length << 8U) | static_cast<unsigned char>(rest[k]);
+            for (std::size_t k = 1; k < length_bytes; ++k)
+                length = (length << 8U) | static_cast<unsigned char>(rest[k]);
             if (length > rest.size() - length_bytes) return wrong("the file ends inside an array of strings");
             scanner_.seek(scanner_.position() + length_bytes + static_cast<std::size_t>(length));
         }
@@ -399,6 +425,8 @@ private:
 
 } // namespace
 
-Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progress) { return LegacyReader(content, progress).read(); }
+Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progress) {
+    return LegacyReader(content, progress).read();
+}
 
 } // namespace isotet::io

@@ -16,7 +16,8 @@ Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(me
 
 class ObjReader {
 public:
-    ObjReader(std::string_view content, const Progress& progress) : scanner_(content, '#'), pace_(progress, content.size()) {}
+    ObjReader(std::string_view content, const Progress& progress)
+        : scanner_(content, '#'), pace_(progress, content.size()) {}
 
     Result<Surface> read() {
         while (!scanner_.at_end()) {
@@ -25,7 +26,8 @@ public:
             if (keyword == "v") line = read_vector(positions_);
             else if (keyword == "vn") line = read_vector(normals_);
             else if (keyword == "f") line = read_face();
-            else if (keyword == "call" || keyword == "csh") line = wrong(fmt::format("{}: other files and commands are not followed", in_quotes(keyword)));
+            else if (keyword == "call" || keyword == "csh")
+                line = wrong(fmt::format("{}: other files and commands are not followed", in_quotes(keyword)));
             if (!line) return line.error();
             // What stands behind the numbers (a weight, colours) and all other keywords say nothing of the surface.
             skip_line();
@@ -49,7 +51,8 @@ private:
     Result<void> read_vector(std::vector<double>& vectors) {
         for (int i = 0; i < 3; ++i) {
             double value = 0;
-            if (!scanner_.number_of_line(value)) return wrong(fmt::format("{}: three numbers were expected", scanner_.where()));
+            if (!scanner_.number_of_line(value))
+                return wrong(fmt::format("{}: three numbers were expected", scanner_.where()));
             vectors.push_back(value);
         }
         return {};
@@ -73,7 +76,8 @@ private:
                 continue;
             }
             const auto first_slash = word.find('/');
-            const auto second_slash = first_slash == std::string_view::npos ? first_slash : word.find('/', first_slash + 1);
+            const auto second_slash =
+                first_slash == std::string_view::npos ? first_slash : word.find('/', first_slash + 1);
             std::int64_t vertex = 0, normal = 0;
             if (!parse_number(word.substr(0, first_slash), vertex) || vertex == 0) {
                 return wrong(fmt::format("before {}: {} is not a corner of a face", scanner_.where(), in_quotes(word)));
@@ -91,7 +95,8 @@ private:
             if (corners_.size() == 1) face_normal = index;
             one_normal = one_normal && index == face_normal;
         }
-        if (corners_.size() < 3) return wrong(fmt::format("before {}: a face with {} corners", scanner_.where(), corners_.size()));
+        if (corners_.size() < 3)
+            return wrong(fmt::format("before {}: a face with {} corners", scanner_.where(), corners_.size()));
         normals_of_vertices_ = normals_of_vertices_ && normals_of_corners;
         normals_of_faces_ = normals_of_faces_ && one_normal && face_normal == parts_.cells.cells();
         parts_.cells.add_polygon(corners_);
@@ -119,6 +124,8 @@ private:
 
 } // namespace
 
-Result<Surface> parse_obj(std::string_view content, const Progress& progress) { return ObjReader(content, progress).read(); }
+Result<Surface> parse_obj(std::string_view content, const Progress& progress) {
+    return ObjReader(content, progress).read();
+}
 
 } // namespace isotet::io

@@ -45,12 +45,13 @@ std::optional<ScalarType> type_of(std::string_view name) {
         std::string_view name;
         ScalarType type;
     };
-    constexpr std::array names{Name{"char", ScalarType::int8},     Name{"int8", ScalarType::int8},       Name{"uchar", ScalarType::uint8},
-                               Name{"uint8", ScalarType::uint8},   Name{"short", ScalarType::int16},     Name{"int16", ScalarType::int16},
-                               Name{"ushort", ScalarType::uint16}, Name{"uint16", ScalarType::uint16},   Name{"int", ScalarType::int32},
-                               Name{"int32", ScalarType::int32},   Name{"uint", ScalarType::uint32},     Name{"uint32", ScalarType::uint32},
-                               Name{"float", ScalarType::float32}, Name{"float32", ScalarType::float32}, Name{"double", ScalarType::float64},
-                               Name{"float64", ScalarType::float64}};
+    constexpr std::array names{
+        Name{"char", ScalarType::int8},      Name{"int8", ScalarType::int8},       Name{"uchar", ScalarType::uint8},
+        Name{"uint8", ScalarType::uint8},    Name{"short", ScalarType::int16},     Name{"int16", ScalarType::int16},
+        Name{"ushort", ScalarType::uint16},  Name{"uint16", ScalarType::uint16},   Name{"int", ScalarType::int32},
+        Name{"int32", ScalarType::int32},    Name{"uint", ScalarType::uint32},     Name{"uint32", ScalarType::uint32},
+        Name{"float", ScalarType::float32},  Name{"float32", ScalarType::float32}, Name{"double", ScalarType::float64},
+        Name{"float64", ScalarType::float64}};
     const auto* found = std::ranges::find(names, name, &Name::name);
     if (found == names.end()) return std::nullopt;
     return found->type;
@@ -95,7 +96,8 @@ Result<Header> read_header(std::string_view content) {
         } else if (keyword == "element") {
             Element element;
             element.name = scanner.word_of_line();
-            if (!scanner.number_of_line(element.count)) return wrong(fmt::format("{}: not a count of elements", scanner.where()));
+            if (!scanner.number_of_line(element.count))
+                return wrong(fmt::format("{}: not a count of elements", scanner.where()));
             header.elements.push_back(std::move(element));
         } else if (keyword == "property") {
             if (header.elements.empty()) return wrong(fmt::format("{}: a property of no element", scanner.where()));
@@ -140,9 +142,10 @@ private:
 };
 
 /// The values of one scalar property.
-using Values = std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::uint16_t>,
-                            std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>, std::vector<std::uint64_t>,
-                            std::vector<float>, std::vector<double>>;
+using Values =
+    std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>,
+                 std::vector<std::uint16_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>,
+                 std::vector<std::int64_t>, std::vector<std::uint64_t>, std::vector<float>, std::vector<double>>;
 
 /// Reads the rows of one element: scalars into arrays, the list of corners into cells, other lists into nothing.
 class ElementReader {
@@ -155,7 +158,8 @@ public:
         if (auto fits = check_size(); !fits) return fits.error();
         std::vector<Values> columns;
         for (const auto& property : element_.properties) {
-            columns.push_back(with_type(property.type, [&](auto zero) -> Values { return std::vector<decltype(zero)>(); }));
+            columns.push_back(
+                with_type(property.type, [&](auto zero) -> Values { return std::vector<decltype(zero)>(); }));
             const auto reserve = [&](auto& values) { values.reserve(static_cast<std::size_t>(element_.count)); };
             if (!property.count_type) std::visit(reserve, columns.back());
         }
@@ -164,7 +168,8 @@ public:
             for (std::size_t i = 0; i < columns.size(); ++i) {
                 const auto& property = element_.properties[i];
                 const bool corners = cells && (property.name == "vertex_indices" || property.name == "vertex_index");
-                const bool read = property.count_type ? read_list(property, corners ? cells : nullptr) : read_one(columns[i]);
+                const bool read =
+                    property.count_type ? read_list(property, corners ? cells : nullptr) : read_one(columns[i]);
                 if (!read) return failure(row, property);
             }
             if (!pace.goes_on(reader_.position())) return Pace::cancelled();
@@ -181,10 +186,11 @@ public:
 private:
     Result<void> check_size() const {
         std::size_t row = 0;
-        for (const auto& property : element_.properties) row += reader_.least(property.count_type.value_or(property.type));
+        for (const auto& property : element_.properties)
+            row += reader_.least(property.count_type.value_or(property.type));
         if (element_.count > 0 && (row == 0 || element_.count > reader_.left() / row)) {
-            return wrong(fmt::format("{} elements \"{}\" of at least {} bytes are announced, but {} bytes are left", element_.count,
-                                     element_.name, row, reader_.left()));
+            return wrong(fmt::format("{} elements \"{}\" of at least {} bytes are announced, but {} bytes are left",
+                                     element_.count, element_.name, row, reader_.left()));
         }
         return {};
     }
@@ -229,8 +235,8 @@ private:
     }
 
     Error failure(std::uint64_t row, const Property& property) const {
-        return wrong(fmt::format("{}: the property {} of element {} number {} of {} cannot be read", reader_.where(), in_quotes(property.name),
-                                 in_quotes(element_.name), row, element_.count));
+        return wrong(fmt::format("{}: the property {} of element {} number {} of {} cannot be read", reader_.where(),
+                                 in_quotes(property.name), in_quotes(element_.name), row, element_.count));
     }
 
     const Element& element_;
@@ -247,8 +253,10 @@ Array take_vector(std::vector<Attribute>& attributes, const std::array<std::stri
         if (found == attributes.end()) return {};
         parts[i] = found->values;
     }
-    std::erase_if(attributes, [&](const Attribute& attribute) { return std::ranges::find(names, attribute.name) != names.end(); });
-    const bool all_float = std::ranges::all_of(parts, [](const Array& part) { return part.type() == ScalarType::float32; });
+    std::erase_if(attributes,
+                  [&](const Attribute& attribute) { return std::ranges::find(names, attribute.name) != names.end(); });
+    const bool all_float =
+        std::ranges::all_of(parts, [](const Array& part) { return part.type() == ScalarType::float32; });
     const auto joined = [&]<class Scalar>(Scalar) {
         std::vector<Scalar> values(3 * parts[0].tuples());
         for (std::size_t k = 0; k < 3; ++k) {
@@ -263,7 +271,8 @@ Array take_vector(std::vector<Attribute>& attributes, const std::array<std::stri
 
 void take_normals(std::vector<Attribute>& attributes) {
     Array normals = take_vector(attributes, {"nx", "ny", "nz"});
-    if (is_floating(normals.type()) && normals.components() == 3) attributes.push_back({"Normals", std::move(normals), true});
+    if (is_floating(normals.type()) && normals.components() == 3)
+        attributes.push_back({"Normals", std::move(normals), true});
 }
 
 } // namespace
@@ -276,7 +285,8 @@ Result<Surface> parse_ply(std::string_view content, const Progress& progress) {
     bool has_vertices = false, has_faces = false, has_strips = false;
     for (const auto& element : header->elements) {
         const bool vertices = element.name == "vertex", faces = element.name == "face";
-        if ((vertices && has_vertices) || (faces && has_faces)) return wrong(fmt::format("the element {} occurs twice", in_quotes(element.name)));
+        if ((vertices && has_vertices) || (faces && has_faces))
+            return wrong(fmt::format("the element {} occurs twice", in_quotes(element.name)));
         auto attributes = ElementReader(element, reader, progress).read(faces ? &parts.cells : nullptr);
         if (!attributes) return attributes.error();
         has_strips = has_strips || element.name == "tristrips";
@@ -294,7 +304,8 @@ Result<Surface> parse_ply(std::string_view content, const Progress& progress) {
         }
     }
     if (!has_vertices) return wrong("the file has no element vertex");
-    if (!has_faces && has_strips) return wrong("the file holds triangle strips (tristrips), which are not read from PLY: only faces are");
+    if (!has_faces && has_strips)
+        return wrong("the file holds triangle strips (tristrips), which are not read from PLY: only faces are");
     return assemble(std::move(parts));
 }
 

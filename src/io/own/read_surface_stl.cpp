@@ -50,7 +50,8 @@ Result<Surface> parse_binary(std::string_view content, const Progress& progress)
     const std::uint64_t count = binary_count(content);
     const std::uint64_t expected = header_bytes + sizeof(std::uint32_t) + count * facet_bytes;
     if (content.size() != expected) {
-        return wrong(fmt::format("{} triangles make {} bytes of binary STL, but the file has {}", count, expected, content.size()));
+        return wrong(fmt::format("{} triangles make {} bytes of binary STL, but the file has {}", count, expected,
+                                 content.size()));
     }
     std::vector<float> positions(static_cast<std::size_t>(count) * 9), normals(static_cast<std::size_t>(count) * 3);
     ByteReader reader(content, std::endian::native != std::endian::little);
@@ -77,7 +78,8 @@ bool is_word(std::string_view word, std::string_view keyword) {
 
 class AsciiReader {
 public:
-    AsciiReader(std::string_view content, const Progress& progress) : scanner_(content), pace_(progress, content.size()) {}
+    AsciiReader(std::string_view content, const Progress& progress)
+        : scanner_(content), pace_(progress, content.size()) {}
 
     Result<Surface> read() {
         bool inside = false; // of solid ... endsolid
@@ -93,7 +95,8 @@ public:
             } else if (is_word(word, "facet") && inside) {
                 if (auto facet = read_facet(); !facet) return facet.error();
             } else {
-                return wrong(fmt::format("{} before {}: facet or {} was expected", in_quotes(word), scanner_.where(), inside ? "endsolid" : "solid"));
+                return wrong(fmt::format("{} before {}: facet or {} was expected", in_quotes(word), scanner_.where(),
+                                         inside ? "endsolid" : "solid"));
             }
             if (!pace_.goes_on(scanner_.position())) return Pace::cancelled();
         }
@@ -113,7 +116,8 @@ private:
 
     Result<void> expect_words(std::initializer_list<std::string_view> words) {
         for (const auto word : words) {
-            if (!is_word(scanner_.word(), word)) return wrong(fmt::format("before {}: \"{}\" was expected", scanner_.where(), word));
+            if (!is_word(scanner_.word(), word))
+                return wrong(fmt::format("before {}: \"{}\" was expected", scanner_.where(), word));
         }
         return {};
     }
@@ -138,7 +142,8 @@ private:
 
 Result<Surface> parse_stl(std::string_view content, const Progress& progress) {
     // Binary files, too, may start with "solid": their length tells.
-    const bool is_binary = content.size() == header_bytes + sizeof(std::uint32_t) + std::uint64_t{binary_count(content)} * facet_bytes;
+    const bool is_binary =
+        content.size() == header_bytes + sizeof(std::uint32_t) + std::uint64_t{binary_count(content)} * facet_bytes;
     TextScanner scanner(content.substr(0, 256));
     if (!is_binary && is_word(scanner.word(), "solid")) return AsciiReader(content, progress).read();
     return parse_binary(content, progress);

@@ -15,7 +15,8 @@ namespace isotet::io {
 namespace {
 
 constexpr std::size_t most_components = 1U << 16U;
-constexpr std::uint64_t most_absent = 8; // values that are not there, for each byte of the file: else a small file could fill any memory
+// Values that are not there, for each byte of the file: else a small file could fill any memory.
+constexpr std::uint64_t most_absent = 8;
 
 Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
 
@@ -59,7 +60,8 @@ private:
     }
 
     Result<void> read_properties() {
-        if (numbers_.size() > 0) return wrong(fmt::format("{}: properties are announced after the first vertex", scanner_.where()));
+        if (numbers_.size() > 0)
+            return wrong(fmt::format("{}: properties are announced after the first vertex", scanner_.where()));
         properties_.clear();
         while (!scanner_.at_line_end()) {
             const auto name = scanner_.quoted_of_line();
@@ -70,9 +72,11 @@ private:
     }
 
     Result<void> read_sizes() {
-        if (numbers_.size() > 0) return wrong(fmt::format("{}: sizes of properties after the first vertex", scanner_.where()));
+        if (numbers_.size() > 0)
+            return wrong(fmt::format("{}: sizes of properties after the first vertex", scanner_.where()));
         for (auto& property : properties_) {
-            if (!scanner_.number_of_line(property.components) || property.components == 0 || property.components > most_components) {
+            if (!scanner_.number_of_line(property.components) || property.components == 0 ||
+                property.components > most_components) {
                 return wrong(fmt::format("{}: not the size of a property, 1 to {}", scanner_.where(), most_components));
             }
         }
@@ -82,14 +86,16 @@ private:
     Result<void> read_no_data() {
         for (auto& property : properties_) {
             property.has_no_data = scanner_.number_of_line(property.no_data);
-            if (!property.has_no_data && !scanner_.at_line_end()) return wrong(fmt::format("{}: not a number", scanner_.where()));
+            if (!property.has_no_data && !scanner_.at_line_end())
+                return wrong(fmt::format("{}: not a number", scanner_.where()));
         }
         return {};
     }
 
     Result<void> read_number_of_vertex() {
         std::int64_t number = 0;
-        if (!scanner_.number_of_line(number)) return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
+        if (!scanner_.number_of_line(number))
+            return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
         numbers_.add(number);
         return {};
     }
@@ -99,7 +105,8 @@ private:
         for (auto& property : properties_) {
             const std::uint64_t wanted = vertices * property.components, there = property.values.size();
             if (wanted <= there) continue;
-            if (wanted - there > absent_left_) return wrong(fmt::format("{}: too many vertices have no values", scanner_.where()));
+            if (wanted - there > absent_left_)
+                return wrong(fmt::format("{}: too many vertices have no values", scanner_.where()));
             absent_left_ -= wanted - there;
             property.values.resize(static_cast<std::size_t>(wanted), std::numeric_limits<double>::quiet_NaN());
         }
@@ -114,7 +121,8 @@ private:
             for (std::size_t i = 0; i < property.components && !scanner_.at_line_end(); ++i) {
                 double value = 0;
                 if (!scanner_.number_of_line(value)) {
-                    return wrong(fmt::format("{}: not a value of property {}", scanner_.where(), in_quotes(property.name)));
+                    return wrong(
+                        fmt::format("{}: not a value of property {}", scanner_.where(), in_quotes(property.name)));
                 }
                 const bool none = property.has_no_data && value == property.no_data;
                 property.values.push_back(none ? std::numeric_limits<double>::quiet_NaN() : value);
@@ -137,7 +145,8 @@ private:
     Result<void> read_atom(std::string_view keyword) {
         if (auto number = read_number_of_vertex(); !number) return number;
         std::int64_t place = 0;
-        if (!scanner_.number_of_line(place)) return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
+        if (!scanner_.number_of_line(place))
+            return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
         atoms_.push_back({numbers_.size() - 1, place});
         positions_.insert(positions_.end(), 3, 0.0);
         return keyword == "PATOM" ? read_values() : Result<void>();
@@ -146,7 +155,8 @@ private:
     Result<void> read_triangle() {
         for (int i = 0; i < 3; ++i) {
             std::int64_t number = 0;
-            if (!scanner_.number_of_line(number)) return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
+            if (!scanner_.number_of_line(number))
+                return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
             corners_.push_back(number);
         }
         return {};
@@ -156,7 +166,8 @@ private:
         if (auto closed = numbers_.close("vertex"); !closed) return closed.error();
         for (const auto& [atom, number] : atoms_) {
             const auto place = numbers_.find(number);
-            if (place == NumberMap::none || place >= atom) return wrong(fmt::format("an atom is at vertex {}, which is not there before it", number));
+            if (place == NumberMap::none || place >= atom)
+                return wrong(fmt::format("an atom is at vertex {}, which is not there before it", number));
             for (std::size_t axis = 0; axis < 3; ++axis) positions_[3 * atom + axis] = positions_[3 * place + axis];
         }
         SurfaceParts parts;
@@ -206,7 +217,8 @@ Result<Surface> parse_ts(std::string_view content, const Progress& progress) {
         const auto first = scanner.word_of_line();
         const auto kind = scanner.word_of_line();
         if (first != "GOCAD" || kind != "TSurf") {
-            return wrong(fmt::format("before {}: {} {} stands where GOCAD TSurf was expected", scanner.where(), in_quotes(first), in_quotes(kind)));
+            return wrong(fmt::format("before {}: {} {} stands where GOCAD TSurf was expected", scanner.where(),
+                                     in_quotes(first), in_quotes(kind)));
         }
         scanner.next_line();
         auto surface = ObjectReader(scanner, pace).read();

@@ -17,9 +17,10 @@ namespace isotet::io {
 namespace {
 
 enum class Section : std::uint8_t { none, point_data, cell_data, points, verts, lines, strips, polys };
-constexpr std::array<std::string_view, 8> section_names{"", "PointData", "CellData", "Points", "Verts", "Lines", "Strips", "Polys"};
-constexpr std::array<std::string_view, 8> count_names{"",              "",              "",               "NumberOfPoints",
-                                                      "NumberOfVerts", "NumberOfLines", "NumberOfStrips", "NumberOfPolys"};
+constexpr std::array<std::string_view, 8> section_names{"",      "PointData", "CellData", "Points",
+                                                        "Verts", "Lines",     "Strips",   "Polys"};
+constexpr std::array<std::string_view, 8> count_names{
+    "", "", "", "NumberOfPoints", "NumberOfVerts", "NumberOfLines", "NumberOfStrips", "NumberOfPolys"};
 
 /// A Piece element: its counts and arrays, by section.
 struct Piece {
@@ -65,7 +66,8 @@ private:
         if (tag.name == "Piece" && !tag.end) return take_piece(tag);
         if (tag.name == "DataArray" && !tag.end) return take_array(tag);
         const auto section = std::ranges::find(section_names, tag.name);
-        if (section == section_names.end() || header_.pieces.empty()) return {}; // FieldData and others: nothing of ours
+        if (section == section_names.end() || header_.pieces.empty())
+            return {}; // FieldData and others: nothing of ours
         const auto index = static_cast<std::size_t>(section - section_names.begin());
         section_ = tag.end || tag.closed ? Section::none : static_cast<Section>(index);
         if (!tag.end) header_.pieces.back().normals[index] = tag.get("Normals");
@@ -74,12 +76,15 @@ private:
 
     Result<void> take_file(const XmlTag& tag) {
         const auto type = tag.get("type");
-        if (type != "PolyData") return wrong(fmt::format("this is a VTK file of type {}, not a surface (PolyData)", in_quotes(type)));
+        if (type != "PolyData")
+            return wrong(fmt::format("this is a VTK file of type {}, not a surface (PolyData)", in_quotes(type)));
         is_polydata_ = true;
         header_.compressor = tag.get("compressor");
         const auto order = tag.get("byte_order", "LittleEndian"), size = tag.get("header_type", "UInt32");
-        if (order != "LittleEndian" && order != "BigEndian") return wrong(fmt::format("the byte order {} is not known", in_quotes(order)));
-        if (size != "UInt32" && size != "UInt64") return wrong(fmt::format("the header type {} is not UInt32 or UInt64", in_quotes(size)));
+        if (order != "LittleEndian" && order != "BigEndian")
+            return wrong(fmt::format("the byte order {} is not known", in_quotes(order)));
+        if (size != "UInt32" && size != "UInt64")
+            return wrong(fmt::format("the header type {} is not UInt32 or UInt64", in_quotes(size)));
         header_.encoding.order = order == "BigEndian" ? std::endian::big : std::endian::little;
         header_.encoding.wide_header = size == "UInt64";
         return {};
@@ -90,7 +95,8 @@ private:
         for (std::size_t i = 0; i < count_names.size(); ++i) {
             if (count_names[i].empty()) continue;
             const auto count = tag.get(count_names[i], "0");
-            if (!parse_number(count, piece.counts[i])) return wrong(fmt::format("{} is {}, not a count", count_names[i], in_quotes(count)));
+            if (!parse_number(count, piece.counts[i]))
+                return wrong(fmt::format("{} is {}, not a count", count_names[i], in_quotes(count)));
         }
         return {};
     }
@@ -106,10 +112,12 @@ private:
     Result<void> find_appended(const XmlTag& tag) {
         if (tag.end || tag.closed) return {};
         const auto encoding = tag.get("encoding");
-        if (encoding != "raw" && encoding != "base64") return wrong(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
+        if (encoding != "raw" && encoding != "base64")
+            return wrong(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
         header_.encoding.appended_raw = encoding == "raw";
         TextScanner rest(content_.substr(scanner_.position()));
-        if (rest.at_end() || rest.rest().front() != '_') return wrong("the appended data does not start with an underscore");
+        if (rest.at_end() || rest.rest().front() != '_')
+            return wrong("the appended data does not start with an underscore");
         header_.encoding.appended = rest.rest().substr(1);
         return {};
     }
@@ -168,24 +176,27 @@ private:
             parts_.positions = Array::own(std::vector<float>(), 3);
             return {};
         }
-        if (arrays.empty()) return wrong(fmt::format("{} points are announced, but there is no array of points", count));
+        if (arrays.empty())
+            return wrong(fmt::format("{} points are announced, but there is no array of points", count));
         auto positions = load(arrays[0]);
         if (!positions) return positions.error();
         if (positions->components() != 3 || positions->tuples() != count || !is_floating(positions->type())) {
-            return wrong(fmt::format("the points are {} tuples of {} {}, not {} of 3 floating ones", positions->tuples(),
-                                     positions->components(), name_of(positions->type()), count));
+            return wrong(fmt::format("the points are {} tuples of {} {}, not {} of 3 floating ones",
+                                     positions->tuples(), positions->components(), name_of(positions->type()), count));
         }
         parts_.positions = std::move(*positions);
         return {};
     }
 
-    Result<std::vector<std::uint64_t>> read_indices(Section section, std::string_view name, std::optional<std::uint64_t> count) {
+    Result<std::vector<std::uint64_t>> read_indices(Section section, std::string_view name,
+                                                    std::optional<std::uint64_t> count) {
         const auto section_name = section_names[static_cast<std::size_t>(section)];
         const auto* array = find_array(piece_.of(section), name);
         if (!array) return wrong(fmt::format("{} has no array \"{}\"", section_name, name));
         auto values = load(*array);
         if (!values) return values.error();
-        if (is_floating(values->type())) return wrong(fmt::format("{} \"{}\" is {}, not integers", section_name, name, name_of(values->type())));
+        if (is_floating(values->type()))
+            return wrong(fmt::format("{} \"{}\" is {}, not integers", section_name, name, name_of(values->type())));
         if (count && values->size() != *count) {
             return wrong(fmt::format("{} \"{}\" has {} entries, not {}", section_name, name, values->size(), *count));
         }
@@ -203,8 +214,8 @@ private:
             const std::uint64_t end = (*offsets)[i];
             if (end < begin || end > connectivity->size()) {
                 return wrong(fmt::format("{} offsets[{}] is {} after {}, and there are {} corners",
-                                         section_names[static_cast<std::size_t>(section)], i, static_cast<std::int64_t>(end), begin,
-                                         connectivity->size()));
+                                         section_names[static_cast<std::size_t>(section)], i,
+                                         static_cast<std::int64_t>(end), begin, connectivity->size()));
             }
             const auto corners = std::span(*connectivity).subspan(begin, end - begin);
             if (section == Section::polys) parts_.cells.add_polygon(corners);
@@ -221,7 +232,9 @@ private:
         for (const auto& array : piece_.of(section)) {
             Result<Array> values = Array();
             // VTK writes no bytes for arrays of nothing.
-            if (tuples == 0) values = with_type(array.type, [&](auto zero) { return Array::own(std::vector<decltype(zero)>(), array.components); });
+            if (tuples == 0)
+                values = with_type(
+                    array.type, [&](auto zero) { return Array::own(std::vector<decltype(zero)>(), array.components); });
             else values = load(array);
             if (!values) return values.error();
             attributes.push_back({array.name, std::move(*values), !normals.empty() && array.name == normals});

@@ -44,7 +44,8 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t most
         }
         group = (group << 6U) | (c == '=' ? 0U : digit);
         if (++count < 4) continue;
-        for (int i = 0; i < 3 - padding; ++i) result += static_cast<char>((group >> (16U - 8U * static_cast<unsigned>(i))) & 0xFFU);
+        for (int i = 0; i < 3 - padding; ++i)
+            result += static_cast<char>((group >> (16U - 8U * static_cast<unsigned>(i))) & 0xFFU);
         group = 0;
         count = padding = 0;
     }

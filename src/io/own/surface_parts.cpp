@@ -27,12 +27,14 @@ Array converted_to(const Array& array) {
 
 Result<void> check_length(const Attribute& attribute, std::uint64_t tuples, std::string_view what) {
     if (attribute.values.tuples() == tuples) return {};
-    return Error{ErrorCode::invalid_data, fmt::format("the array {} has {} tuples, but the file has {} {}", in_quotes(attribute.name),
-                                                      attribute.values.tuples(), tuples, what)};
+    return Error{ErrorCode::invalid_data,
+                 fmt::format("the array {} has {} tuples, but the file has {} {}", in_quotes(attribute.name),
+                             attribute.values.tuples(), tuples, what)};
 }
 
 bool are_integers(const Attribute& attribute, std::string_view name, std::size_t components) {
-    return attribute.name == name && attribute.values.components() == components && !is_floating(attribute.values.type());
+    return attribute.name == name && attribute.values.components() == components &&
+           !is_floating(attribute.values.type());
 }
 
 bool are_normals(const Attribute& attribute) {
@@ -42,7 +44,8 @@ bool are_normals(const Attribute& attribute) {
 /// False if the attribute is a field like any other.
 bool place_point_attribute(Surface& surface, const Attribute& attribute) {
     if (are_integers(attribute, "edge_ends", 2)) surface.edge_ends = converted_to<std::int64_t>(attribute.values);
-    else if (attribute.name == "edge_weights" && attribute.values.components() == 1 && is_floating(attribute.values.type())) {
+    else if (attribute.name == "edge_weights" && attribute.values.components() == 1 &&
+             is_floating(attribute.values.type())) {
         surface.edge_weights = attribute.values;
     } else if (are_normals(attribute)) {
         surface.normals = converted_to<float>(attribute.values);

@@ -13,9 +13,11 @@
 
 namespace isotet::io {
 
-std::optional<std::size_t> bytes_needed(ScalarType type, std::uint64_t tuples, std::uint64_t components, std::size_t available) {
+std::optional<std::size_t> bytes_needed(ScalarType type, std::uint64_t tuples, std::uint64_t components,
+                                        std::size_t available) {
     if (tuples == 0 || components == 0) return 0;
-    if (components > available / size_of(type) || tuples > available / (components * size_of(type))) return std::nullopt;
+    if (components > available / size_of(type) || tuples > available / (components * size_of(type)))
+        return std::nullopt;
     return static_cast<std::size_t>(tuples * components * size_of(type));
 }
 
@@ -36,8 +38,9 @@ Result<Array> scan_scalars(TextScanner& scanner, ScalarType type, std::uint64_t 
     // A number takes a digit and a space: so many must be there before memory is taken.
     const std::size_t most = scanner.left() / 2 + 1;
     if (tuples != 0 && components != 0 && (components > most || tuples > most / components)) {
-        return Error{ErrorCode::invalid_data, fmt::format("{}: {} x {} numbers were announced, but only {} bytes are left", what, tuples,
-                                                          components, scanner.left())};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("{}: {} x {} numbers were announced, but only {} bytes are left", what, tuples,
+                                 components, scanner.left())};
     }
     return with_type(type, [&](auto zero) -> Result<Array> {
         using Scalar = decltype(zero);
@@ -45,8 +48,8 @@ Result<Array> scan_scalars(TextScanner& scanner, ScalarType type, std::uint64_t 
         Pace pace(progress, scanner.position() + scanner.left());
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (!read_scalar(scanner, values[i])) {
-                return Error{ErrorCode::invalid_data, fmt::format("{}: {} is not {} number {} of {}", what, scanner.where(),
-                                                                  name_of(type), i, values.size())};
+                return Error{ErrorCode::invalid_data, fmt::format("{}: {} is not {} number {} of {}", what,
+                                                                  scanner.where(), name_of(type), i, values.size())};
             }
             if (!pace.goes_on(scanner.position())) return Pace::cancelled();
         }

@@ -68,7 +68,8 @@ bool read_scalar(TextScanner& scanner, T& value) {
 }
 
 /// How many bytes `tuples` x `components` scalars take; nothing if that is more than `available`.
-std::optional<std::size_t> bytes_needed(ScalarType type, std::uint64_t tuples, std::uint64_t components, std::size_t available);
+std::optional<std::size_t> bytes_needed(ScalarType type, std::uint64_t tuples, std::uint64_t components,
+                                        std::size_t available);
 
 /// A copy of scalars that stand in `bytes` one after another; their number is a multiple of `components`.
 Array decode_scalars(ScalarType type, std::string_view bytes, std::size_t components, std::endian order);

@@ -73,8 +73,9 @@ Result<Array> TriangleList::take(std::uint64_t vertices) {
     const std::size_t bad = wide_.empty() ? find_bad(narrow_) : find_bad(wide_);
     if (bad < 3 * triangles()) {
         const std::uint64_t corner = wide_.empty() ? narrow_[bad] : wide_[bad];
-        return Error{ErrorCode::invalid_data, fmt::format("cell {} has vertex {}, but the file has {} vertices", cell_of(bad / 3),
-                                                          static_cast<std::int64_t>(corner), vertices)};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("cell {} has vertex {}, but the file has {} vertices", cell_of(bad / 3),
+                                 static_cast<std::int64_t>(corner), vertices)};
     }
     if (vertices <= std::numeric_limits<std::uint32_t>::max()) {
         // All corners are below `vertices`, so none was wide.

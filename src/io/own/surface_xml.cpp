@@ -43,8 +43,11 @@ bool append_entity(std::string& out, std::string_view entity) {
         const bool hexadecimal = entity.starts_with("#x");
         const auto digits = entity.substr(hexadecimal ? 2 : 1);
         std::uint32_t code = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code, hexadecimal ? 16 : 10);
-        if (digits.empty() || error != std::errc{} || end != digits.data() + digits.size() || code == 0 || code > 0x10FFFF) return false;
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), code, hexadecimal ? 16 : 10);
+        if (digits.empty() || error != std::errc{} || end != digits.data() + digits.size() || code == 0 ||
+            code > 0x10FFFF)
+            return false;
         append_utf8(out, code);
     } else {
         return false;
@@ -152,7 +155,8 @@ Result<void> XmlScanner::read_attributes(XmlTag& tag, std::string_view inside) {
         auto name = inside.substr(0, equals);
         while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
         inside = trimmed_front(inside.substr(equals + 1));
-        if (inside.empty() || (inside[0] != '"' && inside[0] != '\'')) return error_at(here(), "an attribute's value without quotes");
+        if (inside.empty() || (inside[0] != '"' && inside[0] != '\''))
+            return error_at(here(), "an attribute's value without quotes");
         const auto end = inside.find(inside[0], 1);
         if (end == std::string_view::npos) return error_at(here(), "an attribute's value without an end");
         auto value = resolved(inside.substr(1, end - 1));

@@ -21,11 +21,12 @@ struct TypeName {
     std::string_view name;
     ScalarType type;
 };
-constexpr std::array type_names{
-    TypeName{"Int8", ScalarType::int8},       TypeName{"UInt8", ScalarType::uint8},     TypeName{"Int16", ScalarType::int16},
-    TypeName{"UInt16", ScalarType::uint16},   TypeName{"Int32", ScalarType::int32},     TypeName{"UInt32", ScalarType::uint32},
-    TypeName{"Int64", ScalarType::int64},     TypeName{"UInt64", ScalarType::uint64},   TypeName{"Float32", ScalarType::float32},
-    TypeName{"Float64", ScalarType::float64}, TypeName{"vtkIdType", ScalarType::int64}};
+constexpr std::array type_names{TypeName{"Int8", ScalarType::int8},       TypeName{"UInt8", ScalarType::uint8},
+                                TypeName{"Int16", ScalarType::int16},     TypeName{"UInt16", ScalarType::uint16},
+                                TypeName{"Int32", ScalarType::int32},     TypeName{"UInt32", ScalarType::uint32},
+                                TypeName{"Int64", ScalarType::int64},     TypeName{"UInt64", ScalarType::uint64},
+                                TypeName{"Float32", ScalarType::float32}, TypeName{"Float64", ScalarType::float64},
+                                TypeName{"vtkIdType", ScalarType::int64}};
 
 Error wrong(const XmlArray& array, std::string_view what) {
     return {ErrorCode::invalid_data, fmt::format("the array {}: {}", in_quotes(array.name), what)};
@@ -43,7 +44,8 @@ std::optional<std::uint64_t> block_size(std::string_view bytes, const XmlEncodin
 Result<Array> decode_block(const XmlArray& array, std::string_view bytes, std::endian order) {
     const std::size_t tuple = array.components * size_of(array.type);
     if (bytes.size() % tuple != 0) {
-        return wrong(array, fmt::format("{} bytes are no whole number of tuples of {} {}", bytes.size(), array.components, name_of(array.type)));
+        return wrong(array, fmt::format("{} bytes are no whole number of tuples of {} {}", bytes.size(),
+                                        array.components, name_of(array.type)));
     }
     return decode_scalars(array.type, bytes, array.components, order);
 }
@@ -51,13 +53,15 @@ Result<Array> decode_block(const XmlArray& array, std::string_view bytes, std::e
 Result<Array> load_raw(const XmlArray& array, const XmlEncoding& encoding) {
     const auto& appended = encoding.appended;
     if (array.offset > appended.size()) {
-        return wrong(array, fmt::format("offset {} lies behind the appended data, which has {} bytes", array.offset, appended.size()));
+        return wrong(array, fmt::format("offset {} lies behind the appended data, which has {} bytes", array.offset,
+                                        appended.size()));
     }
     const auto block = appended.substr(static_cast<std::size_t>(array.offset));
     const auto size = block_size(block, encoding);
     const std::size_t header = encoding.wide_header ? 8 : 4;
     if (!size || *size > block.size() - header) {
-        return wrong(array, fmt::format("{} bytes are announced, but only {} are left", size.value_or(header), block.size()));
+        return wrong(array,
+                     fmt::format("{} bytes are announced, but only {} are left", size.value_or(header), block.size()));
     }
     return decode_block(array, block.substr(header, static_cast<std::size_t>(*size)), encoding.order);
 }
@@ -84,13 +88,15 @@ Result<Array> load_ascii(const XmlArray& array, const Progress& progress) {
         Pace pace(progress, array.text.size());
         while (!scanner.at_end()) {
             if (!read_scalar(scanner, zero)) {
-                return wrong(array, fmt::format("{} is not {}", in_quotes(scanner.rest().substr(0, 20)), name_of(array.type)));
+                return wrong(array,
+                             fmt::format("{} is not {}", in_quotes(scanner.rest().substr(0, 20)), name_of(array.type)));
             }
             values.push_back(zero);
             if (!pace.goes_on(scanner.position())) return Pace::cancelled();
         }
         if (values.size() % array.components != 0) {
-            return wrong(array, fmt::format("{} numbers are no whole number of tuples of {}", values.size(), array.components));
+            return wrong(
+                array, fmt::format("{} numbers are no whole number of tuples of {}", values.size(), array.components));
         }
         return Array::own(std::move(values), array.components);
     });
@@ -136,8 +142,8 @@ Result<Array> load_array(const XmlArray& array, const XmlEncoding& encoding, con
     }
     if (encoding.appended_raw) return load_raw(array, encoding);
     if (array.offset > encoding.appended.size()) {
-        return wrong(array, fmt::format("offset {} lies behind the appended data, which has {} characters", array.offset,
-                                        encoding.appended.size()));
+        return wrong(array, fmt::format("offset {} lies behind the appended data, which has {} characters",
+                                        array.offset, encoding.appended.size()));
     }
     return load_base64(array, encoding, encoding.appended.substr(static_cast<std::size_t>(array.offset)));
 }

@@ -21,9 +21,12 @@ struct SurfaceFormat {
     std::string_view name;
     Result<WriteReport> (*write)(const SurfaceToWrite&);
 };
-constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp}, SurfaceFormat{"ply", write_ply},
-                                     SurfaceFormat{"stl", write_stl}, SurfaceFormat{"obj", write_obj},
-                                     SurfaceFormat{"vtk", write_legacy_surface}, SurfaceFormat{"ts", write_ts}};
+constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp},
+                                     SurfaceFormat{"ply", write_ply},
+                                     SurfaceFormat{"stl", write_stl},
+                                     SurfaceFormat{"obj", write_obj},
+                                     SurfaceFormat{"vtk", write_legacy_surface},
+                                     SurfaceFormat{"ts", write_ts}};
 
 struct GridFormat {
     std::string_view name;
@@ -43,7 +46,8 @@ std::string ending_of(const std::string& path) {
 }
 
 template <class Format>
-Result<Format> choose(std::span<const Format> formats, const std::string& path, const std::string& format, std::string_view what) {
+Result<Format> choose(std::span<const Format> formats, const std::string& path, const std::string& format,
+                      std::string_view what) {
     const std::string wanted = format.empty() ? ending_of(path) : format;
     std::string all;
     for (const auto& candidate : formats) {
@@ -51,8 +55,10 @@ Result<Format> choose(std::span<const Format> formats, const std::string& path, 
         all += fmt::format("{}{}", all.empty() ? "" : ", ", candidate.name);
     }
     return Error{ErrorCode::invalid_argument,
-                 format.empty() ? fmt::format("{} has the ending \"{}\", but a {} can be written as {}", path, printable_name(wanted), what, all)
-                                : fmt::format("the format \"{}\" is not one in which a {} can be written: {}", printable_name(wanted), what, all)};
+                 format.empty() ? fmt::format("{} has the ending \"{}\", but a {} can be written as {}", path,
+                                              printable_name(wanted), what, all)
+                                : fmt::format("the format \"{}\" is not one in which a {} can be written: {}",
+                                              printable_name(wanted), what, all)};
 }
 
 /// Runs a writer; what it throws, for want of memory, becomes an error.
@@ -71,17 +77,20 @@ Result<WriteReport> guarded(const std::string& path, std::vector<std::string>& n
 
 } // namespace
 
-void note_left_out(const SurfaceToWrite& input, std::string_view format, const std::vector<const std::vector<Column>*>& lists) {
+void note_left_out(const SurfaceToWrite& input, std::string_view format,
+                   const std::vector<const std::vector<Column>*>& lists) {
     std::string names;
     for (const auto* list : lists) {
-        for (const auto& column : *list) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", printable_name(column.name));
+        for (const auto& column : *list)
+            names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", printable_name(column.name));
     }
     if (!names.empty()) input.notes.push_back(fmt::format("{} has no place for {}: left out", format, names));
 }
 
 } // namespace io
 
-Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format, const Progress& progress) {
+Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format,
+                                  const Progress& progress) {
     std::vector<std::string> notes;
     return io::guarded(path, notes, [&]() -> Result<WriteReport> {
         const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, format, "surface");
@@ -92,7 +101,8 @@ Result<WriteReport> write_surface(const Surface& surface, const std::string& pat
     });
 }
 
-Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const std::string& format, const Progress& progress) {
+Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const std::string& format,
+                               const Progress& progress) {
     std::vector<std::string> notes;
     return io::guarded(path, notes, [&]() -> Result<WriteReport> {
         const auto chosen = io::choose<io::GridFormat>(io::grid_formats, path, format, "grid");

@@ -24,8 +24,8 @@ bool has_origin(const Surface& surface) { return surface.origin != std::array<do
 /// An error sentence if an array is not what the surface says it is; empty if it fits.
 std::string misfit(std::string_view name, const Array& array, std::size_t tuples, std::size_t components) {
     if (array.tuples() == tuples && array.components() == components) return {};
-    return fmt::format("the surface's {} has {} tuples of {}, not {} of {}", name, array.tuples(), array.components(), tuples,
-                       components);
+    return fmt::format("the surface's {} has {} tuples of {}, not {} of {}", name, array.tuples(), array.components(),
+                       tuples, components);
 }
 
 Result<void> check_shapes(const Surface& surface) {
@@ -35,11 +35,13 @@ Result<void> check_shapes(const Surface& surface) {
         return wrong(fmt::format("the surface's positions are {}, not floating", name_of(surface.positions.type())));
     }
     if (triangles && !holds_indices(surface.triangles.type())) {
-        return wrong(fmt::format("the surface's triangles are {}, not 32- or 64-bit integers", name_of(surface.triangles.type())));
+        return wrong(fmt::format("the surface's triangles are {}, not 32- or 64-bit integers",
+                                 name_of(surface.triangles.type())));
     }
     for (const auto* numbers : {&surface.edge_ends, &surface.source_cells}) {
         if (!numbers->empty() && is_floating(numbers->type())) {
-            return wrong(fmt::format("the surface's edge ends or source cells are {}, not integers", name_of(numbers->type())));
+            return wrong(
+                fmt::format("the surface's edge ends or source cells are {}, not integers", name_of(numbers->type())));
         }
     }
     struct Part {
@@ -67,7 +69,8 @@ Result<void> check_shapes(const Surface& surface) {
         parts.push_back({field.name, &field.values, triangles, field.values.components()});
     }
     for (const auto& part : parts) {
-        if (auto message = misfit(part.name, *part.array, part.tuples, part.components); !message.empty()) return wrong(message);
+        if (auto message = misfit(part.name, *part.array, part.tuples, part.components); !message.empty())
+            return wrong(message);
     }
     return {};
 }
@@ -75,10 +78,12 @@ Result<void> check_shapes(const Surface& surface) {
 Column positions_of(const Surface& surface) {
     if (!has_origin(surface)) return column_of("Points", surface.positions);
     Column column{"Points", ScalarType::float64, surface.vertices(), 3, {}};
-    column.fill = [positions = surface.positions, origin = surface.origin](std::size_t begin, std::size_t end, std::byte* out) {
+    column.fill = [positions = surface.positions, origin = surface.origin](std::size_t begin, std::size_t end,
+                                                                           std::byte* out) {
         auto* target = reinterpret_cast<double*>(out);
         positions.visit([&](auto values) {
-            for (std::size_t i = begin * 3; i < end * 3; ++i) *target++ = static_cast<double>(values[i]) + origin[i % 3];
+            for (std::size_t i = begin * 3; i < end * 3; ++i)
+                *target++ = static_cast<double>(values[i]) + origin[i % 3];
         });
     };
     return column;
@@ -87,8 +92,8 @@ Column positions_of(const Surface& surface) {
 Column field_column(std::string name, const SurfaceField& field) {
     if (field.scale == 1 && field.offset == 0) return column_of(std::move(name), field.values);
     Column column{std::move(name), ScalarType::float64, field.values.tuples(), field.values.components(), {}};
-    column.fill = [values = field.values, scale = field.scale, offset = field.offset](std::size_t begin, std::size_t end,
-                                                                                      std::byte* out) {
+    column.fill = [values = field.values, scale = field.scale, offset = field.offset](std::size_t begin,
+                                                                                      std::size_t end, std::byte* out) {
         auto* target = reinterpret_cast<double*>(out);
         values.visit([&](auto scalars) {
             const std::size_t last = end * values.components();
@@ -106,7 +111,8 @@ Column column_of(std::string name, const Array& array) {
     Column column{std::move(name), array.type(), array.tuples(), array.components(), {}};
     column.fill = [array](std::size_t begin, std::size_t end, std::byte* out) {
         const std::size_t tuple = array.components() * size_of(array.type());
-        if (end > begin) std::memcpy(out, static_cast<const std::byte*>(array.data()) + begin * tuple, (end - begin) * tuple);
+        if (end > begin)
+            std::memcpy(out, static_cast<const std::byte*>(array.data()) + begin * tuple, (end - begin) * tuple);
     };
     return column;
 }
@@ -127,8 +133,8 @@ Column counting(std::string name, ScalarType type, std::size_t count, std::uint6
 std::string take_field_name(const std::string& name, Names& taken, std::vector<std::string>& notes) {
     auto result = take_name(name, taken);
     if (result != name) {
-        notes.push_back(fmt::format("the field \"{}\" is written as \"{}\": {}", printable_name(name), printable_name(result),
-                                    name.empty() ? "a name is needed" : "the name is taken"));
+        notes.push_back(fmt::format("the field \"{}\" is written as \"{}\": {}", printable_name(name),
+                                    printable_name(result), name.empty() ? "a name is needed" : "the name is taken"));
     }
     return result;
 }
@@ -210,7 +216,8 @@ Result<SurfaceColumns> columns_of(const Surface& surface, std::vector<std::strin
         columns.edges.push_back(column_of(take_name("edge_weights", point_names), surface.edge_weights));
     }
     if (!surface.source_cells.empty()) {
-        columns.cell_fields.push_back(converted<std::int64_t>(take_name("source_cell", cell_names), surface.source_cells));
+        columns.cell_fields.push_back(
+            converted<std::int64_t>(take_name("source_cell", cell_names), surface.source_cells));
     }
     for (const auto& field : surface.point_fields) {
         columns.point_fields.push_back(field_column(take_field_name(field.name, point_names, notes), field));

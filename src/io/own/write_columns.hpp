@@ -29,7 +29,8 @@ struct SurfaceColumns {
     std::uint64_t bytes() const;     ///< of all columns
 };
 
-/// Errors   invalid_argument: an array of the wrong length or type; invalid_data: a triangle with a vertex that is not there
+/// Errors   invalid_argument: an array of the wrong length or type;
+///          invalid_data: a triangle with a vertex that is not there
 Result<SurfaceColumns> columns_of(const Surface& surface, std::vector<std::string>& notes);
 
 /// An array as it is.

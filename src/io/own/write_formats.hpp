@@ -29,7 +29,8 @@ Result<WriteReport> write_obj(const SurfaceToWrite& input);
 Result<WriteReport> write_ts(const SurfaceToWrite& input);
 
 /// Notes what a format has no place for: "OBJ holds no fields: pressure, temperature were left out".
-void note_left_out(const SurfaceToWrite& input, std::string_view format, const std::vector<const std::vector<Column>*>& lists);
+void note_left_out(const SurfaceToWrite& input, std::string_view format,
+                   const std::vector<const std::vector<Column>*>& lists);
 
 /// A grid as columns, checked. `grid` must outlive it.
 struct GridColumns {
@@ -43,8 +44,8 @@ struct GridColumns {
     std::uint64_t bytes() const;
 };
 
-/// Errors   invalid_argument: an array of the wrong length or type, cells that the formats cannot hold; invalid_data: offsets
-///          that fall, a cell with a point that is not there
+/// Errors   invalid_argument: an array of the wrong length or type, cells that the formats cannot hold;
+///          invalid_data: offsets that fall, a cell with a point that is not there
 Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes);
 
 struct GridToWrite {

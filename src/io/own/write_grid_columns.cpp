@@ -50,15 +50,18 @@ Result<void> check_offsets(const Cells& cells) {
     return cells.offsets.visit([&](auto offsets) -> Result<void> {
         using Scalar = typename decltype(offsets)::value_type;
         if constexpr (std::is_integral_v<Scalar>) {
-            const auto falls = first_where(offsets.size() - 1, [&](std::size_t i) { return offsets[i + 1] < offsets[i]; });
+            const auto falls =
+                first_where(offsets.size() - 1, [&](std::size_t i) { return offsets[i + 1] < offsets[i]; });
             if (falls != none) {
-                return Error{ErrorCode::invalid_data,
-                             fmt::format("offsets[{}] is {} after {}: offsets may not fall", falls + 1, offsets[falls + 1], offsets[falls])};
+                return Error{ErrorCode::invalid_data, fmt::format("offsets[{}] is {} after {}: offsets may not fall",
+                                                                  falls + 1, offsets[falls + 1], offsets[falls])};
             }
-            const auto first = static_cast<std::uint64_t>(offsets.front()), last = static_cast<std::uint64_t>(offsets.back());
+            const auto first = static_cast<std::uint64_t>(offsets.front()),
+                       last = static_cast<std::uint64_t>(offsets.back());
             if (first > last || last > cells.connectivity.size()) { // first > last: it is negative
-                return Error{ErrorCode::invalid_data, fmt::format("offsets run from {} to {}, but the connectivity has {} entries",
-                                                                  offsets.front(), offsets.back(), cells.connectivity.size())};
+                return Error{ErrorCode::invalid_data,
+                             fmt::format("offsets run from {} to {}, but the connectivity has {} entries",
+                                         offsets.front(), offsets.back(), cells.connectivity.size())};
             }
         }
         return {};
@@ -74,8 +77,9 @@ Result<void> check_cells(const Cells& cells, std::size_t points) {
     if (offsets.empty()) {
         if (!types.empty()) return wrong(fmt::format("the grid has {} cell types but no offsets", types.size()));
         if (connectivity.size() % corners_of(uniform_type) != 0) {
-            return wrong(fmt::format("the connectivity has {} entries, not a multiple of {}, the corners of a {}", connectivity.size(),
-                                     corners_of(uniform_type), name_of_cell_type(static_cast<std::uint8_t>(uniform_type))));
+            return wrong(fmt::format("the connectivity has {} entries, not a multiple of {}, the corners of a {}",
+                                     connectivity.size(), corners_of(uniform_type),
+                                     name_of_cell_type(static_cast<std::uint8_t>(uniform_type))));
         }
     } else {
         if (!holds_indices(offsets.type()) || offsets.components() != 1) {
@@ -86,17 +90,20 @@ Result<void> check_cells(const Cells& cells, std::size_t points) {
     }
     if (!types.empty()) {
         if (types.type() != ScalarType::uint8 || types.size() + 1 != offsets.size()) {
-            return wrong(fmt::format("the grid has {} cell types of {} for {} offsets: one uint8 a cell is needed, and one more offset",
-                                     types.size(), name_of(types.type()), offsets.size()));
+            return wrong(fmt::format(
+                "the grid has {} cell types of {} for {} offsets: one uint8 a cell is needed, and one more offset",
+                types.size(), name_of(types.type()), offsets.size()));
         }
         const auto values = types.as<std::uint8_t>();
-        if (const auto at = first_where(values.size(), [&](std::size_t i) { return values[i] == polyhedron; }); at != none) {
+        if (const auto at = first_where(values.size(), [&](std::size_t i) { return values[i] == polyhedron; });
+            at != none) {
             return wrong(fmt::format("cells[{}] is a polyhedron, whose faces are not known: it cannot be written", at));
         }
     }
     if (const auto bad = first_bad_index(connectivity, points)) {
-        return Error{ErrorCode::invalid_data, fmt::format("connectivity[{}] is point {:.0f}, but the grid has {} points", *bad,
-                                                          connectivity.at(*bad), points)};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("connectivity[{}] is point {:.0f}, but the grid has {} points", *bad,
+                                 connectivity.at(*bad), points)};
     }
     return {};
 }
@@ -108,7 +115,8 @@ Column offsets_from(const Array& offsets, std::uint64_t start) {
     column.fill = [offsets, start](std::size_t begin, std::size_t end, std::byte* out) {
         offsets.visit([&](auto values) {
             auto* target = reinterpret_cast<To*>(out);
-            for (std::size_t i = begin; i < end; ++i) *target++ = static_cast<To>(static_cast<std::uint64_t>(values[i]) - start);
+            for (std::size_t i = begin; i < end; ++i)
+                *target++ = static_cast<To>(static_cast<std::uint64_t>(values[i]) - start);
         });
     };
     return column;
@@ -126,7 +134,8 @@ Result<std::vector<Column>> field_columns(const std::vector<Field>& fields, std:
     Names names;
     for (const auto& field : fields) {
         if (field.values.tuples() != tuples) {
-            return wrong(fmt::format("the {} field \"{}\" has {} tuples, not {}", what, field.name, field.values.tuples(), tuples));
+            return wrong(fmt::format("the {} field \"{}\" has {} tuples, not {}", what, field.name,
+                                     field.values.tuples(), tuples));
         }
         columns.push_back(column_of(take_field_name(field.name, names, notes), field.values));
     }
@@ -150,8 +159,8 @@ std::uint64_t GridColumns::bytes() const {
 Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes) {
     const auto& cells = grid.cells;
     if (!is_floating(grid.points.type()) || (!grid.points.empty() && grid.points.components() != 3)) {
-        return wrong(fmt::format("the points are {} with {} components, not 3 floating ones", name_of(grid.points.type()),
-                                 grid.points.components()));
+        return wrong(fmt::format("the points are {} with {} components, not 3 floating ones",
+                                 name_of(grid.points.type()), grid.points.components()));
     }
     const std::size_t points = grid.points.tuples();
     if (auto checked = check_cells(cells, points); !checked) return checked.error();
@@ -159,7 +168,8 @@ Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes
     const bool uniform = cells.offsets.empty();
     const std::size_t corners = corners_of(cells.uniform_type);
     const std::uint64_t start = uniform ? 0 : index_at(cells.offsets, 0);
-    const std::uint64_t used = uniform ? cells.connectivity.size() : index_at(cells.offsets, cells.offsets.size() - 1) - start;
+    const std::uint64_t used =
+        uniform ? cells.connectivity.size() : index_at(cells.offsets, cells.offsets.size() - 1) - start;
     const bool narrow = fits_int32(std::max<std::uint64_t>(points, used));
 
     GridColumns columns;
@@ -167,14 +177,17 @@ Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes
     columns.points = column_of("Points", grid.points);
     columns.points.components = 3;
     const std::size_t size = size_of(cells.connectivity.type());
-    const Array connectivity(cells.connectivity.type(), static_cast<const std::byte*>(cells.connectivity.data()) + start * size,
+    const Array connectivity(cells.connectivity.type(),
+                             static_cast<const std::byte*>(cells.connectivity.data()) + start * size,
                              static_cast<std::size_t>(used), 1, nullptr); // `grid` keeps it alive
     columns.connectivity = narrow ? converted<std::int32_t>("connectivity", connectivity)
                                   : converted<std::int64_t>("connectivity", connectivity);
     if (uniform) {
-        columns.offsets = counting("offsets", narrow ? ScalarType::int32 : ScalarType::int64, columns.cells + 1, 0, corners);
+        columns.offsets =
+            counting("offsets", narrow ? ScalarType::int32 : ScalarType::int64, columns.cells + 1, 0, corners);
     } else {
-        columns.offsets = narrow ? offsets_from<std::int32_t>(cells.offsets, start) : offsets_from<std::int64_t>(cells.offsets, start);
+        columns.offsets = narrow ? offsets_from<std::int32_t>(cells.offsets, start)
+                                 : offsets_from<std::int64_t>(cells.offsets, start);
     }
     columns.types = cells.types.empty() ? constant_types(static_cast<std::uint8_t>(cells.uniform_type), columns.cells)
                                         : column_of("types", cells.types);

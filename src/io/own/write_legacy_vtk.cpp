@@ -30,15 +30,15 @@ void write_block(WriteStream& stream, const Column& column) {
 }
 
 void write_header(WriteStream& stream, std::string_view dataset, const Column& points) {
-    stream.text(fmt::format("# vtk DataFile Version 5.1\nisotet\nBINARY\nDATASET {}\nPOINTS {} {}\n", dataset, points.tuples,
-                            legacy_type(points.type)));
+    stream.text(fmt::format("# vtk DataFile Version 5.1\nisotet\nBINARY\nDATASET {}\nPOINTS {} {}\n", dataset,
+                            points.tuples, legacy_type(points.type)));
     write_block(stream, points);
 }
 
 /// `offsets` has one entry more than there are cells.
 void write_cells(WriteStream& stream, std::string_view keyword, const Column& offsets, const Column& connectivity) {
-    stream.text(fmt::format("{} {} {}\nOFFSETS {}\n", keyword, offsets.tuples, connectivity.tuples * connectivity.components,
-                            legacy_type(offsets.type)));
+    stream.text(fmt::format("{} {} {}\nOFFSETS {}\n", keyword, offsets.tuples,
+                            connectivity.tuples * connectivity.components, legacy_type(offsets.type)));
     write_block(stream, offsets);
     stream.text(fmt::format("CONNECTIVITY {}\n", legacy_type(connectivity.type)));
     write_block(stream, connectivity);
@@ -74,10 +74,12 @@ Result<WriteReport> write_legacy_surface(const SurfaceToWrite& input) {
     return write_file(input.path, input.progress, columns.bytes(), [&](WriteStream& stream) {
         write_header(stream, "POLYDATA", columns.positions);
         if (triangles) {
-            write_cells(stream, "POLYGONS", counting("offsets", columns.triangles.type, triangles + 1, 0, 3), columns.triangles);
+            write_cells(stream, "POLYGONS", counting("offsets", columns.triangles.type, triangles + 1, 0, 3),
+                        columns.triangles);
         }
         write_data(stream, "CELL_DATA", triangles, columns.cell_normals, {&columns.cell_fields});
-        write_data(stream, "POINT_DATA", columns.positions.tuples, columns.point_normals, {&columns.edges, &columns.point_fields});
+        write_data(stream, "POINT_DATA", columns.positions.tuples, columns.point_normals,
+                   {&columns.edges, &columns.point_fields});
     });
 }
 

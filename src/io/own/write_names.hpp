@@ -14,7 +14,8 @@ std::string printable_name(std::string_view name);
 /// printable_name() with & < > and quotes as XML entities.
 std::string xml_name(std::string_view name);
 
-/// As VTK's legacy writer does it: everything but visible ASCII, and " and %, becomes %XX. VTK reads back the same bytes.
+/// As VTK's legacy writer does it: everything but visible ASCII, and " and %, becomes %XX.
+/// VTK reads back the same bytes.
 std::string legacy_vtk_name(std::string_view name);
 
 /// One word for a PLY header: visible ASCII stays, all else becomes _.

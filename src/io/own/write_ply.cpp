@@ -157,7 +157,8 @@ Result<WriteReport> write_ply(const SurfaceToWrite& input) {
     face_columns.insert(face_columns.end(), face.columns.begin(), face.columns.end());
 
     return write_file(input.path, input.progress, expected, [&](WriteStream& stream) {
-        stream.text(fmt::format("ply\nformat binary_little_endian 1.0\ncomment isotet\nelement vertex {}\n{}element face {}\n{}end_header\n",
+        stream.text(fmt::format("ply\nformat binary_little_endian 1.0\ncomment isotet\nelement vertex {}\n{}element "
+                                "face {}\n{}end_header\n",
                                 vertices, vertex.header, triangles, face.header));
         stream.rows(vertices, [&](std::size_t begin, std::size_t end, std::string& out) {
             out.resize((end - begin) * vertex_bytes);

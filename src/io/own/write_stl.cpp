@@ -55,7 +55,8 @@ double largest_rounding(const Array& positions) {
     positions.visit([&](auto values) {
         for (const auto value : values) {
             const double exact = static_cast<double>(value);
-            if (const double error = std::abs(exact - static_cast<double>(static_cast<float>(exact))); error > largest) largest = error;
+            if (const double error = std::abs(exact - static_cast<double>(static_cast<float>(exact))); error > largest)
+                largest = error;
         }
     });
     return largest;
@@ -72,7 +73,8 @@ Result<WriteReport> write_stl(const SurfaceToWrite& input) {
     }
     const auto& origin = surface.origin;
     if (origin != std::array<double, 3>{}) {
-        input.notes.push_back(fmt::format("STL holds float32: the origin ({}, {}, {}) was left out", origin[0], origin[1], origin[2]));
+        input.notes.push_back(
+            fmt::format("STL holds float32: the origin ({}, {}, {}) was left out", origin[0], origin[1], origin[2]));
     }
     if (surface.positions.type() == ScalarType::float64) {
         if (const double error = largest_rounding(surface.positions); error > 0) {
@@ -94,9 +96,11 @@ Result<WriteReport> write_stl(const SurfaceToWrite& input) {
             char* facet = out.data();
             for (std::size_t i = 0; i < end - begin; ++i, facet += facet_bytes) {
                 std::array<Vector, 4> vectors{};
-                for (std::size_t k = 0; k < 3; ++k) vectors[k + 1] = position(surface, static_cast<std::uint64_t>(corners[3 * i + k]));
+                for (std::size_t k = 0; k < 3; ++k)
+                    vectors[k + 1] = position(surface, static_cast<std::uint64_t>(corners[3 * i + k]));
                 if (input.columns.cell_normals) {
-                    for (std::size_t k = 0; k < 3; ++k) vectors[0][k] = static_cast<float>(surface.normals.at(begin + i, k));
+                    for (std::size_t k = 0; k < 3; ++k)
+                        vectors[0][k] = static_cast<float>(surface.normals.at(begin + i, k));
                 } else {
                     vectors[0] = facet_normal(vectors[1], vectors[2], vectors[3]);
                 }

@@ -49,7 +49,8 @@ void WriteStream::column(const Column& column, std::endian order) {
         if (order != std::endian::native) {
             swap_bytes(buffer.data(), (end - begin) * column.components, size_of(column.type));
         }
-        if (auto written = file_.write(std::span(buffer).first((end - begin) * tuple)); !written) error_ = written.error();
+        if (auto written = file_.write(std::span(buffer).first((end - begin) * tuple)); !written)
+            error_ = written.error();
     }
 }
 

@@ -69,47 +69,52 @@ Result<WriteReport> write_ts(const SurfaceToWrite& input) {
         };
     }
     note_left_out(input, "TSurf", {&columns.edges, &columns.cell_fields});
-    if (columns.point_normals || columns.cell_normals) input.notes.push_back("TSurf holds no normals: they were left out");
+    if (columns.point_normals || columns.cell_normals)
+        input.notes.push_back("TSurf holds no normals: they were left out");
 
     constexpr std::uint64_t line = 40;
-    return write_file(input.path, input.progress, (columns.positions.tuples + columns.triangles.tuples) * line, [&](WriteStream& stream) {
-        stream.text("GOCAD TSurf 1\nHEADER {\nname:isosurface\n}\n"
-                    "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nNAME Default\nAXIS_NAME \"X\" \"Y\" \"Z\"\nAXIS_UNIT \"m\" \"m\" \"m\"\n"
-                    "ZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM\n");
-        stream.text(properties_header(properties));
-        stream.text("TFACE\n");
-        stream.rows(columns.positions.tuples, [&](std::size_t begin, std::size_t end, std::string& out) {
-            const FloatRows positions(columns.positions, begin, end);
-            std::vector<std::vector<double>> values;
-            for (const auto& property : properties) values.push_back(doubles_of(property.column, begin, end));
-            for (std::size_t i = begin; i < end; ++i) {
-                out += properties.empty() ? "VRTX " : "PVRTX ";
-                append_number(out, i + 1);
-                positions.append(out, i);
-                for (std::size_t p = 0; p < properties.size(); ++p) {
-                    const auto& property = properties[p];
-                    const std::size_t components = property.column.components;
-                    for (std::size_t k = 0; k < components; ++k) {
-                        const double value = values[p][(i - begin) * components + k];
-                        out += ' ';
-                        if (std::isnan(value)) append_number(out, property.no_data);
-                        else if (property.column.type == ScalarType::float32) append_number(out, static_cast<float>(value));
-                        else append_number(out, value);
+    return write_file(
+        input.path, input.progress, (columns.positions.tuples + columns.triangles.tuples) * line,
+        [&](WriteStream& stream) {
+            stream.text("GOCAD TSurf 1\nHEADER {\nname:isosurface\n}\n"
+                        "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nNAME Default\nAXIS_NAME \"X\" \"Y\" \"Z\"\nAXIS_UNIT \"m\" "
+                        "\"m\" \"m\"\n"
+                        "ZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM\n");
+            stream.text(properties_header(properties));
+            stream.text("TFACE\n");
+            stream.rows(columns.positions.tuples, [&](std::size_t begin, std::size_t end, std::string& out) {
+                const FloatRows positions(columns.positions, begin, end);
+                std::vector<std::vector<double>> values;
+                for (const auto& property : properties) values.push_back(doubles_of(property.column, begin, end));
+                for (std::size_t i = begin; i < end; ++i) {
+                    out += properties.empty() ? "VRTX " : "PVRTX ";
+                    append_number(out, i + 1);
+                    positions.append(out, i);
+                    for (std::size_t p = 0; p < properties.size(); ++p) {
+                        const auto& property = properties[p];
+                        const std::size_t components = property.column.components;
+                        for (std::size_t k = 0; k < components; ++k) {
+                            const double value = values[p][(i - begin) * components + k];
+                            out += ' ';
+                            if (std::isnan(value)) append_number(out, property.no_data);
+                            else if (property.column.type == ScalarType::float32)
+                                append_number(out, static_cast<float>(value));
+                            else append_number(out, value);
+                        }
                     }
+                    out += '\n';
                 }
-                out += '\n';
-            }
+            });
+            stream.rows(columns.triangles.tuples, [&](std::size_t begin, std::size_t end, std::string& out) {
+                const auto corners = corners_of(input.surface.triangles, begin, end);
+                for (std::size_t i = 0; i < corners.size(); ++i) {
+                    out += i % 3 == 0 ? "TRGL " : " ";
+                    append_number(out, corners[i] + 1);
+                    if (i % 3 == 2) out += '\n';
+                }
+            });
+            stream.text("END\n");
         });
-        stream.rows(columns.triangles.tuples, [&](std::size_t begin, std::size_t end, std::string& out) {
-            const auto corners = corners_of(input.surface.triangles, begin, end);
-            for (std::size_t i = 0; i < corners.size(); ++i) {
-                out += i % 3 == 0 ? "TRGL " : " ";
-                append_number(out, corners[i] + 1);
-                if (i % 3 == 2) out += '\n';
-            }
-        });
-        stream.text("END\n");
-    });
 }
 
 } // namespace isotet::io

@@ -37,7 +37,9 @@ void VtkXmlFile::line(std::string_view text) {
     header_ += '\n';
 }
 
-void VtkXmlFile::array(const Column& column) { add(column, fmt::format(" NumberOfComponents=\"{}\"", column.components)); }
+void VtkXmlFile::array(const Column& column) {
+    add(column, fmt::format(" NumberOfComponents=\"{}\"", column.components));
+}
 
 void VtkXmlFile::flat_array(const Column& column) { add(column, {}); }
 

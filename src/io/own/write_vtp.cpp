@@ -26,8 +26,9 @@ Result<WriteReport> write_vtp(const SurfaceToWrite& input) {
     const Column offsets = counting("offsets", columns.triangles.type, triangles, 3, 3);
 
     VtkXmlFile file("PolyData");
-    file.line(fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{}">)",
-                          columns.positions.tuples, triangles));
+    file.line(fmt::format(
+        R"(<Piece NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{}">)",
+        columns.positions.tuples, triangles));
     add_data(file, "PointData", columns.point_normals, {&columns.edges, &columns.point_fields});
     add_data(file, "CellData", columns.cell_normals, {&columns.cell_fields});
     file.line("<Points>");

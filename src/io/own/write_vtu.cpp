@@ -12,7 +12,9 @@ Result<WriteReport> write_vtu(const GridToWrite& input) {
     // The XML format tells where each cell ends, not where it starts.
     Column ends = columns.offsets;
     ends.tuples = columns.cells;
-    ends.fill = [&columns](std::size_t begin, std::size_t end, std::byte* out) { columns.offsets.fill(begin + 1, end + 1, out); };
+    ends.fill = [&columns](std::size_t begin, std::size_t end, std::byte* out) {
+        columns.offsets.fill(begin + 1, end + 1, out);
+    };
 
     VtkXmlFile file("UnstructuredGrid");
     file.line(fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfCells="{}">)", columns.points.tuples, columns.cells));
