@@ -18,9 +18,9 @@ namespace isotet::io {
 
 /// A file that appears under its name only when it is whole.
 ///
-/// Bytes go to a new file in the same folder; commit() flushes it to the disk, checks it and renames it over `path`. Until
-/// then, and for ever if anything fails or the OutputFile is destroyed, the old file stays as it was and the new one is
-/// removed. Of a symbolic link the file that it points to is replaced; permission bits of an old file are kept.
+/// Bytes go to a new file in the same folder; commit() flushes it to the disk, checks it and renames it over `path`.
+/// Until then, and for ever if anything fails or the OutputFile is destroyed, the old file stays as it was and the new
+/// one is removed. Of a symbolic link the file that it points to is replaced; permission bits of an old file are kept.
 ///
 /// After an error every later call returns the same error.
 ///
