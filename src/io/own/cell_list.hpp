@@ -18,7 +18,8 @@ public:
     /// `points`   a number that every point number is below
     explicit CellList(std::uint64_t points) : wide_(points > (std::uint64_t{1} << 31U)) {}
 
-    void reserve(std::uint64_t corners) { wide_ ? wide_corners_.reserve(corners) : corners_.reserve(corners); }
+    /// Room for so many more corners.
+    void reserve(std::uint64_t corners) { wide_ ? reserve_in(wide_corners_, corners) : reserve_in(corners_, corners); }
 
     /// Starts a cell; `corners` calls of corner() must follow.
     void start(std::uint8_t vtk_type, std::uint32_t corners) {
@@ -48,6 +49,12 @@ private:
         std::uint64_t cells;
     };
 
+    /// Many small steps must not copy everything each time.
+    template <class Index>
+    static void reserve_in(std::vector<Index>& corners, std::uint64_t more) {
+        const std::size_t needed = corners.size() + more, capacity = corners.capacity();
+        if (needed > capacity) corners.reserve(std::max(needed, capacity + capacity / 2));
+    }
     template <class Offset>
     Array offsets() const;
     bool one_contoured_type() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -22,10 +23,6 @@ using namespace gmsh;
 
 constexpr std::string_view physical_name = "gmsh:physical", geometrical_name = "gmsh:geometrical";
 
-bool same_field(const DataSection& a, const DataSection& b) {
-    return a.association == b.association && a.name == b.name;
-}
-
 /// The file before its numbers are read. Sections are views into the bytes.
 struct Contents {
     File file;
@@ -33,6 +30,7 @@ struct Contents {
     Wants tags; ///< those the file has
     FileInfo info;
     std::vector<std::size_t> step_of; ///< of each data section
+    std::map<std::pair<Association, std::string>, std::vector<std::size_t>> sections_of; ///< of each field
 };
 
 /// Times by value; by step number where one field has two sections of one time value.
@@ -50,28 +48,29 @@ void find_times(Contents& contents) {
         by_step = by_step || (met && std::get<3>(*next) != data.step);
         seen.insert({data.association, data.name, data.time, data.step});
     }
-    const std::set<double>& all = by_step ? steps : times;
+    const std::set<double>& different = by_step ? steps : times;
+    const std::vector<double> all(different.begin(), different.end());
     for (const DataSection& data : contents.data) {
-        const double time = by_step ? data.step : data.time;
-        contents.step_of.push_back(static_cast<std::size_t>(std::distance(all.begin(), all.find(time))));
+        const auto step = std::lower_bound(all.begin(), all.end(), by_step ? data.step : data.time);
+        contents.step_of.push_back(static_cast<std::size_t>(step - all.begin()));
     }
-    if (all.size() > 1 || (all.size() == 1 && *all.begin() != 0)) contents.info.times.assign(all.begin(), all.end());
+    if (all.size() > 1 || (all.size() == 1 && all.front() != 0)) contents.info.times = all;
 }
 
 Result<void> find_fields(Contents& contents) {
     std::vector<FieldInfo>& fields = contents.info.fields;
-    std::vector<const DataSection*> first_sections;
-    for (const DataSection& data : contents.data) {
-        const auto met = std::find_if(first_sections.begin(), first_sections.end(),
-                                      [&](const DataSection* other) { return same_field(*other, data); });
-        if (met == first_sections.end()) {
-            first_sections.push_back(&data);
-            fields.push_back(
-                {data.name, data.association, ScalarType::float64, static_cast<std::size_t>(data.components)});
-        } else if ((*met)->components != data.components) {
+    for (std::size_t i = 0; i < contents.data.size(); ++i) {
+        const DataSection& data = contents.data[i];
+        std::vector<std::size_t>& sections = contents.sections_of[{data.association, data.name}];
+        sections.push_back(i);
+        const DataSection& first = contents.data[sections.front()];
+        if (first.components != data.components) {
             return broken(*data.section, fmt::format("{} has {} components, but {} in an earlier section",
-                                                     in_quotes(data.name), data.components, (*met)->components));
+                                                     in_quotes(data.name), data.components, first.components));
         }
+        if (sections.size() > 1) continue;
+        const auto components = static_cast<std::size_t>(data.components);
+        fields.push_back({data.name, data.association, ScalarType::float64, components});
     }
     const auto add_tags = [&](std::string_view name) {
         fields.push_back({std::string(name), Association::cell, ScalarType::int32, 1});
@@ -106,11 +105,9 @@ Result<Contents> open_contents(std::string_view bytes) {
 std::vector<const DataSection*> sections_at(const Contents& contents, const FieldInfo& field, std::size_t step) {
     std::vector<const DataSection*> at_step, all;
     std::set<std::size_t> steps;
-    for (std::size_t i = 0; i < contents.data.size(); ++i) {
-        const DataSection& data = contents.data[i];
-        if (data.association != field.association || data.name != field.name) continue;
-        all.push_back(&data);
-        if (contents.step_of[i] == step) at_step.push_back(&data);
+    for (const std::size_t i : contents.sections_of.at({field.association, field.name})) {
+        all.push_back(&contents.data[i]);
+        if (contents.step_of[i] == step) at_step.push_back(&contents.data[i]);
         steps.insert(contents.step_of[i]);
     }
     return steps.size() == 1 ? all : at_step;
@@ -152,9 +149,9 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
     wants.physical = contents->tags.physical && wanted(options, Association::cell, physical_name);
     wants.geometrical = contents->tags.geometrical && wanted(options, Association::cell, geometrical_name);
     for (const FieldInfo& field : contents->info.fields) {
-        const bool data = field.name != physical_name && field.name != geometrical_name;
-        wants.element_numbers |=
-            data && field.association == Association::cell && wanted(options, field.association, field.name);
+        const bool has_sections = contents->sections_of.contains({field.association, field.name});
+        wants.element_numbers |= has_sections && field.association == Association::cell &&
+                                 wanted(options, field.association, field.name);
     }
     Pace pace(progress, bytes.size());
     auto mesh =
@@ -173,8 +170,9 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
         if (auto added = add_data_field(*contents, field, *step, *mesh, pace, result); !added) return added.error();
     }
     if (wants.physical) grid.cell_fields.push_back({std::string(physical_name), Array::own(std::move(mesh->physical))});
-    if (wants.geometrical)
+    if (wants.geometrical) {
         grid.cell_fields.push_back({std::string(geometrical_name), Array::own(std::move(mesh->geometrical))});
+    }
     if (contents->file.find("ElementNodeData")) {
         result.notes.emplace_back("$ElementNodeData (values for each corner of each element) is left out");
     }
