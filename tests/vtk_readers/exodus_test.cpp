@@ -1,0 +1,150 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Exodus II files, alone and in parts, whole and broken.
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <vtk_exodusII.h>
+
+#include <isotet/read.hpp>
+
+#include "vtk_readers/sample_exodus.hpp"
+#include "vtk_readers/sample_grid.hpp"
+#include "vtk_readers/temporary_folder.hpp"
+
+namespace isotet::test {
+namespace {
+
+class ReadExodus : public testing::TestWithParam<int> {
+protected:
+    std::string written(ExodusSample sample = {}) const {
+        sample.format = GetParam();
+        write_exodus(sample, folder_.file("sample.e"));
+        return folder_.file("sample.e");
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_P(ReadExodus, SharesNodesBetweenBlocksAndDoesNotMoveThem) {
+    const auto result = read(written());
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.format, "exodus");
+    EXPECT_EQ(result->grid.points.tuples(), 5u);
+    EXPECT_EQ(result->grid.points.at(1, 0), 1);
+    ASSERT_EQ(result->grid.cells.count(), 2u);
+    const std::vector<std::int64_t> corners = {0, 1, 2, 3, 0, 2, 1, 4};
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(result->grid.cells.connectivity.at(i), static_cast<double>(corners[i]));
+}
+
+TEST_P(ReadExodus, KeepsTheNamesOfVariables) {
+    const auto result = read(written());
+    ASSERT_TRUE(result) << result.error().message;
+    std::vector<std::string> names;
+    for (const Field& field : result->grid.point_fields) names.push_back(field.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"disp_x", "disp_y", "disp_z", "temp"}));
+}
+
+TEST_P(ReadExodus, ReadsTheStepThatIsAskedFor) {
+    ReadOptions options;
+    options.step = 1;
+    options.point_fields = {"temp"};
+    const auto result = read(written(), options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, (std::vector<double>{0, 0.5}));
+    EXPECT_EQ(result->step, 1u);
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(result->grid.point_fields[0].values.at(4), 14);
+    options.step = 2;
+    const auto beyond = read(written(), options);
+    ASSERT_FALSE(beyond);
+    EXPECT_EQ(beyond.error().code, ErrorCode::invalid_argument);
+}
+
+TEST_P(ReadExodus, HasNaNInBlocksWithoutAVariable) {
+    const auto result = read(written());
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_EQ(result->grid.cell_fields.size(), 1u);
+    EXPECT_EQ(result->grid.cell_fields[0].values.at(0), 0);
+    EXPECT_TRUE(std::isnan(result->grid.cell_fields[0].values.at(1)));
+    ASSERT_EQ(result->notes.size(), 1u);
+    EXPECT_NE(result->notes[0].find("not defined in 1 of 2 element blocks"), std::string::npos);
+}
+
+TEST_P(ReadExodus, MovesThePointsWhenAsked) {
+    ReadOptions options;
+    options.step = 1;
+    for (const char* name : {"disp", "disp_"}) {
+        options.displace = name;
+        const auto result = read(written(), options);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.points.at(1, 0), 12);
+        EXPECT_EQ(result->grid.points.at(4, 2), 13);
+    }
+    options.displace = "nothing";
+    EXPECT_FALSE(read(written(), options));
+}
+
+TEST_P(ReadExodus, KeepsSinglePrecision) {
+    ExodusSample sample;
+    sample.single = true;
+    const auto result = read(written(sample));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.points.type(), ScalarType::float32);
+    EXPECT_EQ(result->grid.point_fields.at(0).values.type(), ScalarType::float32);
+}
+
+TEST_P(ReadExodus, IsAnErrorForEveryTruncation) {
+    const std::string content = content_of(written());
+    read_prefixes(content, "cut.e", content.size() / 60 + 1, [](const Result<ReadResult>& result, std::size_t length) {
+        EXPECT_FALSE(result) << "cut to " << length << " bytes";
+    });
+}
+
+TEST_P(ReadExodus, IsAnErrorWhenAnElementHasANodeThatIsNotThere) {
+    for (const int node : {0, -1, 6}) {
+        ExodusSample sample;
+        sample.blocks[1][2] = node;
+        const auto result = read(written(sample));
+        ASSERT_FALSE(result) << node;
+        EXPECT_NE(result.error().message.find("block 20 has node"), std::string::npos) << result.error().message;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Containers, ReadExodus, testing::Values(0, EX_64BIT_OFFSET, EX_64BIT_DATA, EX_NETCDF4));
+
+/// Two parts of one run: the second block's cell is in both of them.
+class ReadExodusParts : public testing::Test {
+protected:
+    ReadExodusParts() {
+        ExodusSample first;
+        write_exodus(first, folder_.file("run.e.2.0"));
+        ExodusSample second;
+        second.nodes = {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 0}, {0, -1, 0}};
+        second.node_ids = {5, 3, 2, 1, 6};
+        second.blocks = {{4, 2, 3, 1}, {4, 3, 1, 5}};
+        second.cell_ids = {2, 3};
+        write_exodus(second, folder_.file("run.e.2.1"));
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(ReadExodusParts, JoinsByTheNumbersOfNodesAndElements) {
+    for (const char* name : {"run.e.2.0", "run.e.2.1"}) {
+        const auto result = read(folder_.file(name));
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.points.tuples(), 6u);
+        EXPECT_EQ(result->grid.cells.count(), 3u);
+        EXPECT_EQ(result->grid.point_fields.at(3).values.tuples(), 6u);
+    }
+}
+
+TEST_F(ReadExodusParts, IsAnErrorWhenSomePartsAreMissing) {
+    std::filesystem::copy_file(folder_.file("run.e.2.0"), folder_.file("run.e.3.0"));
+    std::filesystem::copy_file(folder_.file("run.e.2.1"), folder_.file("run.e.3.1"));
+    const auto result = read(folder_.file("run.e.3.0"));
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::file);
+    EXPECT_NE(result.error().message.find("run.e.3.2"), std::string::npos) << result.error().message;
+}
+
+} // namespace
+} // namespace isotet::test

@@ -1,0 +1,63 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// HDF5 files for tests.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <hdf5.h>
+
+namespace isotet::test {
+
+class Hdf5Writer {
+public:
+    explicit Hdf5Writer(const std::string& path) : file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)) {}
+    Hdf5Writer(const Hdf5Writer&) = delete;
+    Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+    ~Hdf5Writer() { H5Fclose(file_); }
+
+    void group(const std::string& name) { H5Gclose(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)); }
+    void external_link(const std::string& name, const std::string& file, const std::string& target) {
+        H5Lcreate_external(file.c_str(), target.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    }
+
+    template <class T>
+    void data(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions) {
+        const hid_t space = H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr);
+        const hid_t set = H5Dcreate2(file_, name.c_str(), type<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+        H5Dwrite(set, type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+        H5Dclose(set);
+        H5Sclose(space);
+    }
+    void attribute(const std::string& group, const char* name, const std::vector<std::int64_t>& values) {
+        const hsize_t count = values.size();
+        attach(group, name, H5Screate_simple(1, &count, nullptr), H5T_NATIVE_INT64, values.data());
+    }
+    void attribute(const std::string& group, const char* name, const std::string& text) {
+        const hid_t type = H5Tcopy(H5T_C_S1);
+        H5Tset_size(type, text.size());
+        attach(group, name, H5Screate(H5S_SCALAR), type, text.data());
+        H5Tclose(type);
+    }
+
+private:
+    void attach(const std::string& group, const char* name, hid_t space, hid_t type, const void* values) {
+        const hid_t target = H5Gopen2(file_, group.c_str(), H5P_DEFAULT);
+        const hid_t attribute = H5Acreate2(target, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+        H5Awrite(attribute, type, values);
+        H5Aclose(attribute);
+        H5Gclose(target);
+        H5Sclose(space);
+    }
+    template <class T>
+    static hid_t type() {
+        if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+        else if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+        else if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
+        else if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
+        else return H5T_NATIVE_INT64;
+    }
+    hid_t file_;
+};
+
+} // namespace isotet::test

@@ -1,0 +1,146 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Requests and replies as bytes. The parent must survive every reply.
+#include <random>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "io/vtk/messages.hpp"
+
+namespace isotet::io::vtk {
+namespace {
+
+ReadResult made_result() {
+    ReadResult result;
+    result.info.format = "vtu";
+    result.info.fields = {{"p", Association::point, ScalarType::float32, 1}};
+    result.info.times = {0.5, 1.5};
+    result.step = 1;
+    result.notes = {"a note"};
+    result.grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 3);
+    result.grid.cells.connectivity = Array::own(std::vector<std::int32_t>{0, 1, 2, 3});
+    result.grid.point_fields = {{"p", Array::own(std::vector<float>{1, 2, 3, 4})}};
+    return result;
+}
+
+class MemoryFile {
+public:
+    explicit MemoryFile(const std::string& content = {}) : number(::memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
+        EXPECT_EQ(::pwrite(number, content.data(), content.size(), 0), static_cast<ssize_t>(content.size()));
+    }
+    ~MemoryFile() { ::close(number); }
+    std::string content() const {
+        std::string bytes(static_cast<std::size_t>(::lseek(number, 0, SEEK_END)), '\0');
+        EXPECT_EQ(::pread(number, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+        return bytes;
+    }
+    int number;
+};
+
+/// Reads every scalar, so that a view outside the mapping is a crash.
+std::size_t touch(const Reply& reply) {
+    std::size_t sum = 0;
+    const auto add = [&](const Array& array) {
+        for (std::size_t i = 0; i < array.bytes(); ++i) sum += static_cast<const unsigned char*>(array.data())[i];
+    };
+    if (const auto* result = std::get_if<ReadResult>(&reply)) {
+        for (const Array* array : {&result->grid.points, &result->grid.cells.connectivity, &result->grid.cells.offsets, &result->grid.cells.types})
+            add(*array);
+        for (const auto* fields : {&result->grid.point_fields, &result->grid.cell_fields})
+            for (const Field& field : *fields) add(field.values);
+    }
+    return sum;
+}
+
+TEST(Reply, ComesBackAsItWasWritten) {
+    const MemoryFile file;
+    ASSERT_TRUE(write_reply(file.number, made_result()));
+    const auto reply = map_reply(file.number);
+    ASSERT_TRUE(reply) << reply.error().message;
+    const auto* result = std::get_if<ReadResult>(&*reply);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->info.fields.at(0).name, "p");
+    EXPECT_EQ(result->info.times, (std::vector<double>{0.5, 1.5}));
+    EXPECT_EQ(result->notes, std::vector<std::string>{"a note"});
+    EXPECT_EQ(result->grid.points.at(3, 2), 1);
+    EXPECT_EQ(result->grid.cells.connectivity.type(), ScalarType::int32);
+    EXPECT_EQ(result->grid.point_fields.at(0).values.at(3), 4);
+}
+
+TEST(Reply, CannotBeChangedOnceItIsMapped) {
+    const MemoryFile file;
+    ASSERT_TRUE(write_reply(file.number, made_result()));
+    const auto reply = map_reply(file.number);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(::pwrite(file.number, "x", 1, 64), -1);
+    EXPECT_EQ(::ftruncate(file.number, 0), -1);
+}
+
+TEST(Reply, ThatItsWriterStillMapsForWritingIsRefused) {
+    const MemoryFile file;
+    ASSERT_TRUE(write_reply(file.number, made_result()));
+    void* window = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, file.number, 0);
+    ASSERT_NE(window, MAP_FAILED);
+    const auto reply = map_reply(file.number);
+    EXPECT_FALSE(reply);
+    ::munmap(window, 4096);
+}
+
+TEST(Reply, IsAnErrorForEveryTruncation) {
+    const MemoryFile whole;
+    ASSERT_TRUE(write_reply(whole.number, made_result()));
+    const std::string content = whole.content();
+    for (std::size_t length = 0; length < content.size(); ++length)
+        EXPECT_FALSE(map_reply(MemoryFile(content.substr(0, length)).number)) << length;
+}
+
+TEST(Reply, WithAnyBytesChangedIsAnErrorOrStaysInsideTheMapping) {
+    const MemoryFile whole;
+    ASSERT_TRUE(write_reply(whole.number, made_result()));
+    const std::string content = whole.content();
+    std::mt19937 random(1);
+    std::size_t sum = 0, refused = 0;
+    for (int trial = 0; trial < 20000; ++trial) {
+        std::string broken = content;
+        for (unsigned changes = 1 + random() % 3; changes > 0; --changes) {
+            const std::size_t at = random() % broken.size();
+            broken[at] = random() % 2 ? static_cast<char>(random()) : static_cast<char>(random() % 2 ? 0xFF : 0x7F);
+        }
+        const MemoryFile file(broken);
+        if (const auto reply = map_reply(file.number)) sum += touch(*reply);
+        else ++refused;
+    }
+    EXPECT_GT(sum, 0u);
+    EXPECT_GT(refused, 1000u);
+}
+
+TEST(Request, ComesBackAsItWasWritten) {
+    Request request;
+    request.task = Task::inspect;
+    request.format = "exodus";
+    request.path = "/a/b c.e";
+    request.options.point_fields = {"p", "q"};
+    request.options.step = 7;
+    request.options.memory_limit = 1u << 30;
+    request.options.allow_outside = true;
+    const auto decoded = decode_request(encode(request));
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded->task, Task::inspect);
+    EXPECT_EQ(decoded->path, request.path);
+    EXPECT_EQ(decoded->options.point_fields, request.options.point_fields);
+    EXPECT_FALSE(decoded->options.cell_fields);
+    EXPECT_EQ(decoded->options.step, request.options.step);
+    EXPECT_TRUE(decoded->options.allow_outside);
+    EXPECT_EQ(decoded->options.memory_limit, request.options.memory_limit);
+}
+
+TEST(Request, CutShortIsAnError) {
+    const std::string bytes = encode(Request{});
+    for (std::size_t length = 0; length < bytes.size(); ++length) EXPECT_FALSE(decode_request(bytes.substr(0, length)));
+    EXPECT_FALSE(decode_request(bytes + "x"));
+}
+
+} // namespace
+} // namespace isotet::io::vtk

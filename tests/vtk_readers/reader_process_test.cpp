@@ -1,0 +1,146 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What happens to the reader process must never happen to its parent.
+#include <atomic>
+#include <csignal>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <isotet/read.hpp>
+
+#include "vtk_readers/sample_grid.hpp"
+#include "vtk_readers/temporary_folder.hpp"
+
+namespace isotet::test {
+namespace {
+
+class ReaderProcess : public testing::Test {
+protected:
+    ReaderProcess() { write_vtu(sample_grid(), folder_.file("sample.vtu"), Encoding::appended_raw); }
+
+    /// Reads the sample through a script in place of the reader program.
+    Error error_with(std::string_view commands, const Progress& progress = {}) {
+        ReadOptions options;
+        options.reader_program = folder_.write_script("reader", commands);
+        options.time_limit = time_limit_;
+        const auto result = read(folder_.file("sample.vtu"), options, progress);
+        return result ? Error{ErrorCode::internal, "no error"} : result.error();
+    }
+    static void expect_words(const Error& error, std::initializer_list<std::string_view> words) {
+        for (const std::string_view word : words) EXPECT_NE(error.message.find(word), std::string::npos) << error.message;
+    }
+    TemporaryFolder folder_;
+    std::chrono::seconds time_limit_{60};
+};
+
+TEST_F(ReaderProcess, KilledBySignalIsAnErrorThatNamesReaderAndSignal) {
+    const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
+    EXPECT_EQ(error.code, ErrorCode::invalid_data);
+    expect_words(error, {"sample.vtu", "reader of vtu", "signal 11", "Segmentation fault", "last words"});
+}
+
+TEST_F(ReaderProcess, EndingByItselfIsAnErrorThatNamesTheStatus) {
+    const Error error = error_with("echo 'bad zone'; exit 255");
+    EXPECT_EQ(error.code, ErrorCode::invalid_data);
+    expect_words(error, {"reader of vtu", "status 255", "bad zone"});
+}
+
+TEST_F(ReaderProcess, EndingWithoutAReplyIsAnError) { EXPECT_EQ(error_with("exit 0").code, ErrorCode::internal); }
+
+TEST_F(ReaderProcess, ReplyOfGarbageIsAnError) {
+    EXPECT_EQ(error_with("head -c 100000 /dev/urandom >&4; exit 0").code, ErrorCode::internal);
+}
+
+TEST_F(ReaderProcess, OutputWithControlCharactersIsEscaped) {
+    const Error error = error_with("printf 'red \\033[31m\\007\\377'; exit 3");
+    expect_words(error, {"red \\x1b[31m\\x07\\xff"});
+}
+
+TEST_F(ReaderProcess, OutputWithoutEndIsCutToItsLastLines) {
+    const Error error = error_with("yes 0123456789 | head -c 3000000; echo the end; exit 3");
+    EXPECT_LT(error.message.size(), 6000u);
+    expect_words(error, {"the end"});
+}
+
+TEST_F(ReaderProcess, IsStoppedAtItsTimeLimit) {
+    time_limit_ = std::chrono::seconds(1);
+    const Error error = error_with("sleep 1000");
+    EXPECT_EQ(error.code, ErrorCode::machine);
+    expect_words(error, {"1 s", "time limit"});
+}
+
+TEST_F(ReaderProcess, IsStoppedOnCancel) {
+    std::atomic<bool> cancel = false;
+    Progress progress;
+    progress.cancel = &cancel;
+    std::thread user([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        cancel = true;
+    });
+    EXPECT_EQ(error_with("sleep 1000", progress).code, ErrorCode::cancelled);
+    user.join();
+}
+
+TEST_F(ReaderProcess, FindsNoOtherOpenFiles) {
+    const Error error = error_with("ls /proc/$$/fd | tr '\\n' ' '; exit 3");
+    expect_words(error, {"0 1 2 "});
+    EXPECT_EQ(error.message.find(" 6 "), std::string::npos) << error.message;
+}
+
+TEST_F(ReaderProcess, HittingItsMemoryLimitIsAnErrorThatNamesTheLimit) {
+    ReadOptions options;
+    options.memory_limit = 1000000;
+    const auto result = read(folder_.file("sample.vtu"), options);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
+    expect_words(result.error(), {"1000000 bytes"});
+}
+
+TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
+    ReadOptions options;
+    options.reader_program = folder_.file("not-there");
+    const auto result = read(folder_.file("sample.vtu"), options);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::machine);
+    expect_words(result.error(), {"not-there", "No such file"});
+}
+
+TEST_F(ReaderProcess, WorksForAParentThatIgnoresItsChildren) {
+    std::signal(SIGCHLD, SIG_IGN);
+    expect_sample(read(folder_.file("sample.vtu")));
+    std::signal(SIGCHLD, SIG_DFL);
+}
+
+TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {
+    ASSERT_EXIT(
+        {
+            for (int descriptor = 0; descriptor < 3; ++descriptor) ::close(descriptor);
+            const auto result = read(folder_.file("sample.vtu"));
+            ::_exit(result && result->grid.cells.count() == 9 ? 0 : 1);
+        },
+        testing::ExitedWithCode(0), "");
+}
+
+TEST_F(ReaderProcess, ArraysOutliveEverythingElse) {
+    Array points;
+    {
+        auto result = read(folder_.file("sample.vtu"));
+        ASSERT_TRUE(result) << result.error().message;
+        points = result->grid.points;
+    }
+    EXPECT_EQ(points.at(12, 0), 3);
+}
+
+TEST_F(ReaderProcess, ServesManyThreadsAtOnce) {
+    std::atomic<int> read_well = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i)
+        threads.emplace_back([&] {
+            if (const auto result = read(folder_.file("sample.vtu")); result && result->grid.cells.count() == 9) ++read_well;
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(read_well, 4);
+}
+
+} // namespace
+} // namespace isotet::test

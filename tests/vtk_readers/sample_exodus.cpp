@@ -1,0 +1,61 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vtk_readers/sample_exodus.hpp"
+
+#include <gtest/gtest.h>
+#include <vtk_exodusII.h>
+
+namespace isotet::test {
+namespace {
+
+template <class Real>
+void write(const ExodusSample& sample, const std::string& path) {
+    int word = sizeof(Real), stored = sizeof(Real);
+    const int file = ex_create(path.c_str(), EX_CLOBBER | sample.format, &word, &stored);
+    ASSERT_GE(file, 0);
+    const auto count = static_cast<std::int64_t>(sample.nodes.size());
+    std::int64_t cells = 0;
+    for (const auto& block : sample.blocks) cells += static_cast<std::int64_t>(block.size() / 4);
+    ex_put_init(file, "sample", 3, count, cells, static_cast<std::int64_t>(sample.blocks.size()), 0, 0);
+    std::array<std::vector<Real>, 3> axes;
+    for (const auto& node : sample.nodes)
+        for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].push_back(static_cast<Real>(node[axis]));
+    ex_put_coord(file, axes[0].data(), axes[1].data(), axes[2].data());
+    for (std::size_t b = 0; b < sample.blocks.size(); ++b) {
+        const auto id = static_cast<ex_entity_id>(10 * (b + 1));
+        ex_put_block(file, EX_ELEM_BLOCK, id, "TETRA", static_cast<std::int64_t>(sample.blocks[b].size() / 4), 4, 0, 0, 0);
+        ex_put_conn(file, EX_ELEM_BLOCK, id, sample.blocks[b].data(), nullptr, nullptr);
+    }
+    ex_put_id_map(file, EX_NODE_MAP, sample.node_ids.data());
+    ex_put_id_map(file, EX_ELEM_MAP, sample.cell_ids.data());
+    if (sample.steps > 0) {
+        char names[4][8] = {"disp_x", "disp_y", "disp_z", "temp"};
+        char* node_names[] = {names[0], names[1], names[2], names[3]};
+        char load[] = "load";
+        char* cell_names[] = {load};
+        ex_put_variable_param(file, EX_NODAL, 4);
+        ex_put_variable_names(file, EX_NODAL, 4, node_names);
+        ex_put_variable_param(file, EX_ELEM_BLOCK, 1);
+        ex_put_variable_names(file, EX_ELEM_BLOCK, 1, cell_names);
+        std::vector<int> truth(sample.blocks.size(), 0);
+        truth[0] = 1;
+        ex_put_truth_table(file, EX_ELEM_BLOCK, static_cast<int>(sample.blocks.size()), 1, truth.data());
+    }
+    for (int step = 0; step < sample.steps; ++step) {
+        const Real time = static_cast<Real>(0.5 * step);
+        ex_put_time(file, step + 1, &time);
+        std::vector<Real> values;
+        for (std::int64_t node = 0; node < count; ++node) values.push_back(static_cast<Real>(10 * step + static_cast<int>(node)));
+        for (int variable = 1; variable <= 4; ++variable) ex_put_var(file, step + 1, EX_NODAL, variable, 1, count, values.data());
+        ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, static_cast<std::int64_t>(sample.blocks[0].size() / 4), values.data());
+    }
+    ASSERT_GE(ex_close(file), 0);
+}
+
+} // namespace
+
+void write_exodus(const ExodusSample& sample, const std::string& path) {
+    if (sample.single) write<float>(sample, path);
+    else write<double>(sample, path);
+}
+
+} // namespace isotet::test

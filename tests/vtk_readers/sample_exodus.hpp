@@ -1,0 +1,23 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Small Exodus files through the Exodus library: two blocks of tetrahedra that share three nodes.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace isotet::test {
+
+struct ExodusSample {
+    std::vector<std::array<double, 3>> nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+    std::vector<std::vector<int>> blocks = {{1, 2, 3, 4}, {1, 3, 2, 5}}; ///< corners from 1, four a cell
+    std::vector<int> node_ids = {1, 2, 3, 4, 5};
+    std::vector<int> cell_ids = {1, 2};
+    bool single = false; ///< float32
+    int steps = 2;       ///< with disp_x, disp_y, disp_z and temp on nodes: 10 * step + node; load on the first block only
+    int format = 0;      ///< a flag of ex_create: EX_64BIT_OFFSET, EX_NETCDF4 and so on
+};
+
+void write_exodus(const ExodusSample& sample, const std::string& path);
+
+} // namespace isotet::test
