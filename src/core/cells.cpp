@@ -15,7 +15,8 @@ namespace isotet {
 std::size_t Cells::count() const noexcept {
     if (!types.empty()) return types.tuples();
     if (!offsets.empty()) return offsets.tuples() - 1;
-    return connectivity.tuples() / static_cast<std::size_t>(core::corners_of(static_cast<std::uint8_t>(uniform_type)));
+    const auto corners = static_cast<std::size_t>(core::corners_of(static_cast<std::uint8_t>(uniform_type)));
+    return corners ? connectivity.tuples() / corners : 0;
 }
 
 namespace core {
@@ -74,8 +75,8 @@ void split_wedge(const std::uint64_t* corners, CellTets& out) {
     const auto lowest = std::min_element(corners, corners + 6) - corners;
     std::uint64_t v[6];
     for (int i = 0; i < 6; ++i) v[i] = corners[rotations[lowest][i]];
-    out.add(v[3], v[5], v[4], v[0]);
-    add_quad(out, v[1], v[4], v[5], v[2], v[0]);
+    out.add(v[3], v[4], v[5], v[0]); // VTK's wedges have their first triangle outward: so these are upright
+    add_quad(out, v[1], v[2], v[5], v[4], v[0]);
 }
 
 void split_pyramid(const std::uint64_t* v, CellTets& out) { add_quad(out, v[0], v[1], v[2], v[3], v[4]); }

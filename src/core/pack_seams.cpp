@@ -224,8 +224,10 @@ private:
         std::vector<Foreign> foreign;
         collect(c, neighbours, foreign);
         std::uint32_t* words = packed_.links.data() + header.first_link;
-        std::memcpy(words, neighbours.data(), neighbours.size() * sizeof(Neighbour));
-        words += 2 * neighbours.size();
+        for (const Neighbour& neighbour : neighbours) {
+            std::memcpy(words, &neighbour, sizeof neighbour);
+            words += 2;
+        }
 
         std::uint8_t points[max_cluster_points + 3] = {};
         for (std::size_t k = 0; k < header.foreign_points; ++k) points[k] = ref(c, k).index();
@@ -236,7 +238,7 @@ private:
         own.reserve(header.own_seams + 1u);
         for_seams(c, [&](SeamEdge edge) { own.push_back(edge); }, [](const Foreign&) {});
         if (own.size() % 2) own.push_back({});
-        std::memcpy(words, own.data(), own.size() * sizeof(SeamEdge));
+        std::memcpy(words, own.data(), own.size() * sizeof(SeamEdge)); // never null: room for one was reserved
     }
 
     /// After every cluster's own seams are there: their places in their owners.

@@ -1,0 +1,111 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Any cells on any points: a grid is refused with an error, or packs, extracts alike on both engines, and gives a surface
+// in which nothing is to blame.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+#include <isotet/check.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+
+#include "support/surface_bytes.hpp"
+
+namespace {
+
+using namespace isotet;
+
+/// The fuzzer's bytes one after another; 0 when they have run out.
+class Bytes {
+public:
+    Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+    std::uint8_t next() { return at_ < size_ ? data_[at_++] : 0; }
+    bool left() const { return at_ < size_; }
+
+private:
+    const std::uint8_t* data_;
+    std::size_t size_, at_ = 0;
+};
+
+float some_value(std::uint8_t byte) {
+    switch (byte) {
+    case 255: return std::numeric_limits<float>::quiet_NaN();
+    case 254: return std::numeric_limits<float>::infinity();
+    case 253: return -std::numeric_limits<float>::infinity();
+    case 252: return std::numeric_limits<float>::denorm_min();
+    case 251: return -0.0f;
+    case 250: return std::numeric_limits<float>::max();
+    default: return static_cast<float>(byte % 16) / 4 - 1;
+    }
+}
+
+Grid some_grid(Bytes& bytes) {
+    Grid grid;
+    const std::size_t points = 4 + bytes.next() % 40;
+    const bool may_be_out_of_range = bytes.next() == 7;
+    std::vector<float> coordinates(3 * points), values(points);
+    for (float& x : coordinates) {
+        const std::uint8_t byte = bytes.next();
+        x = byte == 255 ? some_value(bytes.next()) : static_cast<float>(byte % 64) / 8;
+    }
+    for (float& v : values) v = some_value(bytes.next());
+    std::vector<std::uint8_t> types;
+    std::vector<std::int32_t> offsets{0}, connectivity;
+    while (bytes.left() && types.size() < 200) {
+        static constexpr std::uint8_t kinds[] = {10, 10, 10, 10, 11, 12, 13, 14, 5, 24};
+        static constexpr int corners[] = {4, 4, 4, 4, 8, 8, 6, 5, 3, 10};
+        const std::size_t kind = bytes.next() % 10;
+        types.push_back(kinds[kind]);
+        for (int k = 0; k < corners[kind]; ++k) {
+            const std::uint8_t byte = bytes.next();
+            connectivity.push_back(may_be_out_of_range ? static_cast<std::int8_t>(byte) : static_cast<int>(byte % points));
+        }
+        offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+    }
+    grid.points = Array::own(std::move(coordinates), 3);
+    grid.cells = {Array::own(std::move(connectivity)), Array::own(std::move(offsets)), Array::own(std::move(types))};
+    grid.point_fields = {{"value", Array::own(std::move(values))}};
+    return grid;
+}
+
+void expect(bool true_) {
+    if (!true_) std::abort();
+}
+
+void extract_and_check(const Grid& grid, const PointField& field, const PackedGrid& packed, double isovalue, Ties ties) {
+    ExtractOptions options;
+    options.ties = ties;
+    options.edge_ends = true;
+    options.normals = Normals::gradient;
+    options.threads = 1;
+    const auto surface = extract(packed, isovalue, options);
+    options.engine = Engine::reference;
+    const auto reference = extract(packed, isovalue, options);
+    expect(surface && reference);
+    expect(test::bytes_of(surface->surface) == test::bytes_of(reference->surface));
+    const auto report = check(surface->surface, {.grid = &grid, .field = &field});
+    expect(report && report->sound);
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    const double isovalue = some_value(bytes.next());
+    const auto precision = bytes.next() % 4 ? Precision::single : Precision::double_;
+    const Grid grid = some_grid(bytes);
+    const PointField field{"value", grid.point_fields[0].values, false, {}};
+    const auto report = survey(grid, {.faces = true, .threads = 1});
+    const auto packed = pack(grid, field, {.precision = precision, .gradients = true, .threads = 1});
+    expect(bool(report) == bool(packed));
+    if (!packed) {
+        expect(packed.error().code == ErrorCode::invalid_data && !packed.error().message.empty());
+        return 0;
+    }
+    expect(packed->report().tets == report->tets - report->repeated_tets);
+    if (!std::isfinite(isovalue)) return 0;
+    for (const Ties ties : {Ties::merge, Ties::keep}) extract_and_check(grid, field, *packed, isovalue, ties);
+    return 0;
+}
