@@ -1,0 +1,154 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "bench/isotet_contestant.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+#include "bench/arrays.hpp"
+#include "bench/copy_bandwidth.hpp"
+#include "bench/grid_arrays.hpp"
+#include "bench/must_move.hpp"
+
+namespace isotet::bench {
+
+namespace {
+
+Array to_array(Reals reals, std::size_t components) {
+    return std::visit([&](auto& values) { return Array::own(std::move(values), components); }, reals);
+}
+
+Array negated(const Array& array) {
+    const auto negate = [](auto values) {
+        std::vector<typename decltype(values)::value_type> out(values.size());
+        std::transform(values.begin(), values.end(), out.begin(), std::negate<>());
+        return Array::own(std::move(out));
+    };
+    return array.type() == ScalarType::float64 ? negate(array.as<double>()) : negate(array.as<float>());
+}
+
+Reply describe(const Extraction& extraction, double seconds) {
+    Reply reply;
+    reply.number("seconds", seconds)
+        .count("vertices", extraction.surface.vertices())
+        .count("triangles", extraction.surface.triangle_count())
+        .count("tied_points", extraction.report.tied_points)
+        .count("transient_bytes", extraction.report.transient_bytes);
+    return reply;
+}
+
+[[noreturn]] void refuse(const std::string& what, const std::string& name) {
+    throw std::invalid_argument("no such " + what + ": '" + name + "'");
+}
+
+} // namespace
+
+Reply IsotetContestant::answer(const Words& words) {
+    const std::string& command = words[0];
+    const auto rest = [&](std::size_t first) {
+        return first < words.size() ? Words(words.begin() + static_cast<std::ptrdiff_t>(first), words.end()) : Words();
+    };
+    if (command == "open") return open(word(words, 1), whole_number(words, 2));
+    if (command == "pack") return pack_as(word(words, 1), rest(2));
+    if (command == "extract") return extract_from(word(words, 1), number(words, 2), rest(3));
+    if (command == "once") return extract_once(number(words, 1));
+    if (command == "set_field") return set_field(word(words, 1));
+    if (command == "release") return Reply().count("released", packed_.erase(word(words, 1)));
+    if (command == "copy") return Reply().number("bytes_per_second", copy_bandwidth(whole_number(words, 1)));
+    if (command == "arrays") return write_grid_arrays(word(words, 1), word(words, 2), word(words, 3), whole_number(words, 4));
+    refuse("command", command);
+}
+
+Reply IsotetContestant::open(const std::string& folder, int threads) {
+    packed_.clear();
+    Arrays arrays = read_arrays(folder);
+    threads_ = threads;
+    const std::uint64_t tets = arrays.tet_count();
+    grid_ = {};
+    grid_.points = to_array(std::move(arrays.points), 3);
+    grid_.cells.connectivity = Array::own(std::move(arrays.tets));
+    field_.name = "field";
+    field_.values = to_array(std::move(arrays.field), 1);
+    negative_.name = "negative";
+    negative_.values = negated(field_.values);
+    const std::uint64_t bytes = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
+    return Reply().count("points", grid_.points.tuples()).count("tets", tets).count("input_bytes", bytes);
+}
+
+PackOptions IsotetContestant::pack_options() const {
+    PackOptions options;
+    options.threads = threads_;
+    return options;
+}
+
+Reply IsotetContestant::pack_as(const std::string& name, const Words& words) {
+    PackOptions options = pack_options();
+    for (const std::string& option : words) {
+        if (option == "gradients") options.gradients = true;
+        else if (option == "source_cells") options.source_cells = true;
+        else refuse("option of packing", option);
+    }
+    packed_.erase(name);
+    const Stopwatch watch;
+    PackedGrid made = pack(grid_, field_, options).value();
+    const double seconds = watch.seconds();
+
+    const PackReport& report = packed_.emplace(name, std::move(made)).first->second.report();
+    const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
+    const std::uint64_t kept = report.bytes + report.source_bytes + report.gradient_bytes;
+    return Reply()
+        .number("seconds", seconds)
+        .count("must_move", input + kept)
+        .count("tets", report.tets)
+        .count("points", report.points)
+        .count("clusters", report.clusters)
+        .count("repeated_tets", report.repeated_tets)
+        .count("bytes", report.bytes)
+        .count("source_bytes", report.source_bytes)
+        .count("gradient_bytes", report.gradient_bytes);
+}
+
+PackedGrid& IsotetContestant::packed(const std::string& name) {
+    const auto found = packed_.find(name);
+    if (found == packed_.end()) refuse("packed grid", name);
+    return found->second;
+}
+
+Reply IsotetContestant::extract_from(const std::string& name, double isovalue, const Words& attributes) {
+    const PackedGrid& from = packed(name);
+    ExtractOptions options;
+    options.threads = threads_;
+    for (const std::string& attribute : attributes) {
+        if (attribute == "gradient_normals") options.normals = Normals::gradient;
+        else if (attribute == "face_normals") options.normals = Normals::face;
+        else if (attribute == "point_field") options.point_fields = {{"negative", negative_.values}};
+        else if (attribute == "source_cells") options.source_cells = true;
+        else if (attribute == "edge_ends") options.edge_ends = true;
+        else refuse("attribute", attribute);
+    }
+    const Stopwatch watch;
+    const Extraction extraction = extract(from, isovalue, options).value();
+    return describe(extraction, watch.seconds()).count("must_move", extraction_must_move(from, isovalue, extraction.surface));
+}
+
+Reply IsotetContestant::extract_once(double isovalue) {
+    ExtractOptions options;
+    options.threads = threads_;
+    const Stopwatch watch;
+    // The packed grid goes before the time is taken: nothing is kept.
+    const Extraction extraction = [&] { return extract(pack(grid_, field_, pack_options()).value(), isovalue, options).value(); }();
+    const double seconds = watch.seconds();
+    const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
+    return describe(extraction, seconds).count("must_move", input + bytes_of(extraction.surface));
+}
+
+Reply IsotetContestant::set_field(const std::string& name) {
+    PackedGrid& changed = packed(name);
+    const Stopwatch watch;
+    changed.set_field(negative_, threads_).value();
+    const double seconds = watch.seconds();
+    changed.set_field(field_, threads_).value(); // as it was, for the commands that follow
+    return Reply().number("seconds", seconds).count("must_move", new_field_must_move(changed, field_.values.bytes()));
+}
+
+} // namespace isotet::bench

@@ -1,0 +1,15 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Resident memory of this process, as Linux counts it. C++17.
+#pragma once
+
+#include <cstdint>
+
+namespace isotet::bench {
+
+std::uint64_t resident_bytes();
+
+/// The most since the process began, or since forget_peak().
+std::uint64_t peak_bytes();
+void forget_peak();
+
+} // namespace isotet::bench

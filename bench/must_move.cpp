@@ -1,0 +1,57 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "bench/must_move.hpp"
+
+#include "core/packed.hpp"
+#include "core/storage.hpp"
+
+namespace isotet::bench {
+
+namespace {
+
+template <class Real>
+std::uint64_t bytes_of_selected(const core::Packed& packed, Real isovalue) {
+    const core::Values<Real>& reals = packed.as<Real>();
+    std::uint64_t bytes = reals.ranges.bytes();
+    for (std::size_t cluster = 0; cluster < packed.clusters(); ++cluster) {
+        const core::Range<Real>& range = reals.ranges[cluster];
+        if (!(range.lower <= isovalue && isovalue <= range.upper)) continue;
+        const core::ClusterHeader& header = packed.headers[cluster];
+        bytes += sizeof(header) + 4 * core::ClusterLinks::words(header) + 4 * sizeof(Real) * header.own_points;
+        const std::uint8_t step = core::quantize(isovalue, range);
+        const std::size_t groups = (header.tets + core::group_size - 1) / core::group_size;
+        for (std::size_t group = header.first_group; group < header.first_group + groups; ++group) {
+            const core::GroupRange steps = packed.group_ranges[group];
+            bytes += sizeof(steps);
+            if (steps.lower <= step && step <= steps.upper) bytes += core::group_size * sizeof(core::StoredTet);
+        }
+    }
+    return bytes;
+}
+
+} // namespace
+
+std::uint64_t bytes_of(const Surface& surface) {
+    std::uint64_t bytes = surface.positions.bytes() + surface.triangles.bytes() + surface.normals.bytes() +
+                          surface.edge_ends.bytes() + surface.edge_weights.bytes() + surface.source_cells.bytes();
+    for (const SurfaceField& field : surface.point_fields) bytes += field.values.bytes();
+    for (const SurfaceField& field : surface.cell_fields) bytes += field.values.bytes();
+    return bytes;
+}
+
+std::uint64_t extraction_must_move(const PackedGrid& packed, double isovalue, const Surface& surface) {
+    const core::Packed& data = packed.data();
+    const std::uint64_t read = data.single() ? bytes_of_selected(data, core::store_isovalue<float>(isovalue, data.storage))
+                                             : bytes_of_selected(data, core::store_isovalue<double>(isovalue, data.storage));
+    return read + bytes_of(surface);
+}
+
+std::uint64_t new_field_must_move(const PackedGrid& packed, std::uint64_t field_bytes) {
+    const core::Packed& data = packed.data();
+    const auto reals = [](const auto& values) { return values.values.bytes() + values.ranges.bytes(); };
+    const std::uint64_t written = data.group_ranges.bytes() + (data.single() ? reals(data.as<float>()) : reals(data.as<double>()));
+    const std::uint64_t read = field_bytes + data.point_ids.bytes() + data.wide_point_ids.bytes() + data.headers.bytes() +
+                               data.links.bytes() + data.tets.bytes();
+    return read + written;
+}
+
+} // namespace isotet::bench

@@ -1,0 +1,58 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""The grids of a race: made ones, and files."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+# Six tets a cube, side^3 cubes.
+SIDES = {0.1: 26, 0.3: 37, 1: 55, 5: 94, 30: 170, 100: 255}
+SHAPES = ("kuhn", "shuffled", "layer")
+
+# The surface of the gyroid, 55 side^2 triangles near 0; none of these is a value of a float32 field.
+FIELD = "gyroid"
+ISOVALUES = (-0.65, -0.35, -0.05, 0.25, 0.55)
+
+
+@dataclass(frozen=True)
+class Case:
+    name: str
+    shape: str  # "file" for files
+    source: str
+    field: str
+    isovalues: tuple[float, ...] | None  # None: spread over the range of the field
+    about_tets: float = 0
+
+    def choose_isovalues(self, lower: float, upper: float, count: int) -> list[float]:
+        if self.isovalues is None:
+            return [lower + (k + 1) * (upper - lower) / (count + 1) for k in range(count)]
+        middle = len(self.isovalues) // 2
+        first = max(0, min(middle - count // 2, len(self.isovalues) - count))
+        return list(self.isovalues[first:first + count])
+
+
+def made(shape: str, millions: float) -> Case:
+    return Case(f"{shape}_{millions:g}M", shape, f"make:{shape}:{SIDES[millions]}", FIELD, ISOVALUES,
+                6 * SIDES[millions] ** 3)
+
+
+def file_case(path: Path, field: str) -> Case:
+    return Case(path.stem, "file", str(path), field, None)
+
+
+def made_cases(quick: bool, most_tets: float) -> list[Case]:
+    """All sizes and shapes; quick: the regular grid up to 30 million, the others at 5 million."""
+    cases = []
+    for millions in SIDES:
+        for shape in SHAPES:
+            if quick and (millions > 30 or (shape != "kuhn" and millions != 5)):
+                continue
+            case = made(shape, millions)
+            if case.about_tets <= most_tets:
+                cases.append(case)
+    return cases
+
+
+def shipped_files(root: Path) -> list[Case]:
+    """Real grids of data/ with a field worth a surface."""
+    files = [("vtu/artery_flow_tet_wedge.vtu", "Umag"), ("medit/cube_sphere_26k.meshb", "x"), ("vtkhdf/can_hex.hdf", "z")]
+    return [file_case(root / "data" / path, field) for path, field in files]

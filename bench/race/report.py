@@ -1,0 +1,194 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""What a race leaves: CSV, JSON, charts, a table on the terminal, and the tables of docs/performance."""
+
+import csv
+import dataclasses
+import json
+from pathlib import Path
+from statistics import median
+
+from charts import short_time, write_charts
+from measure import CaseResult, Measurement
+from methods import BY_KEY
+from summary import Line, growth_exponent, lines_of
+
+BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+
+
+def write_all(folder: Path, results: list[CaseResult], facts: dict) -> list[Line]:
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [line for result in results for line in lines_of(result)]
+    write_csv(folder / "measurements.csv", [one for result in results for one in result.measurements], Measurement)
+    write_csv(folder / "summary.csv", lines, Line)
+    (folder / "run.json").write_text(json.dumps(facts | {"cases": [facts_of(result) for result in results]}, indent=1) + "\n")
+    write_charts(folder, results, lines, conditions(facts))
+    (folder / "tables.md").write_text(tables(results, lines, facts))
+    return lines
+
+
+def write_csv(path: Path, rows: list, kind: type) -> None:
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, [field.name for field in dataclasses.fields(kind)], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(dataclasses.asdict(row) for row in rows)
+
+
+def facts_of(result: CaseResult) -> dict:
+    return {"name": result.case.name, "field": result.case.field, "isovalues": result.isovalues, "tets": result.tets,
+            "points": result.points, "copy_bytes_per_second": result.copy_bandwidths, "packed": result.packed,
+            "peak_bytes": result.peaks, "rivals": result.rivals, "surfaces_compared": result.compared,
+            "differences": result.differences, "refused": result.refused}
+
+
+def conditions(facts: dict) -> str:
+    machine = facts["machine"]
+    return (f"{machine['processor']}, {facts['threads']} threads, {machine['simd']}, commit {machine['commit']}, "
+            f"{facts['rounds']} rounds")
+
+
+def print_table(lines: list[Line], case: str) -> None:
+    print(f"  {'':<50} {'best':>9} {'median':>9} {'worst':>9} {'triangles':>10} {'Mtet/s':>8} {'share':>6} {'faster':>7}")
+    for line in lines:
+        if line.case != case:
+            continue
+        triangles = f"{line.triangles:,.0f}" if line.triangles is not None else ""
+        faster = f"{line.speedup_best:.1f} x" if line.speedup_best is not None else ""
+        print(f"  {BY_KEY[line.method].label:<50} {short_time(line.best):>9} {short_time(line.median):>9} "
+              f"{short_time(line.worst):>9} {triangles:>10} {line.tets_a_second / 1e6:>8.1f} {100 * line.share:>5.0f}% "
+              f"{faster:>7}", flush=True)
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    """The first column is text, all others are numbers."""
+    out = ["| " + " | ".join(header) + " |", "|---" + "|---:" * (len(header) - 1) + "|"]
+    return "\n".join(out + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def tables(results: list[CaseResult], lines: list[Line], facts: dict) -> str:
+    parts = [conditions_table(results, facts), "## One surface after another\n", speed_table(results, lines), exponents(lines),
+             "## What surrounds it\n", steps_table(results, lines), "## What normals and attributes cost\n",
+             attributes_table(results, lines), "## Memory\n", memory_table(results),
+             "## All methods\n", *(all_methods(result, lines) for result in results)]
+    return "\n".join(part for part in parts if part)
+
+
+def conditions_table(results: list[CaseResult], facts: dict) -> str:
+    machine = facts["machine"]
+    copies = [value for result in results for value in result.copy_bandwidths]
+    rivals = {}
+    for result in results:
+        for name, rival in result.rivals.items():
+            rivals[name] = f"VTK {rival['version']}, {rival['backend']}, {rival['threads']} threads"
+    rows = [
+        ["machine", f"{machine['processor']}, {machine['processors']} processors, {machine['simd']}, "
+                    f"{machine['memory_bytes'] / 1e9:.0f} GB, virtual machine: {machine['virtual_machine']}, "
+                    f"huge pages: {machine['huge_pages']}"],
+        ["system", f"{machine['system']}, {machine['compiler']}, {machine['build_type']}"],
+        ["commit", machine["commit"] + (" and changes" if machine["changed_since_commit"] else "")],
+        ["date", facts["date"]],
+        ["threads, rounds, isovalues a round", f"{facts['threads']}, {facts['rounds']}, {facts['isovalues']}"],
+        ["copy bandwidth, read and written", f"{median(copies) / 1e9:.1f} GB/s (median of the run; "
+                                             f"{min(copies) / 1e9:.1f} to {max(copies) / 1e9:.1f})"],
+        ["processes wanting to run, at start and end", f"{facts['load_before']:.1f}, {facts['load_after']:.1f}"],
+        ["rivals", "; ".join(rivals.values()) or "none"],
+        ["absent", "; ".join(f"{name}: {why}" for name, why in facts["absent"].items()) or "nobody"],
+        ["welded surfaces compared with VTK's", f"{sum(r.compared for r in results)}, with other counts: "
+                                                f"{sum(len(r.differences) for r in results)}"],
+    ]
+    return "| | |\n|---|---|\n" + "".join(f"| {name} | {value} |\n" for name, value in rows)
+
+
+def by_method(lines: list[Line], case: str) -> dict[str, Line]:
+    return {line.method: line for line in lines if line.case == case}
+
+
+def three(line: Line | None) -> str:
+    return f"{short_time(line.best)} / {short_time(line.median)} / {short_time(line.worst)}" if line else ""
+
+
+def speed_table(results: list[CaseResult], lines: list[Line]) -> str:
+    rows = []
+    for result in results:
+        of = by_method(lines, result.case.name)
+        ours = of["clusters"]
+        ratio = f"{ours.speedup_best:.1f} x, {ours.speedup_median:.1f} x" if ours.speedup_best else ""
+        rows.append([result.case.name, f"{result.tets:,}", f"{ours.triangles:,.0f}", three(ours), three(of.get("vtk_merged")),
+                     three(of.get("wheel_merged")), three(of.get("vtk_span_space")), ratio])
+    return table(["grid", "tetrahedra", "triangles", "isotet, packed before", "VTK merged", "VTK wheel, merged",
+                  "VTK merged, span space", "faster than the faster merged VTK (best, median)"], rows)
+
+
+def exponents(lines: list[Line]) -> str:
+    said = []
+    for shape in sorted({line.shape for line in lines} - {"file"}):
+        for key in ("clusters", "vtk_merged"):
+            slope = growth_exponent(lines, key, shape, 0.9e6)
+            if slope is not None:
+                said.append(f"{BY_KEY[key].label}, {shape}: {slope:.2f}")
+    return f"Time grows with the number of tetrahedra, from 1 million on, to the power of: {'; '.join(said)}.\n" if said else ""
+
+
+def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
+    rows = []
+    for result in results:
+        of = by_method(lines, result.case.name)
+        once = of["once"]
+        rows.append([result.case.name, three(of["pack"]), f"{of['pack'].tets_a_second / 1e6:.1f}", three(of["new_field"]),
+                     f"{of['new_field'].tets_a_second / 1e6:.0f}", three(once),
+                     f"{once.speedup_best:.2f} x, {once.speedup_median:.2f} x" if once.speedup_best else "",
+                     three(of.get("vtk_tree"))])
+    return table(["grid", "pack", "million tets a second", "new field", "million tets a second", "pack and extract, nothing kept",
+                  "against the faster merged VTK (best, median)", "VTK span space and one surface"], rows)
+
+
+def attributes_table(results: list[CaseResult], lines: list[Line]) -> str:
+    rows = []
+    for result in results:
+        of = by_method(lines, result.case.name)
+        plain = of["clusters"].median
+        added = [short_time(max(0.0, of[key].median - plain)) for key in
+                 ("face_normals", "gradient_normals", "point_field", "source_cells")]
+        packing = short_time(max(0.0, of["pack_full"].median - of["pack"].median))
+        theirs = [short_time(max(0.0, of[key].median - of["vtk_merged"].median)) if key in of else ""
+                  for key in ("vtk_normals", "vtk_attributes")]
+        rows.append([result.case.name, short_time(plain), *added, packing, *theirs])
+    return table(["grid", "surface alone", "+ face normals", "+ gradient normals", "+ one point field", "+ source cells",
+                  "packing: + gradients and source cells", "VTK merged: + normals", "VTK merged: + its one point field"], rows)
+
+
+def memory_table(results: list[CaseResult]) -> str:
+    rows = []
+    for result in results:
+        pack, full = result.packed["pack"], result.packed["pack_full"]
+        peak = {key: f"{value / result.tets:.1f}" for key, value in result.peaks.items()}
+        rows.append([result.case.name, f"{result.tets / result.points:.2f}", f"{pack['bytes'] / pack['tets']:.2f}",
+                     f"{full['source_bytes'] / full['tets']:.2f}", f"{full['gradient_bytes'] / full['tets']:.2f}",
+                     *(peak.get(key, "") for key in ("pack", "once", "clusters", "vtk_merged", "vtk_tree", "wheel_merged"))])
+    return "Bytes a tetrahedron. Peaks: beyond the input, in a process of its own.\n\n" + table(
+        ["grid", "tets a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: pack and extract",
+         "peak: one surface, packed before", "peak: VTK merged", "peak: VTK span space", "peak: VTK wheel"], rows)
+
+
+def all_methods(result: CaseResult, lines: list[Line]) -> str:
+    rows = []
+    for line in lines:
+        if line.case == result.case.name:
+            rows.append([BY_KEY[line.method].label, short_time(line.best), short_time(line.median), short_time(line.worst),
+                         f"{line.triangles:,.0f}" if line.triangles is not None else "", f"{line.must_move / 1e6:,.1f}",
+                         f"{line.bandwidth / 1e9:.2f}", f"{100 * line.share:.0f} %"])
+    return f"### {result.case.name}\n\n" + table(
+        ["method", "best", "median", "worst", "triangles", "MB that must move", "GB/s", "share of copying"], rows)
+
+
+def publish(results_folder: Path, docs: Path) -> None:
+    """Takes the files of a race over into docs/performance, the tables between the marks of its README.md."""
+    for path in sorted(results_folder.iterdir()):
+        if path.suffix in (".csv", ".svg", ".json"):
+            (docs / path.name).write_bytes(path.read_bytes())
+    readme = docs / "README.md"
+    text = readme.read_text()
+    head, _, rest = text.partition(BEGIN)
+    _, mark, tail = rest.partition(END)
+    if not mark:
+        raise SystemExit(f"{readme} has no '{BEGIN}' and '{END}' to write between")
+    readme.write_text(f"{head}{BEGIN}\n\n{(results_folder / 'tables.md').read_text()}\n{END}{tail}")
