@@ -4,6 +4,9 @@
 #include <csignal>
 #include <thread>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <isotet/read.hpp>
@@ -82,18 +85,25 @@ TEST_F(ReaderProcess, IsStoppedOnCancel) {
 }
 
 TEST_F(ReaderProcess, FindsNoOtherOpenFiles) {
-    const Error error = error_with("ls /proc/$$/fd | tr '\\n' ' '; exit 3");
-    expect_words(error, {"0 1 2 "});
-    EXPECT_EQ(error.message.find(" 6 "), std::string::npos) << error.message;
+    const int inherited = ::open(folder_.write("private", "x").c_str(), O_RDONLY); // without O_CLOEXEC
+    ASSERT_GE(inherited, 0);
+    const Error error = error_with("ls -l /proc/$$/fd; exit 3");
+    ::close(inherited);
+    expect_words(error, {"/dev/null", "isotet-reply"});
+    EXPECT_EQ(error.message.find("private"), std::string::npos) << error.message;
 }
 
 TEST_F(ReaderProcess, HittingItsMemoryLimitIsAnErrorThatNamesTheLimit) {
+    write_vtu(sample_grid(), folder_.file("large.vtu"), Encoding::ascii);
+    std::string content = content_of(folder_.file("large.vtu"));
+    const auto begin = content.find("NumberOfPoints=") + 16;
+    content.replace(begin, content.find('"', begin) - begin, "1000000000");
     ReadOptions options;
-    options.memory_limit = 1000000;
-    const auto result = read(folder_.file("sample.vtu"), options);
+    options.memory_limit = 2000000000;
+    const auto result = read(folder_.write("large.vtu", content), options);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
-    expect_words(result.error(), {"1000000 bytes"});
+    expect_words(result.error(), {"2000000000 bytes"});
 }
 
 TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
@@ -112,6 +122,7 @@ TEST_F(ReaderProcess, WorksForAParentThatIgnoresItsChildren) {
 }
 
 TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
     ASSERT_EXIT(
         {
             for (int descriptor = 0; descriptor < 3; ++descriptor) ::close(descriptor);

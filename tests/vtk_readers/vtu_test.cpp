@@ -26,7 +26,7 @@ TEST_P(ReadVtu, IsAnErrorForEveryTruncation) {
     write_vtu(sample_grid(), folder.file("sample.vtu"), GetParam());
     std::string content = content_of(folder.file("sample.vtu"));
     while (content.ends_with('\n')) content.pop_back();
-    read_prefixes(content, "cut.vtu", content.size() / 40 + 1, [](const Result<ReadResult>& result, std::size_t length) {
+    read_prefixes(content, "cut.vtu", content.size() / 25 + 1, [](const Result<ReadResult>& result, std::size_t length) {
         EXPECT_FALSE(result) << "cut to " << length << " bytes";
     });
 }
