@@ -19,11 +19,11 @@
 namespace isotet::test {
 
 struct RunOptions {
-    std::vector<std::pair<std::string, std::string>> environment; ///< added to that of the test
-    std::string folder;                                           ///< to run in; empty: that of the test
-    std::vector<int> closed;    ///< descriptors, of 0, 1 and 2, that the program finds closed
-    std::string stdout_file;    ///< opened for writing as standard output, in place of the pipe
-    std::string interrupt_when; ///< when standard error holds this, the signal is sent
+    std::vector<std::pair<std::string, std::string>> environment = {}; ///< added to that of the test
+    std::string folder = {};                                           ///< to run in; empty: that of the test
+    std::vector<int> closed = {};    ///< descriptors, of 0, 1 and 2, that the program finds closed
+    std::string stdout_file = {};    ///< opened for writing as standard output, in place of the pipe
+    std::string interrupt_when = {}; ///< when standard error holds this, the signal is sent
     int signal = SIGINT;
     std::chrono::seconds limit{120}; ///< then the program is killed
 };
@@ -107,8 +107,7 @@ inline RunResult run_program(std::vector<std::string> words, const RunOptions& o
         if (descriptor >= 0) ::close(descriptor);
     }
     int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     if (WIFEXITED(status)) result.status = WEXITSTATUS(status);
     if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
     return result;

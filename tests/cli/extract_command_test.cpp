@@ -1,0 +1,238 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet extract`: files, names, numbers.
+#include <fmt/format.h>
+
+#include <isotet/read.hpp>
+
+#include "program.hpp"
+#include "small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+using nlohmann::json;
+
+SurfaceFile read_back(const std::string& path) {
+    Result<SurfaceFile> file = read_surface(path);
+    if (!file) {
+        ADD_FAILURE() << file.error().message;
+        return {};
+    }
+    return *std::move(file);
+}
+
+const Array* field(const std::vector<SurfaceField>& fields, std::string_view name) {
+    for (const SurfaceField& candidate : fields) {
+        if (candidate.name == name) return &candidate.values;
+    }
+    return nullptr;
+}
+
+TEST_F(Program, ExtractHasEveryPromisedKey) {
+    const json report = json_of({"extract", "make:kuhn:6:sphere", path("s.vtp"), "-i", "0.5"});
+    for (const char* key : {"schema", "points", "tets", "cells_left_out", "field", "engine", "method", "threads",
+                            "seconds", "bytes", "surfaces"}) {
+        EXPECT_TRUE(report.contains(key)) << key;
+    }
+    for (const char* key : {"read", "pack"}) EXPECT_TRUE(report["seconds"][key].is_number()) << key;
+    for (const char* key : {"packed", "sources", "normals", "transient_peak"})
+        EXPECT_TRUE(report["bytes"][key].is_number_unsigned()) << key;
+    ASSERT_EQ(report["surfaces"].size(), 1u);
+    const json& surface = report["surfaces"][0];
+    for (const char* key :
+         {"isovalue", "time", "tied_points", "false_ties", "vertices", "triangles", "area", "seconds", "file"}) {
+        EXPECT_TRUE(surface.contains(key)) << key;
+    }
+    for (const char* key : {"extract", "write"}) EXPECT_TRUE(surface["seconds"][key].is_number()) << key;
+    EXPECT_EQ(report["points"], 343);
+    EXPECT_EQ(report["tets"], 1296);
+    EXPECT_EQ(report["field"], "sphere");
+    EXPECT_EQ(surface["file"], path("s.vtp"));
+}
+
+TEST_F(Program, ExtractWritesTheNumbersThatItTells) {
+    const json report = json_of({"extract", "make:kuhn:6:sphere", path("s.vtp"), "-i", "0.5"});
+    const SurfaceFile file = read_back(path("s.vtp"));
+    EXPECT_EQ(report["surfaces"][0]["vertices"], file.surface.vertices());
+    EXPECT_EQ(report["surfaces"][0]["triangles"], file.surface.triangle_count());
+    EXPECT_GT(file.surface.triangle_count(), 0u);
+}
+
+TEST_F(Program, ExtractTellsNumbersAndWritesNothingWithoutOut) {
+    const RunResult run = isotet({"extract", "make:kuhn:6:sphere", "-i", "0.5"}, {.folder = folder.path().string()});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("triangles"), std::string::npos);
+    EXPECT_EQ(run.err, "");
+    EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST_F(Program, ExtractTakesTheMiddleOfTheRangeWithoutAnIsovalue) {
+    put_content(path("g.msh"), small_grid({{"p", {1, 2, 3, 4, 8}}}));
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--json", path("n.json")});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_NE(run.err.find("isotet: note: no isovalue was given: 4.5"), std::string::npos) << run.err;
+    EXPECT_EQ(json::parse(content_of(path("n.json")))["surfaces"][0]["isovalue"], 4.5);
+}
+
+TEST_F(Program, ExtractJoinsSeveralIsovaluesWithACellField) {
+    const json report = json_of({"extract", "make:kuhn:6:sphere", path("s.vtp"), "-i", "0.5,0.7", "-i", "0.9"});
+    ASSERT_EQ(report["surfaces"].size(), 3u);
+    std::uint64_t triangles = 0;
+    for (const json& surface : report["surfaces"]) {
+        triangles += surface["triangles"].get<std::uint64_t>();
+        EXPECT_EQ(surface["file"], path("s.vtp"));
+    }
+    const SurfaceFile file = read_back(path("s.vtp"));
+    EXPECT_EQ(file.surface.triangle_count(), triangles);
+    const Array* isovalues = field(file.surface.cell_fields, "isovalue");
+    ASSERT_NE(isovalues, nullptr);
+    EXPECT_EQ(isovalues->at(0), 0.5);
+    EXPECT_EQ(isovalues->at(isovalues->tuples() - 1), 0.9);
+}
+
+TEST_F(Program, ExtractWritesOneFileForEachValueNamedByTheShortestDecimal) {
+    const json report =
+        json_of({"extract", "make:kuhn:6:sphere", path("s-{value}.stl"), "-i", "0.5,1,0.30000000000000004,1e-7"});
+    EXPECT_EQ(report["surfaces"].size(), 4u);
+    for (const char* name : {"s-0.5.stl", "s-1.stl", "s-0.30000000000000004.stl", "s-1e-07.stl"}) {
+        EXPECT_TRUE(std::filesystem::exists(path(name))) << name;
+    }
+    EXPECT_EQ(folder.entries(), 4u);
+    EXPECT_EQ(field(read_back(path("s-0.5.stl")).surface.cell_fields, "isovalue"), nullptr);
+}
+
+TEST_F(Program, ExtractCutsLevelsEvenlyInsideTheRange) {
+    put_content(path("g.msh"), small_grid({{"p", {1, 2, 3, 4, 9}}}));
+    const json report = json_of({"extract", path("g.msh"), "-f", "p", "--levels", "3"});
+    ASSERT_EQ(report["surfaces"].size(), 3u);
+    for (int k = 1; k <= 3; ++k) EXPECT_EQ(report["surfaces"][k - 1]["isovalue"], 1 + k * (9.0 - 1) / 4);
+}
+
+TEST_F(Program, ExtractTakesNegativeValuesAndExponents) {
+    const json report = json_of({"extract", "make:kuhn:4:plane", "-i", "-0.25,+5e-1"});
+    EXPECT_EQ(report["surfaces"][0]["isovalue"], -0.25);
+    EXPECT_EQ(report["surfaces"][1]["isovalue"], 0.5);
+}
+
+TEST_F(Program, ExtractMakesAValidEmptyFileOutsideTheRange) {
+    for (const char* name : {"e.vtp", "e.ply", "e.stl", "e.obj", "e.vtk", "e.ts"}) {
+        const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path(name), "-i", "99"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.err.find("isotet: note: isovalue 99 is outside the range"), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find("0 to 1.732"), std::string::npos) << run.err;
+        EXPECT_EQ(read_back(path(name)).surface.triangle_count(), 0u) << name;
+        EXPECT_EQ(isotet({"check", path(name), "--strict", "--closed"}).status, 0) << name;
+    }
+}
+
+TEST_F(Program, ExtractSnapsToTheTypeOfTheField) {
+    const json report = json_of({"extract", "make:kuhn:4:sphere", "-i", "0.7", "--snap"});
+    EXPECT_EQ(report["surfaces"][0]["isovalue"], static_cast<double>(0.7f));
+    EXPECT_EQ(json_of({"extract", "make:kuhn:4:integer", "-i", "2.2", "--snap"})["surfaces"][0]["isovalue"], 2);
+}
+
+TEST_F(Program, ExtractCountsTiedPoints) {
+    put_content(path("g.msh"), small_grid({{"p", {1, 2, 2, 3, 0}}}));
+    EXPECT_EQ(json_of({"extract", path("g.msh"), "-f", "p", "-i", "2"})["surfaces"][0]["tied_points"], 2);
+}
+
+TEST_F(Program, ExtractCarriesAllPointFieldsUnlessWithSaysElse) {
+    put_content(path("g.msh"), small_grid({{"p", {0, 1, 1, 1, 2}}, {"q", {5, 6, 7, 8, 9}}, {"c", {3, 4}, 0, true}}));
+    EXPECT_EQ(isotet({"extract", path("g.msh"), path("all.vtp"), "-f", "p", "-i", "0.5"}).status, 0);
+    const SurfaceFile all = read_back(path("all.vtp"));
+    EXPECT_NE(field(all.surface.point_fields, "p"), nullptr);
+    EXPECT_NE(field(all.surface.point_fields, "q"), nullptr);
+    EXPECT_EQ(field(all.surface.cell_fields, "c"), nullptr);
+
+    EXPECT_EQ(isotet({"extract", path("g.msh"), path("some.vtp"), "-f", "p", "-i", "0.5", "--with", "c", "--with", "x"})
+                  .status,
+              0);
+    const SurfaceFile some = read_back(path("some.vtp"));
+    EXPECT_EQ(field(some.surface.point_fields, "p"), nullptr);
+    EXPECT_NE(field(some.surface.point_fields, "x"), nullptr);
+    ASSERT_NE(field(some.surface.cell_fields, "c"), nullptr);
+    EXPECT_EQ(field(some.surface.cell_fields, "c")->at(0), 3);
+
+    EXPECT_EQ(isotet({"extract", path("g.msh"), path("none.vtp"), "-f", "p", "-i", "0.5", "--with", ""}).status, 0);
+    EXPECT_TRUE(read_back(path("none.vtp")).surface.point_fields.empty());
+}
+
+TEST_F(Program, ExtractContoursCellFieldsAndSaysSo) {
+    put_content(path("g.msh"), small_grid({{"c", {3, 5}, 0, true}}));
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "c", "-i", "3.5"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("averaged to the points"), std::string::npos) << run.out;
+}
+
+TEST_F(Program, ExtractTakesThePointFieldOfTwoOfOneNameWithANote) {
+    put_content(path("g.msh"), small_grid({{"a", {0, 1, 1, 1, 2}}, {"a", {30, 50}, 0, true}}));
+    const RunResult point = isotet({"extract", path("g.msh"), "-f", "a", "-i", "0.5", "--json", path("p.json")});
+    EXPECT_EQ(point.status, 0) << point.err;
+    EXPECT_NE(point.err.find("isotet: note: "), std::string::npos);
+    EXPECT_EQ(json::parse(content_of(path("p.json")))["range"][1], 2);
+    EXPECT_EQ(json_of({"extract", path("g.msh"), "-f", "a", "--cell-field", "-i", "40"})["range"][1], 50);
+}
+
+TEST_F(Program, ExtractContoursCoordinates) {
+    EXPECT_EQ(json_of({"extract", "make:kuhn:4", "-f", "x", "-i", "0.1"})["field"], "x");
+}
+
+TEST_F(Program, ExtractGivesTheSameBytesForEveryEngineAndThreadCount) {
+    const std::vector<std::string> common{"extract", "make:perturbed:6:integer", "-i", "1,2", "--normals", "gradient",
+                                          "-q"};
+    std::string first;
+    int number = 0;
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{"-j", "1"}, {"-j", "7"}, {"--engine", "reference"}}) {
+        std::vector<std::string> arguments = common;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const std::string out = path(fmt::format("s{}.vtp", number++));
+        arguments.push_back(out);
+        EXPECT_EQ(isotet(arguments).status, 0);
+        if (first.empty()) first = content_of(out);
+        EXPECT_EQ(content_of(out), first) << out;
+    }
+    EXPECT_FALSE(first.empty());
+}
+
+TEST_F(Program, ExtractKeepsDegenerateTrianglesWhenAsked) {
+    const auto triangles = [](const json& report) { return report["surfaces"][0]["triangles"].get<int>(); };
+    const json merged = json_of({"extract", "make:kuhn:6:integer", "-i", "2"});
+    const json kept = json_of({"extract", "make:kuhn:6:integer", "-i", "2", "--keep-degenerate"});
+    EXPECT_GT(triangles(kept), triangles(merged));
+}
+
+TEST_F(Program, ExtractSaysNothingWithQuiet) {
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "99", "-q"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.out + run.err, "");
+}
+
+TEST_F(Program, ExtractTellsOfCoincidentPointsAndWeldsThem) {
+    // The second tet has its own copies of the three points between them.
+    std::string grid = small_grid({{"p", {0, 1, 1, 1, 2}}});
+    const auto replace = [&](std::string_view from, std::string_view to) {
+        grid.replace(grid.find(from), from.size(), to);
+    };
+    replace("5\n1 0 0 0", "8\n1 0 0 0");
+    replace("5 1 1 1\n", "5 1 1 1\n6 1 0 0\n7 0 1 0\n8 0 0 1\n");
+    replace("2 4 2 1 1 2 3 4 5", "2 4 2 1 1 6 7 8 5");
+    replace("5\n1 0\n", "8\n6 1\n7 1\n8 1\n1 0\n");
+    put_content(path("g.msh"), grid);
+    const RunResult open = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0.5"});
+    EXPECT_EQ(open.status, 0) << open.err;
+    EXPECT_NE(open.err.find("3 points lie exactly on others"), std::string::npos) << open.err;
+    const RunResult welded = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0.5", "--merge-points", "0"});
+    EXPECT_EQ(welded.status, 0) << welded.err;
+    EXPECT_EQ(welded.err.find("points lie exactly on others"), std::string::npos) << welded.err;
+}
+
+TEST_F(Program, ExtractReplacesAnOldFileAsAWhole) {
+    put_content(path("s.vtp"), "old");
+    EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5"}).status, 0);
+    EXPECT_GT(read_back(path("s.vtp")).surface.triangle_count(), 0u);
+    EXPECT_EQ(folder.entries(), 1u);
+}
+
+} // namespace
+} // namespace isotet::test

@@ -1,0 +1,71 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet info`, `isotet FILE`, `isotet formats` and `isotet --version`.
+#include "program.hpp"
+#include "small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+using nlohmann::json;
+
+TEST_F(Program, InfoTellsCellsFieldsAndRanges) {
+    put_content(path("g.msh"), small_grid({{"p", {1, 2, 3, 4, 9}}, {"c", {-5, 7}, 0, true}}));
+    const json report = json_of({"info", path("g.msh")});
+    EXPECT_EQ(report["schema"], 1);
+    EXPECT_EQ(report["points"], 5);
+    EXPECT_EQ(report["cells"], 2);
+    EXPECT_EQ(report["tets"], 2);
+    EXPECT_EQ(report["cells_by_type"]["tetrahedron"], 2);
+    EXPECT_EQ(report["bounds"]["upper"], json::array({1, 1, 1}));
+    std::map<std::string, json> fields;
+    for (const json& field : report["fields"]) fields[field["name"]] = field;
+    ASSERT_TRUE(fields.contains("p") && fields.contains("c"));
+    EXPECT_EQ(fields["p"]["association"], "point");
+    EXPECT_EQ(fields["p"]["range"], json::array({json::array({1, 9})}));
+    EXPECT_EQ(fields["c"]["association"], "cell");
+    EXPECT_EQ(fields["c"]["range"], json::array({json::array({-5, 7})}));
+}
+
+TEST_F(Program, InfoCountsValuesThatAreNoNumber) {
+    std::string grid = small_grid({{"p", {1, 2, 3, 4, 9}}});
+    grid.replace(grid.find("3 3\n"), 4, "3 nan\n");
+    put_content(path("g.msh"), grid);
+    const RunResult run = isotet({"info", path("g.msh"), "--json", path("r.json")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("no data 1"), std::string::npos) << run.out;
+    for (const json& field : json::parse(content_of(path("r.json")))["fields"]) {
+        if (field["name"] == "p") {
+            EXPECT_EQ(field["nan"], json::array({1}));
+        }
+    }
+}
+
+TEST_F(Program, BareFileIsInfo) {
+    put_content(path("g.msh"), small_grid({{"p", {1, 2, 3, 4, 9}}}));
+    const RunResult bare = isotet({path("g.msh")});
+    EXPECT_EQ(bare.status, 0) << bare.err;
+    EXPECT_EQ(bare.out, isotet({"info", path("g.msh")}).out);
+    EXPECT_EQ(isotet({"-q", path("g.msh")}).out, "");
+}
+
+TEST_F(Program, FormatsListsWhatCanBeWritten) {
+    const json report = json_of({"formats"});
+    std::vector<std::string> surfaces;
+    for (const json& format : report["formats"]) {
+        if (format["writes_surface"].get<bool>()) surfaces.push_back(format["name"]);
+    }
+    std::sort(surfaces.begin(), surfaces.end());
+    EXPECT_EQ(surfaces, (std::vector<std::string>{"obj", "ply", "stl", "ts", "vtk", "vtp"}));
+    EXPECT_NE(isotet({"formats"}).out.find(".vtp"), std::string::npos);
+}
+
+TEST_F(Program, VersionTellsTheFactsOfTheBuild) {
+    const RunResult run = isotet({"--version"});
+    EXPECT_EQ(run.status, 0);
+    for (const char* fact : {"isotet", "commit", "compiler", "VTK", "oneTBB"}) {
+        EXPECT_NE(run.out.find(fact), std::string::npos) << fact << " is not in " << run.out;
+    }
+}
+
+} // namespace
+} // namespace isotet::test

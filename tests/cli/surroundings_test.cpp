@@ -1,0 +1,130 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Hostile surroundings: signals, closed streams, full devices, locales, names that are no text.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "program.hpp"
+#include "small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+using nlohmann::json;
+
+TEST_F(Program, CtrlCEndsWithStatus130AndLeavesNoFile) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const RunResult run = isotet({"extract", "make:kuhn:100:gyroid", path("s.vtp"), "-i", "0", "-v"},
+                                     {.interrupt_when = "isotet: packing", .signal = signal});
+        EXPECT_EQ(run.status, 130) << "signal " << signal << ": " << run.err;
+        EXPECT_NE(run.err.find("isotet: interrupted"), std::string::npos) << run.err;
+        EXPECT_EQ(run.out, "");
+        EXPECT_EQ(folder.entries(), 0u);
+    }
+}
+
+TEST_F(Program, CtrlCLeavesTheOldFile) {
+    put_content(path("s.vtp"), "old");
+    const RunResult run = isotet({"extract", "make:kuhn:100:gyroid", path("s.vtp"), "-i", "0", "-v"},
+                                 {.interrupt_when = "isotet: packing"});
+    EXPECT_EQ(run.status, 130) << run.err;
+    EXPECT_EQ(content_of(path("s.vtp")), "old");
+    EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST_F(Program, ClosedStandardStreamsDoNotLeakIntoFiles) {
+    const std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere", "-i", "99", path("s.vtp")};
+    EXPECT_EQ(isotet(arguments).status, 0);
+    const std::string expected = content_of(path("s.vtp"));
+    for (const std::vector<int>& closed : {std::vector<int>{0}, {1}, {2}, {0, 1, 2}}) {
+        const RunResult run = isotet(arguments, {.closed = closed});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(content_of(path("s.vtp")), expected);
+    }
+}
+
+TEST_F(Program, JsonToAClosedStandardOutputIsStatusFour) {
+    const RunResult run = isotet({"info", "make:kuhn:2", "--json", "-"}, {.closed = {1}});
+    EXPECT_EQ(run.status, 4);
+    EXPECT_TRUE(is_one_error(run, "standard output"));
+}
+
+TEST_F(Program, AFullStandardOutputIsStatusFour) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", "make:kuhn:2"},
+                                                      {"--help"},
+                                                      {"--version"},
+                                                      {"formats", "--json", "-"},
+                                                      {"docs", "man"}}) {
+        const RunResult run = isotet(arguments, {.stdout_file = "/dev/full"});
+        EXPECT_EQ(run.status, 4) << arguments.front();
+        EXPECT_TRUE(is_one_error(run, "standard output cannot be written"));
+    }
+}
+
+TEST_F(Program, AReaderThatGoesAwayIsStatusFourAndNoSignal) {
+    const std::string command = fmt::format("'{}' formats | true; exit ${{PIPESTATUS[0]}}", ISOTET_PROGRAM);
+    for (int i = 0; i < 20; ++i) { // the reader may also be late
+        const RunResult run = run_program({"/bin/bash", "-c", command});
+        EXPECT_TRUE(run.status == 4 || run.status == 0) << run.status << " " << run.err;
+    }
+}
+
+TEST_F(Program, OutputThatCannotBeWrittenIsToldBeforeTheWork) {
+    const RunResult device = isotet({"extract", "make:kuhn:2:sphere", "-i", "1", "--json", "/dev/full"});
+    EXPECT_EQ(device.status, 2);
+    EXPECT_TRUE(is_one_error(device, "/dev/full"));
+    const RunResult nowhere = isotet({"extract", "make:kuhn:2:sphere", "-i", "1", path("no/such/folder/s.vtp")});
+    EXPECT_EQ(nowhere.status, 3);
+    EXPECT_TRUE(is_one_error(nowhere, "no/such/folder"));
+}
+
+TEST_F(Program, AFileTooLargeForTheLimitLeavesNothing) {
+    // ulimit -f counts 1,024 bytes in bash.
+    const std::string command =
+        fmt::format("ulimit -f 8; exec '{}' make kuhn --side 20 -o '{}'", ISOTET_PROGRAM, path("g.vtu"));
+    const RunResult run = run_program({"/bin/bash", "-c", command});
+    EXPECT_EQ(run.status, 4) << run.err;
+    EXPECT_TRUE(is_one_error(run, "g.vtu"));
+    EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST_F(Program, LocaleChangesNothing) {
+    // Where the system has no such locale the run is that of C, and equal all the more.
+    const std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere", "-i", "0.5,1.25", path("s-{value}.ts")};
+    EXPECT_EQ(isotet(arguments).status, 0);
+    const std::string expected = content_of(path("s-0.5.ts"));
+    for (const char* locale : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8", "C"}) {
+        const RunResult run = isotet(arguments, {.environment = {{"LC_ALL", locale}, {"LANG", locale}}});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(content_of(path("s-0.5.ts")), expected);
+    }
+    EXPECT_EQ(folder.entries(), 2u);
+}
+
+TEST_F(Program, NamesThatAreNoTextAreEscapedAndTheJsonIsValid) {
+    const std::string name = "p\xff\x1b[31m";
+    put_content(path("g.msh"), small_grid({{name, {0, 1, 1, 1, 2}}}));
+    const RunResult run = isotet({"info", path("g.msh"), "--json", path("r.json")});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("p\\xff\\x1b[31m"), std::string::npos) << run.out;
+    EXPECT_EQ(run.out.find('\x1b'), std::string::npos);
+    const json report = json::parse(content_of(path("r.json")), nullptr, false);
+    ASSERT_FALSE(report.is_discarded());
+    const std::string first = report["fields"][0]["name"];
+    EXPECT_EQ(first, "p\\xff\x1b[31m");
+    EXPECT_EQ(isotet({"extract", path("g.msh"), "-f", name, "-i", "0.5"}).status, 0);
+    const RunResult wrong = isotet({"extract", path("g.msh"), "-f", "p\xfe", "-i", "0.5"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_TRUE(is_one_error(wrong, "'p\\xfe'"));
+    EXPECT_EQ(wrong.err.find('\x1b'), std::string::npos);
+}
+
+TEST_F(Program, AFileNameThatIsNoTextIsEscaped) {
+    const RunResult run = isotet({"info", path("g\x1b\xff.msh")});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_TRUE(is_one_error(run, "g\\x1b\\xff.msh"));
+}
+
+} // namespace
+} // namespace isotet::test

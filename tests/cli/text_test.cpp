@@ -1,0 +1,69 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Text for terminals and JSON, and numbers as text.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "number_format.hpp"
+#include "text.hpp"
+
+namespace isotet::cli {
+namespace {
+
+TEST(Printable, EscapesControlCharactersAndWhatIsNotUtf8) {
+    EXPECT_EQ(printable("plain caf\xC3\xA9"), "plain caf\xC3\xA9");
+    EXPECT_EQ(printable("a\x1b[31m\n\t\x7f"), "a\\x1b[31m\\n\\t\\x7f");
+    EXPECT_EQ(printable("caf\xE9"), "caf\\xe9");
+    EXPECT_EQ(printable("\xC2\x9B"), "\\u{009b}") << "the eight-bit form of ESC [";
+    EXPECT_EQ(printable("\xE2\x80\xAE"), "\\u{202e}") << "right-to-left override";
+}
+
+TEST(Printable, TakesOverlongFormsSurrogatesAndCutCharactersForBytes) {
+    EXPECT_EQ(printable("\xC0\x80"), "\\xc0\\x80");
+    EXPECT_EQ(printable("\xED\xA0\x80"), "\\xed\\xa0\\x80");
+    EXPECT_EQ(printable("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");
+    EXPECT_EQ(printable("\xE2\x82"), "\\xe2\\x82");
+    EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a\\x00b");
+}
+
+TEST(ValidUtf8, KeepsDifferentNamesDifferent) {
+    EXPECT_EQ(valid_utf8("caf\xC3\xA9\n"), "caf\xC3\xA9\n");
+    EXPECT_NE(valid_utf8("caf\xE9"), valid_utf8("caf\xE8"));
+}
+
+TEST(Wrapped, BreaksAtSpacesOnly) {
+    EXPECT_EQ(wrapped("aa bb cc", 5), "aa bb\ncc");
+    EXPECT_EQ(wrapped("aa bb cc", 7, 2), "aa bb\n  cc");
+    EXPECT_EQ(wrapped("toolongword a", 4), "toolongword\na");
+}
+
+TEST(Shortest, ReadsBackAsTheSameDouble) {
+    for (const double value : {0.1, 0.30000000000000004, 1e22, 5e-324, -1.7976931348623157e308, 101325.0}) {
+        EXPECT_EQ(parse_number(shortest(value)), value);
+    }
+    EXPECT_EQ(shortest(1.0), "1");
+    EXPECT_EQ(shortest(0.7), "0.7");
+}
+
+TEST(ParseNumber, TakesWholeDecimalTextOnly) {
+    EXPECT_EQ(parse_number("+5e-1"), 0.5);
+    for (const char* text : {"", "+", "+-1", "1,5", "1.5x", " 1", "0x10", "1e400", "--1"})
+        EXPECT_FALSE(parse_number(text)) << text;
+}
+
+TEST(Grouped, PutsCommasBetweenThousands) {
+    EXPECT_EQ(grouped(0), "0");
+    EXPECT_EQ(grouped(999), "999");
+    EXPECT_EQ(grouped(1000), "1,000");
+    EXPECT_EQ(grouped(18446744073709551615U), "18,446,744,073,709,551,615");
+}
+
+TEST(BytesText, ChangesUnitsAtAThousand) {
+    EXPECT_EQ(bytes_text(999), "999 B");
+    EXPECT_EQ(bytes_text(1000), "1.0 kB");
+    EXPECT_EQ(bytes_text(999'960), "1.0 MB");
+    EXPECT_EQ(bytes_text(2'500'000'000'000'000), "2500.0 TB");
+}
+
+} // namespace
+} // namespace isotet::cli

@@ -1,0 +1,71 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Time steps: which one is taken, and what becomes of all of them.
+#include <fmt/format.h>
+
+#include "program.hpp"
+#include "small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+using nlohmann::json;
+
+class ProgramWithTimes : public Program {
+protected:
+    void SetUp() override {
+        put_content(grid,
+                    small_grid({{"p", {0, 1, 1, 1, 2}, 0}, {"p", {0, 2, 2, 2, 4}, 0.1}, {"p", {0, 4, 4, 4, 8}, 2.5}}));
+    }
+    std::string grid = path("g.msh");
+};
+
+TEST_F(ProgramWithTimes, InfoListsTheTimes) { EXPECT_EQ(json_of({"info", grid})["times"], json::array({0, 0.1, 2.5})); }
+
+TEST_F(ProgramWithTimes, TheFirstStepIsTakenWithANote) {
+    const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "0.5"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_NE(run.err.find("isotet: note: the file has 3 time steps: step 0"), std::string::npos) << run.err;
+}
+
+TEST_F(ProgramWithTimes, AStepIsTakenByNumberOrTime) {
+    EXPECT_EQ(json_of({"extract", grid, "-f", "p", "-i", "1", "--step", "2"})["range"], json::array({0, 8}));
+    const json report = json_of({"extract", grid, "-f", "p", "-i", "1", "--time", "0.1"});
+    EXPECT_EQ(report["range"], json::array({0, 4}));
+    EXPECT_EQ(report["surfaces"][0]["time"], 0.1);
+}
+
+TEST_F(ProgramWithTimes, ATimeThatIsNotThereIsAnErrorWithThoseThatAre) {
+    const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "1", "--time", "0.100001"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "the file has 3 times: 0, 0.1, 2.5; the nearest is 0.1"));
+    EXPECT_EQ(isotet({"extract", grid, "-f", "p", "-i", "1", "--time", "0.1000000000000001"}).status, 0);
+}
+
+TEST_F(ProgramWithTimes, AllStepsMakeOneFileEachAndEqualThoseOfSingleSteps) {
+    const json report = json_of({"extract", grid, path("s-{time}.vtp"), "-f", "p", "-i", "1", "--all-steps"});
+    ASSERT_EQ(report["surfaces"].size(), 3u);
+    int step = 0;
+    for (const char* time : {"0", "0.1", "2.5"}) {
+        const std::string single = path("single.vtp");
+        EXPECT_EQ(
+            isotet({"extract", grid, single, "-f", "p", "-i", "1", "-q", "--step", std::to_string(step++)}).status, 0);
+        EXPECT_EQ(content_of(path(fmt::format("s-{}.vtp", time))), content_of(single)) << time;
+    }
+}
+
+TEST_F(ProgramWithTimes, AllStepsIntoOneFileAreRefused) {
+    const RunResult run = isotet({"extract", grid, path("s.vtp"), "-f", "p", "-i", "1", "--all-steps"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "has no {time}"));
+}
+
+TEST_F(ProgramWithTimes, TheCellsAreNotPackedAgainWhereOnlyValuesChange) {
+    const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "1", "--all-steps", "-v"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = run.err.find("not packed again", at)) != std::string::npos; ++at) ++count;
+    EXPECT_EQ(count, 2u) << run.err;
+}
+
+} // namespace
+} // namespace isotet::test
