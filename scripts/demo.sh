@@ -6,10 +6,13 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
 
-readonly grid=$root/data/vtu/artery_flow_tet_wedge.vtu
+# Paths are relative to the tree, so that what is shown can be typed.
+readonly called_from=$PWD
+cd "$root"
+readonly grid=data/vtu/artery_flow_tet_wedge.vtu
 readonly field=Umag
 readonly isovalues=(0.1 0.2 0.3)
-readonly build=$root/build/demo
+readonly build=build/demo
 readonly out=$build/out
 readonly program=$build/apps/cli/isotet
 readonly table=$out/table.txt
@@ -34,11 +37,11 @@ extract_and_check() {
     rm -f "$table"
     local options=() isovalue
     for isovalue in "${isovalues[@]}"; do options+=(-i "$isovalue"); done
-    say "extracts where $field, the speed of the blood, is ${isovalues[*]} m/s in ${grid#"$root"/}"
+    say "extracts where $field, the speed of the blood, is ${isovalues[*]} m/s in $grid"
     "$program" extract "$grid" "$out/artery_speed_{value}.vtp" -f "$field" "${options[@]}" \
         --normals gradient --edge-ends --json "$out/extract.json" >"$table.unchecked" || return
     for isovalue in "${isovalues[@]}"; do
-        say "checks $(shorter "$(surface_of "$isovalue")") against the grid"
+        say "checks $(surface_of "$isovalue") against the grid"
         if ! "$program" check "$(surface_of "$isovalue")" --grid "$grid" -f "$field" >"$out/check_$isovalue.txt"; then
             fail "the check says no:"
             cat "$out/check_$isovalue.txt" >&2
@@ -48,20 +51,19 @@ extract_and_check() {
     mv "$table.unchecked" "$table"
 }
 
-shorter() { printf '%s' "${1#"$PWD"/}"; }
-
 print_what_next() {
-    local tool
-    tool=$(shorter "$program")
     cat <<NEXT
 
 Checked: every edge of the surfaces that does not lie on the boundary of the grid is shared by its triangles in both
 directions. Open the files in ParaView, or try:
-  $tool $(shorter "$grid")
-  $tool extract $(shorter "$grid") wall.stl -f p -i 180
-  $tool extract make:kuhn:128:gyroid gyroid.ply -f gyroid -i 0
-  $tool extract YOUR_GRID surface.vtp -f FIELD -i VALUE
-  $tool formats
+NEXT
+    if [[ $called_from != "$root" ]]; then echo "  cd $root"; fi
+    cat <<NEXT
+  $program $grid
+  $program extract $grid pressure.stl -f p -i 180
+  $program extract make:kuhn:128:gyroid gyroid.ply -f gyroid -i 0
+  $program extract YOUR_GRID surface.vtp -f FIELD -i VALUE
+  $program formats
   ./scripts/test.sh quick
 NEXT
 }
