@@ -32,7 +32,7 @@ public:
 private:
     Result<void> open();
     Result<void> load(std::size_t step);
-    Result<void> choose_values(const PointField& field);
+    Result<void> choose_values(const PointField& field, std::size_t step);
     Result<void> extract_step(std::size_t step);
     Result<void> extract_one(double isovalue, std::optional<double> time, Surface& surface);
     Result<void> write(const Surface& surface, const std::string& path);
@@ -45,7 +45,7 @@ private:
     ExtractPlan plan_;
     std::optional<PackedSeries> series_;
     StepFields fields_;
-    std::vector<double> isovalues_; ///< chosen at the first step, the same for all
+    std::vector<double> isovalues_; ///< of the step at hand: levels follow its range
     ExtractNumbers numbers_;
 };
 
@@ -105,21 +105,19 @@ Result<void> ExtractRun::load(std::size_t step) {
     numbers_.field = series_->packed().field();
     numbers_.averaged = field->averaged;
     say_what_packing_found(*grid);
-    return isovalues_.empty() ? choose_values(*field) : Result<void>{};
+    return choose_values(*field, step);
 }
 
-Result<void> ExtractRun::choose_values(const PointField& field) {
+Result<void> ExtractRun::choose_values(const PointField& field, std::size_t step) {
     Result<std::vector<double>> isovalues = choose_isovalues(command_, field, numbers_.field, console_);
     if (!isovalues) return isovalues.error();
     isovalues_ = *std::move(isovalues);
     if (!plan_.names.by_value() && !plan_.names.by_time()) return {};
-    for (const std::size_t step : plan_.steps) {
-        for (const double isovalue : isovalues_) {
-            const std::string name = plan_.names.name(isovalue, time_of(source_->info(), step));
-            if (Result<void> path = check_output_paths({command_.grid.file, command_.common.json}, {name}); !path)
-                return path;
-            if (!plan_.names.by_value()) break; // all values go into the same file
-        }
+    for (const double isovalue : isovalues_) {
+        const std::string name = plan_.names.name(isovalue, time_of(source_->info(), step));
+        if (Result<void> path = check_output_paths({command_.grid.file, command_.common.json}, {name}); !path)
+            return path;
+        if (!plan_.names.by_value()) break; // all values go into the same file
     }
     return {};
 }

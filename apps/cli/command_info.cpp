@@ -76,9 +76,11 @@ std::string grid_table(const Findings& found, const std::string& path) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
     table.row({"boundary faces", grouped(report.boundary_faces)});
+    const ScalarType type = found.grid.points.type();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        table.row({axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], shortest(report.lower[axis]),
-                                                          shortest(report.upper[axis]))});
+        table.row(
+            {axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], value_text(report.lower[axis], type),
+                                                    value_text(report.upper[axis], type))});
     }
     const std::vector<double>& times = found.file.times;
     if (!times.empty()) {

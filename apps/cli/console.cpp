@@ -10,9 +10,7 @@
 namespace isotet::cli {
 
 Console::Console(const CommonOptions& options)
-    : quiet_(options.quiet),
-      verbose_(options.verbose),
-      table_(!options.quiet && options.json != "-"),
+    : quiet_(options.quiet), verbose_(options.verbose), table_(!options.quiet && options.json != "-"),
       bar_(!options.quiet && stderr_is_terminal()) {
     progress_.report = [this](std::string_view step, double fraction) { bar_.show(step, fraction); };
     progress_.cancel = &interrupted;
@@ -41,8 +39,6 @@ Result<void> Console::print(std::string_view text) {
     return table_ ? write_to_stdout(text) : Result<void>{};
 }
 
-void say_error(std::string_view message) {
-    write_to_stderr("isotet: " + printable(message) + "\n");
-}
+void say_error(std::string_view message) { write_to_stderr("isotet: " + printable(message) + "\n"); }
 
 } // namespace isotet::cli

@@ -154,10 +154,12 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
     for (double value : isovalues) {
         if (command.snap) value = snap(field.values, value);
         if (value == 0) value = 0; // -0 equals +0, and is called 0
-        if (seen.insert(value).second) distinct.push_back(value);
-        else
+        if (seen.insert(value).second) {
+            distinct.push_back(value);
+        } else if (!command.isovalues.empty()) { // levels of a constant field are all the same, too
             console.note(
                 fmt::format("the isovalue {} was given more than once: it is extracted once", shortest(value)));
+        }
     }
     return distinct;
 }

@@ -27,9 +27,7 @@ std::uint64_t process_peak_bytes() {
 }
 
 /// The engine that ran; both extract by clusters.
-const char* engine_name(EngineChoice engine) {
-    return engine == EngineChoice::reference ? "reference" : "cpu";
-}
+const char* engine_name(EngineChoice engine) { return engine == EngineChoice::reference ? "reference" : "cpu"; }
 
 std::string memory_text(const ExtractNumbers& numbers) {
     const PackReport& pack = numbers.pack;

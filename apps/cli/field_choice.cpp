@@ -13,9 +13,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_coordinate(const std::string& name) {
-    return name == "x" || name == "y" || name == "z";
-}
+bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
 
 /// "'a', 'b', 'c' and 12 more".
 std::string list_of(const std::vector<std::string>& names) {

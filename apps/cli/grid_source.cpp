@@ -141,9 +141,9 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
                                  *options.step, count, count == 1 ? "" : "s")};
     }
     if (count > 1) {
-        console.note(fmt::format(
-            "the file has {} time steps: step 0, time {}, was taken (--time, --step and --all-steps choose)", count,
-            shortest(info.times[0])));
+        console.note(
+            fmt::format("the file has {} time steps: step 0, time {}, was taken; --time and --step choose another",
+                        count, shortest(info.times[0])));
     }
     return std::vector<std::size_t>{0};
 }

@@ -9,13 +9,9 @@
 
 namespace isotet::cli {
 
-Json json_report(const std::string& command) {
-    return {{"schema", json_schema}, {"command", command}};
-}
+Json json_report(const std::string& command) { return {{"schema", json_schema}, {"command", command}}; }
 
-Json json_text(const std::string& text) {
-    return valid_utf8(text);
-}
+Json json_text(const std::string& text) { return valid_utf8(text); }
 
 Json json_texts(const std::vector<std::string>& texts) {
     Json list = Json::array();

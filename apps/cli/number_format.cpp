@@ -7,13 +7,9 @@
 
 namespace isotet::cli {
 
-std::string shortest(double value) {
-    return fmt::format("{}", value);
-}
+std::string shortest(double value) { return fmt::format("{}", value); }
 
-std::string rounded(double value) {
-    return fmt::format("{:.6g}", value);
-}
+std::string rounded(double value) { return fmt::format("{:.6g}", value); }
 
 std::string grouped(std::uint64_t count) {
     std::string digits = fmt::format("{}", count);
@@ -33,9 +29,7 @@ std::string bytes_text(std::uint64_t bytes) {
     return fmt::format("{:.1f} {}", value, unit);
 }
 
-std::string seconds_text(double seconds) {
-    return fmt::format("{:.3f} s", seconds);
-}
+std::string seconds_text(double seconds) { return fmt::format("{:.3f} s", seconds); }
 
 namespace {
 
@@ -50,12 +44,8 @@ std::optional<Number> parse(std::string_view text) noexcept {
 
 } // namespace
 
-std::optional<double> parse_number(std::string_view text) noexcept {
-    return parse<double>(text);
-}
+std::optional<double> parse_number(std::string_view text) noexcept { return parse<double>(text); }
 
-std::optional<std::uint64_t> parse_count(std::string_view text) noexcept {
-    return parse<std::uint64_t>(text);
-}
+std::optional<std::uint64_t> parse_count(std::string_view text) noexcept { return parse<std::uint64_t>(text); }
 
 } // namespace isotet::cli

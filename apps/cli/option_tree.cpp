@@ -124,7 +124,7 @@ void add_isovalues(CLI::App& app, ExtractCommand& extract) {
                                          "Isovalues, separated by commas; may be repeated");
     add_count(
         app, "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
-        "N isovalues evenly inside the range of the field: min + k (max - min) / (N + 1), k = 1..N")
+        "N isovalues evenly inside the range of the field at each time step: min + k (max - min) / (N + 1), k = 1..N")
         ->excludes(isovalues);
     app.add_flag("--snap", extract.snap,
                  "Take the nearest value that the field's type can hold: 0.7 becomes 0.699999988 on float32");

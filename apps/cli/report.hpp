@@ -28,8 +28,6 @@ private:
 };
 
 /// Names on the left, values on the right: the head of every report.
-inline Table facts() {
-    return Table({Table::Align::left, Table::Align::left});
-}
+inline Table facts() { return Table({Table::Align::left, Table::Align::left}); }
 
 } // namespace isotet::cli

@@ -39,9 +39,7 @@ void open_missing_streams() {
     }
 }
 
-bool stdout_was_closed() noexcept {
-    return stdout_closed_at_start;
-}
+bool stdout_was_closed() noexcept { return stdout_closed_at_start; }
 
 Result<void> write_to_stdout(std::string_view text) {
     if (const int error = write_all(STDOUT_FILENO, text)) {
@@ -51,12 +49,8 @@ Result<void> write_to_stdout(std::string_view text) {
     return {};
 }
 
-void write_to_stderr(std::string_view text) noexcept {
-    (void)write_all(STDERR_FILENO, text);
-}
+void write_to_stderr(std::string_view text) noexcept { (void)write_all(STDERR_FILENO, text); }
 
-bool stderr_is_terminal() noexcept {
-    return ::isatty(STDERR_FILENO) == 1;
-}
+bool stderr_is_terminal() noexcept { return ::isatty(STDERR_FILENO) == 1; }
 
 } // namespace isotet::cli

@@ -59,6 +59,13 @@ TEST_F(ProgramWithTimes, AllStepsIntoOneFileAreRefused) {
     EXPECT_TRUE(is_one_error(run, "has no {time}"));
 }
 
+TEST_F(ProgramWithTimes, LevelsFollowTheRangeOfEachStep) {
+    const json report = json_of({"extract", grid, "-f", "p", "--levels", "1", "--all-steps"});
+    std::vector<double> isovalues;
+    for (const json& surface : report["surfaces"]) isovalues.push_back(surface["isovalue"]);
+    EXPECT_EQ(isovalues, (std::vector<double>{1, 2, 4}));
+}
+
 TEST_F(ProgramWithTimes, TheCellsAreNotPackedAgainWhereOnlyValuesChange) {
     const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "1", "--all-steps", "-v"});
     EXPECT_EQ(run.status, 0) << run.err;
