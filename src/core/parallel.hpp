@@ -7,8 +7,8 @@
 
 namespace isotet::core {
 
-/// Runs `work` in an arena of `threads` threads (0: all that the process may use). Parallel algorithms called inside
-/// use that many, even more than there are cores.
+/// Runs `work` in an arena of `threads` threads (0 or less: all that the process may use; 1024 at most). Parallel
+/// algorithms called inside use that many, even more than there are cores.
 void with_threads(int threads, const std::function<void()>& work);
 
 /// Calls body(begin, end) for pieces of [0, count) of about `grain`, in parallel, in any order.
