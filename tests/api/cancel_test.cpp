@@ -1,0 +1,110 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Progress: every long operation can be cancelled before it starts and midway, and tells how far it is.
+#include <atomic>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include <isotet/check.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+
+#include "support/small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+using Operation = std::function<std::optional<ErrorCode>(const Progress&)>;
+
+template <class T>
+std::optional<ErrorCode> code_of(const Result<T>& result) {
+    return result ? std::nullopt : std::optional(result.error().code);
+}
+
+/// Every operation of the library on one grid.
+class Operations {
+public:
+    Operations() {
+        ExtractOptions options;
+        options.edge_ends = true;
+        surface_ = extract(packed_, 0.1, options).value().surface;
+    }
+    std::vector<std::pair<std::string, Operation>> all() {
+        return {
+            {"survey", [this](const Progress& p) { return code_of(survey(grid_, {}, p)); }},
+            {"split", [this](const Progress& p) { return code_of(split(grid_, p)); }},
+            {"pack", [this](const Progress& p) { return code_of(pack(grid_, point_field(grid_), {}, p)); }},
+            {"set_field", [this](const Progress& p) { return code_of(packed_.set_field(point_field(grid_), 0, p)); }},
+            {"extract", [this](const Progress& p) { return code_of(extract(packed_, 0.1, {}, p)); }},
+            {"extract by reference",
+             [this](const Progress& p) {
+                 ExtractOptions options;
+                 options.engine = Engine::reference;
+                 return code_of(extract(packed_, 0.1, options, p));
+             }},
+            {"check", [this](const Progress& p) { return code_of(check(surface_, {}, p)); }},
+            {"make_grid",
+             [](const Progress& p) {
+                 MakeOptions options;
+                 options.side = 40;
+                 return code_of(make_grid(options, p));
+             }},
+        };
+    }
+
+private:
+    Grid grid_ = made_grid("mixed", 12, {"gyroid"});
+    PackedGrid packed_ = pack(grid_, point_field(grid_)).value();
+    Surface surface_;
+};
+
+TEST(Cancelling, BeforeTheStartEndsEveryOperation) {
+    const std::atomic<bool> cancel{true};
+    Progress progress;
+    progress.cancel = &cancel;
+    Operations operations;
+    for (const auto& [name, operation] : operations.all()) EXPECT_EQ(operation(progress), ErrorCode::cancelled) << name;
+}
+
+TEST(Cancelling, MidwayEndsPackingAtEveryStep) {
+    const Grid grid = made_grid("kuhn", 24, {"gyroid"});
+    std::vector<double> fractions;
+    Progress listen;
+    listen.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
+    ASSERT_TRUE(pack(grid, point_field(grid), {}, listen));
+    ASSERT_GT(fractions.size(), 4u);
+    for (const double stop : fractions) {
+        if (stop >= 0.9) continue; // nearly done: it may end either way
+        std::atomic<bool> cancel{false};
+        Progress progress;
+        progress.cancel = &cancel;
+        progress.report = [&](std::string_view, double fraction) {
+            if (fraction >= stop) cancel = true;
+        };
+        EXPECT_EQ(code_of(pack(grid, point_field(grid), {}, progress)), ErrorCode::cancelled) << stop;
+    }
+}
+
+TEST(Progress, RisesFromNothingToOneInEveryOperation) {
+    Operations operations;
+    for (const auto& [name, operation] : operations.all()) {
+        double last = 0;
+        std::atomic<int> inside{0};
+        bool overlaps = false, falls = false;
+        Progress progress;
+        progress.report = [&](std::string_view step, double fraction) {
+            overlaps |= inside++ != 0;
+            falls |= fraction < last || fraction > 1 || step.empty();
+            last = fraction;
+            --inside;
+        };
+        EXPECT_EQ(operation(progress), std::nullopt) << name;
+        EXPECT_FALSE(overlaps) << name;
+        EXPECT_FALSE(falls) << name;
+        const bool is_quiet = name == "split" || name == "set_field";
+        EXPECT_TRUE(is_quiet || last == 1) << name << " ends at " << last;
+    }
+}
+
+} // namespace
+} // namespace isotet::test

@@ -1,0 +1,81 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Too little memory is found out before it is taken, and said with the amount needed. Limits are those of a child
+// process.
+#include <fstream>
+#include <iostream>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+
+#include "support/small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+/// Leaves this process so many bytes of address space beyond what it has.
+void leave_memory(std::uint64_t bytes) {
+    std::ifstream status("/proc/self/status");
+    std::uint64_t kib = 0;
+    for (std::string word; status >> word;)
+        if (word == "VmSize:") status >> kib;
+    const rlimit limit{1024 * kib + bytes, RLIM_INFINITY};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) std::exit(9);
+}
+
+/// Prints the error and ends with 0 for out_of_memory, 1 for success, 2 for another error.
+template <class T>
+[[noreturn]] void end_with(const Result<T>& result) {
+    if (result) std::exit(1);
+    std::cerr << result.error().message << std::endl;
+    std::exit(result.error().code == ErrorCode::out_of_memory ? 0 : 2);
+}
+
+class OutOfMemory : public testing::Test {
+protected:
+    void SetUp() override { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
+};
+
+void pack_with_little_memory() {
+    const Grid grid = made_grid("kuhn", 80, {"plane"}); // 3,072,000 tets
+    PackOptions options;
+    options.threads = 1;
+    leave_memory(80 << 20);
+    end_with(pack(grid, point_field(grid), options));
+}
+
+TEST_F(OutOfMemory, IsToldByPackWithTheAmountNeeded) {
+    EXPECT_EXIT(pack_with_little_memory(), testing::ExitedWithCode(0),
+                "^packing the grid needs 1[0-9][0-9]\\.[0-9] MB, but [0-9.]+ MB are free");
+}
+
+void extract_with_little_memory() {
+    const Grid grid = made_grid("kuhn", 72, {"integer"}); // a surface of 80 MB
+    ExtractOptions options;
+    options.threads = 1;
+    options.ties = Ties::keep;
+    options.edge_ends = true;
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    if (!extract(packed, 4, options)) std::exit(3); // what can be loaded lazily is loaded now
+    leave_memory(16 << 20);
+    end_with(extract(packed, 2, options));
+}
+
+TEST_F(OutOfMemory, IsToldByExtractWithTheAmountNeeded) {
+    EXPECT_EXIT(extract_with_little_memory(), testing::ExitedWithCode(0),
+                "^(the surface needs [0-9.]+ MB, but [0-9.]+ MB are free|extraction ran out of memory)");
+}
+
+TEST_F(OutOfMemory, IsToldByMakeGridBeforeAHugeGrid) {
+    MakeOptions options;
+    options.side = 4096; // 412 thousand million tets
+    const auto refused = make_grid(options);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
+}
+
+} // namespace
+} // namespace isotet::test
