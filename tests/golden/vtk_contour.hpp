@@ -1,0 +1,19 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The rival: what VTK's vtkContour3DLinearGrid, merging points, makes of the valid tets of a grid.
+#pragma once
+
+#include <cstdint>
+
+#include <isotet/grid.hpp>
+
+namespace isotet::test {
+
+struct VtkSurface {
+    std::uint64_t vertices = 0, triangles = 0;
+    double area = 0;
+};
+
+/// Gives VTK the tets that isotet makes of the grid, and only they: repeated ones once, none with a corner of NaN.
+VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue);
+
+} // namespace isotet::test
