@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// All 81 cases {below, tied, above} of one tet, in every order of its corners, and all 243 of two tets that share a face,
-// against what the contract says of each case.
+// All 81 cases {below, tied, above} of one tet, in every order of its corners, and all 243 of two tets that share a
+// face, against what the contract says of each case.
 #include <cmath>
 #include <functional>
 #include <set>
@@ -32,7 +32,8 @@ struct Expected {
     std::map<Ends, Place> vertices;
 };
 
-Expected expected_of(const Corners& tet, const std::vector<float>& values, const std::vector<Place>& points, Ties ties) {
+Expected expected_of(const Corners& tet, const std::vector<float>& values, const std::vector<Place>& points,
+                     Ties ties) {
     std::vector<std::int64_t> tied, above, below;
     for (const std::int64_t p : tet) {
         const float value = values[static_cast<std::size_t>(p)];
@@ -73,7 +74,9 @@ Place gradient_times_volume(const Corners& tet, const std::vector<float>& values
     double volume = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
-        const auto cross = [&](std::size_t m, std::size_t n) { return edge[m][j] * edge[n][k] - edge[m][k] * edge[n][j]; };
+        const auto cross = [&](std::size_t m, std::size_t n) {
+            return edge[m][j] * edge[n][k] - edge[m][k] * edge[n][j];
+        };
         out[axis] = rise[0] * cross(1, 2) + rise[1] * cross(2, 0) + rise[2] * cross(0, 1);
         volume += edge[0][axis] * cross(1, 2);
     }
@@ -158,9 +161,9 @@ void expect_all_cases(const std::vector<Place>& points, const std::vector<Corner
         packed.set_field(field_of(values), 1).value();
         for (const Ties ties : {Ties::merge, Ties::keep})
             for (const Engine engine : {Engine::cpu, Engine::reference}) {
-                SCOPED_TRACE(testing::Message() << "values " << testing::PrintToString(values) << ", tets "
-                                                << testing::PrintToString(tets) << ", ties " << int(ties) << ", engine "
-                                                << int(engine));
+                SCOPED_TRACE(testing::Message()
+                             << "values " << testing::PrintToString(values) << ", tets " << testing::PrintToString(tets)
+                             << ", ties " << int(ties) << ", engine " << int(engine));
                 ExtractOptions options;
                 options.engine = engine;
                 options.ties = ties;

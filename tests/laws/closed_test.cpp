@@ -20,7 +20,8 @@ std::set<std::set<std::int64_t>> boundary_faces(const Grid& grid, const Array& f
     for (const UprightTet& tet : upright_tets(grid)) {
         const auto& t = tet.corners;
         if (std::ranges::any_of(t, [&](std::uint64_t p) { return std::isnan(field.at(p)); })) continue;
-        for (const auto& face : {std::array{t[1], t[2], t[3]}, {t[0], t[3], t[2]}, {t[0], t[1], t[3]}, {t[0], t[2], t[1]}}) {
+        for (const auto& face :
+             {std::array{t[1], t[2], t[3]}, {t[0], t[3], t[2]}, {t[0], t[1], t[3]}, {t[0], t[2], t[1]}}) {
             auto sorted = face;
             std::sort(sorted.begin(), sorted.end());
             const auto first = std::ranges::find(face, sorted[0]) - face.begin();
@@ -92,8 +93,13 @@ TEST(Surfaces, AreClosedOffTheBoundaryOfPointsWithData) {
 TEST(Surfaces, AreClosedOffTheBoundaryOfTangledGridsWithRepeatedTets) {
     for (std::uint32_t seed = 1200; seed < 1216; ++seed)
         expect_closed(seed,
-                      {.side = 2 + int(seed) % 6, .values = 3, .no_data = 0.03, .missing = 0.15, .inverted = 0.3,
-                       .mirrored = 0.5, .repeated = 0.3},
+                      {.side = 2 + int(seed) % 6,
+                       .values = 3,
+                       .no_data = 0.03,
+                       .missing = 0.15,
+                       .inverted = 0.3,
+                       .mirrored = 0.5,
+                       .repeated = 0.3},
                       {0, 0.5, 1});
 }
 
@@ -136,7 +142,8 @@ TEST(Surfaces, OfAClosedFieldAreClosedEverywhere) {
         std::vector<std::int32_t> values;
         const auto random = grid.point_fields[0].values.as<std::int32_t>();
         for (std::size_t p = 0; p < random.size(); ++p) {
-            const bool at_boundary = std::ranges::any_of(point_of(grid.points, p), [](double x) { return std::abs(x) == 1; });
+            const bool at_boundary =
+                std::ranges::any_of(point_of(grid.points, p), [](double x) { return std::abs(x) == 1; });
             values.push_back(at_boundary ? -1 : random[p]);
         }
         const PackedGrid packed = pack(grid, field_of(std::move(values))).value();

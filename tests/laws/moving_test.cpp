@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A packed grid with a new field or new points gives the surface of a grid packed anew; and where points are far from the
-// origin, centimetres stay centimetres.
+// A packed grid with a new field or new points gives the surface of a grid packed anew; and where points are far from
+// the origin, centimetres stay centimetres.
 #include <cmath>
 #include <map>
 
@@ -44,9 +44,13 @@ TEST(SetField, GivesTheBytesOfAFreshPack) {
     const Grid grid = made_grid("shuffled", 9, {"gyroid", "integer"});
     const Array& gyroid = grid.point_fields[0].values;
     const NastyGrid nasty = nasty_grid(5, {.side = 9, .values = 4, .no_data = 0.1});
-    const std::vector<PointField> fields{point_field(grid, 1), converted<float>(gyroid, 1, 0), nasty.field,
-                                         converted<double>(gyroid, 1e-3, 101325), converted<double>(gyroid, 1e248, 0),
-                                         converted<std::int64_t>(gyroid, 1e9, 0), converted<std::uint8_t>(gyroid, 50, 128)};
+    const std::vector<PointField> fields{point_field(grid, 1),
+                                         converted<float>(gyroid, 1, 0),
+                                         nasty.field,
+                                         converted<double>(gyroid, 1e-3, 101325),
+                                         converted<double>(gyroid, 1e248, 0),
+                                         converted<std::int64_t>(gyroid, 1e9, 0),
+                                         converted<std::uint8_t>(gyroid, 50, 128)};
     for (const Precision precision : {Precision::single, Precision::double_}) {
         PackedGrid packed = pack(grid, fields.back(), with_everything(precision)).value();
         for (const PointField& field : fields) {
@@ -57,7 +61,8 @@ TEST(SetField, GivesTheBytesOfAFreshPack) {
             EXPECT_EQ(packed.field().scale, fresh.field().scale);
             EXPECT_EQ(packed.field().no_data, fresh.field().no_data);
             for (const Ties ties : {Ties::merge, Ties::keep})
-                EXPECT_TRUE(bytes_of(whole_surface(packed, isovalue, field, ties)) == bytes_of(whole_surface(fresh, isovalue, field, ties)))
+                EXPECT_TRUE(bytes_of(whole_surface(packed, isovalue, field, ties)) ==
+                            bytes_of(whole_surface(fresh, isovalue, field, ties)))
                     << name_of(field.values.type());
         }
     }
@@ -74,20 +79,23 @@ TEST(SetField, CanBeCancelledAndDoneAgain) {
     EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
     packed.set_field(point_field(grid, 1)).value();
     const PackedGrid fresh = pack(grid, point_field(grid, 1), with_everything()).value();
-    EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid, 1))) == bytes_of(whole_surface(fresh, 0.1, point_field(grid, 1))));
+    EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid, 1))) ==
+                bytes_of(whole_surface(fresh, 0.1, point_field(grid, 1))));
 }
 
 template <class Real, class Move>
 Array moved(const Array& points, const Move& move) {
     std::vector<Real> out;
     for (std::size_t p = 0; p < points.tuples(); ++p)
-        for (const double x : move(std::array{points.at(p, 0), points.at(p, 1), points.at(p, 2)})) out.push_back(static_cast<Real>(x));
+        for (const double x : move(std::array{points.at(p, 0), points.at(p, 1), points.at(p, 2)}))
+            out.push_back(static_cast<Real>(x));
     return Array::own(std::move(out), 3);
 }
 
 std::array<double, 3> twisted(const std::array<double, 3>& p) {
     const double angle = 0.3 * p[2];
-    return {p[0] * std::cos(angle) - p[1] * std::sin(angle), p[0] * std::sin(angle) + p[1] * std::cos(angle), p[2] + 0.1 * p[0] * p[0]};
+    return {p[0] * std::cos(angle) - p[1] * std::sin(angle), p[0] * std::sin(angle) + p[1] * std::cos(angle),
+            p[2] + 0.1 * p[0] * p[0]};
 }
 
 TEST(SetPoints, GivesTheBytesOfAFreshPackWhereTheCurveIsTheSame) {
@@ -97,7 +105,8 @@ TEST(SetPoints, GivesTheBytesOfAFreshPackWhereTheCurveIsTheSame) {
     grid.points = moved<float>(grid.points, [](auto p) { return std::array{2 * p[0], 2 * p[1], 2 * p[2]}; });
     packed.set_points(grid.points).value();
     const PackedGrid fresh = pack(grid, point_field(grid), with_everything()).value();
-    EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid))) == bytes_of(whole_surface(fresh, 0.1, point_field(grid))));
+    EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid))) ==
+                bytes_of(whole_surface(fresh, 0.1, point_field(grid))));
 }
 
 template <class Real>
@@ -130,11 +139,14 @@ TEST(SetPoints, RefusesPointsThatTurnATetAndChangesNothing) {
     const Grid grid = made_grid("kuhn", 5, {"gyroid"});
     PackedGrid packed = pack(grid, point_field(grid), with_everything()).value();
     const std::string before = bytes_of(whole_surface(packed, 0.1, point_field(grid)));
-    const auto mirrored = packed.set_points(moved<float>(grid.points, [](auto p) { return std::array{-p[0], p[1], p[2]}; }));
+    const auto mirrored =
+        packed.set_points(moved<float>(grid.points, [](auto p) { return std::array{-p[0], p[1], p[2]}; }));
     ASSERT_FALSE(mirrored);
     EXPECT_EQ(mirrored.error().code, ErrorCode::invalid_data);
-    EXPECT_NE(mirrored.error().message.find("750 tets change their orientation"), std::string::npos) << mirrored.error().message;
-    const auto infinite = packed.set_points(moved<double>(grid.points, [](auto p) { return std::array{p[0], p[1] / 0.0, p[2]}; }));
+    EXPECT_NE(mirrored.error().message.find("750 tets change their orientation"), std::string::npos)
+        << mirrored.error().message;
+    const auto infinite =
+        packed.set_points(moved<double>(grid.points, [](auto p) { return std::array{p[0], p[1] / 0.0, p[2]}; }));
     ASSERT_FALSE(infinite);
     EXPECT_EQ(infinite.error().code, ErrorCode::invalid_data);
     EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid))) == before);
@@ -142,25 +154,28 @@ TEST(SetPoints, RefusesPointsThatTurnATetAndChangesNothing) {
 
 TEST(SetPoints, IgnoresPointsThatNoTetUses) {
     PackedGrid packed = pack(tet_grid({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {9, 9, 9}}, {{0, 1, 2, 3}}),
-                             field_of<float>({0, 1, 1, 1, 1})).value();
+                             field_of<float>({0, 1, 1, 1, 1}))
+                            .value();
     const Array points = Array::own(std::vector<float>{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2, NAN, INFINITY, 1e30f}, 3);
     packed.set_points(points).value();
-    EXPECT_EQ(extract(packed, 0.5).value().surface.positions.at(0, 0) + extract(packed, 0.5).value().surface.positions.at(1, 0) +
-                  extract(packed, 0.5).value().surface.positions.at(2, 0), 1);
+    EXPECT_EQ(extract(packed, 0.5).value().surface.positions.at(0, 0) +
+                  extract(packed, 0.5).value().surface.positions.at(1, 0) +
+                  extract(packed, 0.5).value().surface.positions.at(2, 0),
+              1);
 }
 
 /// A grid of 1 cm cells around (shift, shift / 2, 0), in metres, in double.
 Grid centimetres(double shift) {
     Grid grid = made_grid("perturbed", 8, {"sphere"});
-    grid.points = moved<double>(grid.points, [shift](auto p) {
-        return std::array{shift + 0.04 * p[0], shift / 2 + 0.04 * p[1], 0.04 * p[2]};
-    });
+    grid.points = moved<double>(
+        grid.points, [shift](auto p) { return std::array{shift + 0.04 * p[0], shift / 2 + 0.04 * p[1], 0.04 * p[2]}; });
     return grid;
 }
 
 TEST(HugeOffsets, LeaveCentimetreCellsAsTheyAre) {
     const Grid near = centimetres(0), far = centimetres(4e6);
-    const PackedGrid packed_near = pack(near, point_field(near)).value(), packed_far = pack(far, point_field(far)).value();
+    const PackedGrid packed_near = pack(near, point_field(near)).value(),
+                     packed_far = pack(far, point_field(far)).value();
     EXPECT_NEAR(packed_far.origin()[0], 4e6, 1);
     EXPECT_EQ(packed_far.report().coarse_clusters, 0u);
     ExtractOptions options;
@@ -202,8 +217,7 @@ TEST(HugeOffsets, ThatFloat32CannotHoldAreReportedAndDoublePackingHoldsThem) {
     EXPECT_EQ(precise.origin(), (std::array<double, 3>{}));
     const Surface surface = extract(precise, 0.5).value().surface;
     EXPECT_EQ(surface.positions.type(), ScalarType::float64);
-    for (std::size_t v = 0; v < surface.vertices(); ++v)
-        ASSERT_NEAR(std::abs(surface.positions.at(v, 0)), 4e6, 0.021);
+    for (std::size_t v = 0; v < surface.vertices(); ++v) ASSERT_NEAR(std::abs(surface.positions.at(v, 0)), 4e6, 0.021);
 }
 
 TEST(Coordinates, TooSmallForTheContractAreZeroAndCounted) {

@@ -23,7 +23,8 @@ std::multiset<Triangle> triangles_of(const Surface& surface, bool turned_round) 
     for (std::size_t t = 0; t < surface.triangle_count(); ++t) {
         Triangle triangle;
         const auto corners = corners_of(surface, t);
-        for (std::size_t k = 0; k < 3; ++k) triangle[k] = without_direction(ends_of(surface, corners[turned_round ? 2 - k : k]));
+        for (std::size_t k = 0; k < 3; ++k)
+            triangle[k] = without_direction(ends_of(surface, corners[turned_round ? 2 - k : k]));
         std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
         out.insert(triangle);
     }
@@ -38,7 +39,8 @@ PointField negated(const PointField& field) {
 
 TEST(Negation, TurnsEveryTriangleRound) {
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-        const NastyGrid g = nasty_grid(seed, {.side = 8, .values = int(seed % 2) * 5, .no_data = 0.02, .inverted = 0.1});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 8, .values = int(seed % 2) * 5, .no_data = 0.02, .inverted = 0.1});
         const double isovalue = seed % 2 ? 0.25 : 0.125;
         ExtractOptions options;
         options.edge_ends = true;

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The numbering of points and cells does not matter: the same vertices bit for bit, and of a grid of tetrahedra the same
-// triangles up to the diagonals of quadrilaterals.
+// The numbering of points and cells does not matter: the same vertices bit for bit, and of a grid of tetrahedra the
+// same triangles up to the diagonals of quadrilaterals.
 #include <numeric>
 #include <random>
 
@@ -42,7 +42,8 @@ Permuted permuted(const Grid& grid, const PointField& field, std::uint32_t seed,
     std::vector<float> values;
     for (std::size_t p = 0; p < points; ++p) {
         new_point[out.old_point[p]] = static_cast<std::int64_t>(p);
-        for (std::size_t axis = 0; axis < 3; ++axis) coordinates.push_back(static_cast<Real>(grid.points.at(out.old_point[p], axis)));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            coordinates.push_back(static_cast<Real>(grid.points.at(out.old_point[p], axis)));
         values.push_back(static_cast<float>(field.values.at(out.old_point[p])));
     }
     std::vector<std::int64_t> corners;

@@ -31,10 +31,11 @@ protected:
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Laws, OnEveryShape,
-                         testing::Combine(testing::Values("kuhn", "perturbed", "shuffled", "hex", "wedge", "pyramid", "mixed"),
-                                          testing::Values(8, 13, 24)),
-                         [](const auto& made) { return std::get<0>(made.param) + std::to_string(std::get<1>(made.param)); });
+INSTANTIATE_TEST_SUITE_P(
+    Laws, OnEveryShape,
+    testing::Combine(testing::Values("kuhn", "perturbed", "shuffled", "hex", "wedge", "pyramid", "mixed"),
+                     testing::Values(8, 13, 24)),
+    [](const auto& made) { return std::get<0>(made.param) + std::to_string(std::get<1>(made.param)); });
 
 TEST_P(OnEveryShape, SphereHasGenusZero) {
     const SurfaceReport report = check(extract(packed(grid("sphere")), 0.7).value().surface).value();
@@ -110,7 +111,8 @@ TEST_P(OnEveryShape, NormalsHaveUnitLengthAndGradientNormalsPointAwayFromTheCent
             ASSERT_NEAR(x * x + y * y + z * z, 1, 1e-6);
             if (kind == Normals::face) continue;
             const auto p = position_of(surface, n);
-            worst = std::min(worst, (x * p[0] + y * p[1] + z * p[2]) / std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]));
+            worst =
+                std::min(worst, (x * p[0] + y * p[1] + z * p[2]) / std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]));
         }
         EXPECT_GT(worst, std::get<1>(GetParam()) > 20 ? 0.985 : 0.9);
     }
@@ -133,7 +135,8 @@ double order_of(double coarse_error, double fine_error, double ratio) {
     return std::log(std::abs(coarse_error) / std::abs(fine_error)) / std::log(ratio);
 }
 
-void expect_second_order(const char* shape, const char* field, double isovalue, double exact_area, double exact_volume) {
+void expect_second_order(const char* shape, const char* field, double isovalue, double exact_area,
+                         double exact_volume) {
     const Measured coarse = measure(shape, 10, field, isovalue), fine = measure(shape, 40, field, isovalue);
     EXPECT_NEAR(order_of(coarse.area - exact_area, fine.area - exact_area, 4), 2, 0.4) << shape;
     EXPECT_NEAR(order_of(coarse.volume - exact_volume, fine.volume - exact_volume, 4), 2, 0.4) << shape;
@@ -157,7 +160,9 @@ TEST(Plane, HasItsExactAreaAtEveryResolution) {
     for (const char* shape : {"kuhn", "shuffled", "layer", "hex", "wedge", "pyramid", "mixed"})
         for (const std::uint64_t side : {2u, 5u, 12u}) {
             const Grid g = made_grid(shape, side, {"plane"});
-            EXPECT_NEAR(area(extract(pack(g, point_field(g)).value(), 0).value().surface), 4 * std::sqrt(14.0) / 3, 2e-6) << shape;
+            EXPECT_NEAR(area(extract(pack(g, point_field(g)).value(), 0).value().surface), 4 * std::sqrt(14.0) / 3,
+                        2e-6)
+                << shape;
         }
 }
 

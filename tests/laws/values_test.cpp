@@ -105,7 +105,8 @@ TEST(NoTiedPoint, CertifiesSidesOverFifteenDecades) {
 
 TEST(NoTiedPoint, CertifiesSidesOfHugeValues) {
     expect_certificate<double>(4, [](auto& random) { return uniform(random, -1, 1.5) * 1e248; });
-    expect_certificate<double>(5, [](auto& random) { return uniform(random, -1, 1) * std::numeric_limits<double>::max(); });
+    expect_certificate<double>(
+        5, [](auto& random) { return uniform(random, -1, 1) * std::numeric_limits<double>::max(); });
 }
 
 TEST(NoTiedPoint, CertifiesSidesOfPermeabilities) {
@@ -176,8 +177,9 @@ void expect_denormals_are_told_apart() {
     const PackedGrid packed = pack(grid, field_of(values)).value(), expected = pack(grid, field_of(plain)).value();
     EXPECT_EQ(packed.field().flushed, 0u);
     for (const int isovalue : {1, 2, 3, 7})
-        EXPECT_TRUE(bytes_of(extract(packed, static_cast<double>(static_cast<Real>(isovalue) * smallest)).value().surface) ==
-                    bytes_of(extract(expected, isovalue).value().surface))
+        EXPECT_TRUE(
+            bytes_of(extract(packed, static_cast<double>(static_cast<Real>(isovalue) * smallest)).value().surface) ==
+            bytes_of(extract(expected, isovalue).value().surface))
             << isovalue;
 }
 
@@ -223,7 +225,8 @@ TEST(Infinity, GivesTheFiniteEndOrTheMiddle) {
             const std::array<double, 3> middle{0.5, 0, 0};
             EXPECT_EQ(position_of(surface, v), above == 1 ? middle : unit[static_cast<std::size_t>(above)]);
         }
-        const Surface other = extract(one_tet<double>({-3, infinity, infinity, infinity}, precision), -1e300, options).value().surface;
+        const Surface other =
+            extract(one_tet<double>({-3, infinity, infinity, infinity}, precision), -1e300, options).value().surface;
         EXPECT_EQ(other.vertices(), 0u); // -3 is above, and nothing is below
     }
 }
@@ -242,7 +245,8 @@ TEST(NoData, GivesNothingHoweverNaNIsWritten) {
 
 TEST(NoData, CutsAwayOnlyTheTetsAtThatCornerOfAHexahedron) {
     const Grid grid = made_grid("hex", 1, {"plane"});
-    std::vector<float> values(grid.point_fields[0].values.as<float>().begin(), grid.point_fields[0].values.as<float>().end());
+    std::vector<float> values(grid.point_fields[0].values.as<float>().begin(),
+                              grid.point_fields[0].values.as<float>().end());
     const std::size_t whole = extract(pack(grid, field_of(values)).value(), 0.1).value().surface.triangle_count();
     values[3] = std::nanf("");
     const std::size_t rest = extract(pack(grid, field_of(values)).value(), 0.1).value().surface.triangle_count();
@@ -263,7 +267,8 @@ TEST(IsovalueOnFloat32, IsComparedAsADouble) {
     EXPECT_EQ(tied.report.tied_points, 1u);
     EXPECT_EQ(tied.report.false_ties, 0u);
     EXPECT_FALSE(tied.report.near_tie);
-    // 0.3f is greater than 0.3, and the least float32 that is: above in any case, but a tie that the input does not have.
+    // 0.3f is greater than 0.3, and the least float32 that is: above in any case, but a tie that the input does not
+    // have.
     ExtractOptions keep;
     keep.ties = Ties::keep;
     const Extraction above = extract(one_tet<float>({0.3f, 0, 0, 0}), 0.3, keep).value();
@@ -295,7 +300,8 @@ TEST(FalseTies, AreToldFromTiesOfTheInput) {
 
 TEST(FalseTies, OfIntegersBeyondDoublesAreToldExactly) {
     constexpr std::int64_t base = std::int64_t{1} << 53;
-    const PackedGrid packed = one_tet<std::int64_t>({base, base + 1, base - 1000, base + 1000}); // base + 1 is no double
+    const PackedGrid packed =
+        one_tet<std::int64_t>({base, base + 1, base - 1000, base + 1000}); // base + 1 is no double
     const ExtractReport report = extract(packed, static_cast<double>(base)).value().report;
     EXPECT_EQ(report.tied_points, 2u);
     EXPECT_EQ(report.false_ties, 1u);

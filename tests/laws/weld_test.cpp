@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Surfaces of random grids are those of a brute-force weld written straight from the contract: the same vertices, bit for
-// bit, and the same triangles up to the diagonals of quadrilaterals.
+// Surfaces of random grids are those of a brute-force weld written straight from the contract: the same vertices, bit
+// for bit, and the same triangles up to the diagonals of quadrilaterals.
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
@@ -14,7 +14,8 @@ namespace isotet::test {
 namespace {
 
 template <class Real>
-void expect_equal_to_weld(const Grid& grid, const PointField& field, const std::vector<double>& isovalues, const std::string& which) {
+void expect_equal_to_weld(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
+                          const std::string& which) {
     PackOptions pack_options;
     pack_options.source_cells = true;
     pack_options.precision = std::is_same_v<Real, float> ? Precision::single : Precision::double_;
@@ -27,7 +28,8 @@ void expect_equal_to_weld(const Grid& grid, const PointField& field, const std::
             options.source_cells = true;
             const Surface surface = extract(packed, isovalue, options).value().surface;
             const SurfaceSets found = sets_of(surface), wanted = brute_weld<Real>(grid, field.values, isovalue, ties);
-            const std::string place = which + ", isovalue " + std::to_string(isovalue) + (ties == Ties::keep ? ", kept" : "");
+            const std::string place =
+                which + ", isovalue " + std::to_string(isovalue) + (ties == Ties::keep ? ", kept" : "");
             ASSERT_EQ(surface.vertices(), wanted.vertices.size()) << place;
             ASSERT_EQ(surface.triangle_count(), wanted.triangle_count()) << place;
             ASSERT_EQ(found.vertices, wanted.vertices) << place;
@@ -58,36 +60,46 @@ TEST(BruteWeld, EqualsSurfacesBesidePointsWithoutData) {
 TEST(BruteWeld, EqualsSurfacesOfTangledGridsWithRepeatedAndMissingTets) {
     for (std::uint32_t seed = 400; seed < 430; ++seed)
         expect_equal_to_weld(seed,
-                             {.side = 3 + int(seed) % 5, .values = 3, .no_data = 0.02, .missing = 0.3, .inverted = 0.3,
-                              .mirrored = 0.5, .repeated = 0.2},
+                             {.side = 3 + int(seed) % 5,
+                              .values = 3,
+                              .no_data = 0.02,
+                              .missing = 0.3,
+                              .inverted = 0.3,
+                              .mirrored = 0.5,
+                              .repeated = 0.2},
                              {0, 0.5, 1});
 }
 
 TEST(BruteWeld, EqualsSurfacesOfDoublePackings) {
     for (std::uint32_t seed = 500; seed < 510; ++seed)
-        expect_equal_to_weld<double>(seed, {.side = 5, .values = int(seed % 2) * 3, .no_data = 0.02, .wide = true}, {0, 0.3, 1});
+        expect_equal_to_weld<double>(seed, {.side = 5, .values = int(seed % 2) * 3, .no_data = 0.02, .wide = true},
+                                     {0, 0.3, 1});
 }
 
 TEST(BruteWeld, EqualsSurfacesOfSplitCells) {
     for (const char* shape : {"hex", "wedge", "pyramid", "mixed"}) {
         const Grid grid = made_grid(shape, 5, {"integer"}, 7);
         std::vector<float> values;
-        for (const std::int32_t v : grid.point_fields[0].values.as<std::int32_t>()) values.push_back(static_cast<float>(v));
+        for (const std::int32_t v : grid.point_fields[0].values.as<std::int32_t>())
+            values.push_back(static_cast<float>(v));
         expect_equal_to_weld<float>(grid, field_of(std::move(values)), {1, 2, 2.5}, shape);
     }
 }
 
 TEST(BruteWeld, KeepsFlatTetsAsTheFileHasThem) {
     // A square's four corners are a flat tet between two upright ones; once more with every tet mirrored.
-    const std::vector<std::array<double, 3>> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}, {0.5, 0.5, -1}};
+    const std::vector<std::array<double, 3>> points{{0, 0, 0}, {1, 0, 0},     {1, 1, 0},
+                                                    {0, 1, 0}, {0.5, 0.5, 1}, {0.5, 0.5, -1}};
     const std::vector<Corners> upright{{0, 1, 2, 4}, {0, 2, 3, 4}, {0, 2, 1, 3}, {0, 3, 1, 5}, {1, 3, 2, 5}};
     std::vector<Corners> mirrored = upright;
     for (Corners& tet : mirrored) std::swap(tet[1], tet[2]);
     for (const auto& tets : {upright, mirrored})
         for (int pattern = 0; pattern < 729; ++pattern) {
             std::vector<float> values;
-            for (int rest = pattern; values.size() < points.size(); rest /= 3) values.push_back(static_cast<float>(rest % 3 - 1));
-            expect_equal_to_weld<float>(tet_grid(points, tets), field_of(values), {0}, "pattern " + std::to_string(pattern));
+            for (int rest = pattern; values.size() < points.size(); rest /= 3)
+                values.push_back(static_cast<float>(rest % 3 - 1));
+            expect_equal_to_weld<float>(tet_grid(points, tets), field_of(values), {0},
+                                        "pattern " + std::to_string(pattern));
         }
 }
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The isosurface of a grid straight from the user's arrays and the words of the contract: no packing, no case table, a map
-// of crossed edges and tied points. Only the exact sign of a tet's volume is taken from the library.
+// The isosurface of a grid straight from the user's arrays and the words of the contract: no packing, no case table, a
+// map of crossed edges and tied points. Only the exact sign of a tet's volume is taken from the library.
 #pragma once
 
 #include <bit>
@@ -16,8 +16,8 @@
 
 namespace isotet::test {
 
-/// Values of a float32 field as they are stored: shifted by a power of two when some are huge or tiny, what is then still
-/// tiny (and -0) as +0, infinities as +-2^91.
+/// Values of a float32 field as they are stored: shifted by a power of two when some are huge or tiny, what is then
+/// still tiny (and -0) as +0, infinities as +-2^91.
 struct StoredField {
     std::vector<double> values; ///< by the user's points; each a float32
     double scale = 1;

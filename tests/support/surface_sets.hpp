@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A surface without its order: vertices by the grid edge they lie on, triangles up to the diagonals of quadrilaterals. Two
-// surfaces with equal sets are the same surface, however their vertices and triangles are numbered.
+// A surface without its order: vertices by the grid edge they lie on, triangles up to the diagonals of quadrilaterals.
+// Two surfaces with equal sets are the same surface, however their vertices and triangles are numbered.
 #pragma once
 
 #include <algorithm>
@@ -62,7 +62,8 @@ struct SurfaceSets {
         return count;
     }
     friend void PrintTo(const SurfaceSets& sets, std::ostream* out) {
-        *out << sets.vertices.size() << " vertices, " << sets.triangle_count() << " triangles in " << sets.cells.size() << " cells";
+        *out << sets.vertices.size() << " vertices, " << sets.triangle_count() << " triangles in " << sets.cells.size()
+             << " cells";
     }
 };
 
@@ -70,8 +71,9 @@ struct SurfaceSets {
 inline std::array<std::size_t, 3> corners_of(const Surface& surface, std::size_t triangle) {
     std::array<std::size_t, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = surface.triangles.type() == ScalarType::uint32 ? surface.triangles.as<std::uint32_t>()[3 * triangle + k]
-                                                                    : surface.triangles.as<std::uint64_t>()[3 * triangle + k];
+        corners[k] = surface.triangles.type() == ScalarType::uint32
+                         ? surface.triangles.as<std::uint32_t>()[3 * triangle + k]
+                         : surface.triangles.as<std::uint64_t>()[3 * triangle + k];
     return corners;
 }
 
