@@ -81,7 +81,7 @@ constexpr const char* formats_details = R"(--format takes the names in the first
 )";
 
 void add_common(CLI::App& app, CommonOptions& common) {
-    add_text(app, "--json", common.json, "FILE",
+    add_file(app, "--json", common.json, "FILE",
              "Write the numbers as JSON too; - is standard output, which then has no table");
     add_count(
         app, "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
@@ -111,7 +111,7 @@ void add_reading(CLI::App& app, GridOptions& grid, const std::string& format_opt
 
 CLI::App& add_info(CLI::App& program, InfoCommand& info) {
     CLI::App& app = *program.add_subcommand("info", "Tell what a grid file holds");
-    add_text(app, "FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
+    add_file(app, "FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
     add_time(app, info.grid);
     add_reading(app, info.grid, "--format");
     add_common(app, info.common);
@@ -149,9 +149,9 @@ void add_surface_arrays(CLI::App& app, ExtractCommand& extract) {
 
 CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
     CLI::App& app = *program.add_subcommand("extract", "Extract isosurfaces and write them into files");
-    add_text(app, "FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
-    CLI::Option* out = add_text(app, "OUT", extract.out, "OUT_FILE", "The surface, as -o");
-    add_text(app, "-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format")->excludes(out);
+    add_file(app, "FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
+    CLI::Option* out = add_file(app, "OUT", extract.out, "OUT_FILE", "The surface, as -o");
+    add_file(app, "-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format")->excludes(out);
     add_text(app, "-f,--field", extract.field.name, "FIELD",
              "The field to contour; may be left out where there is only one");
     app.add_flag("--cell-field", extract.field.cell_field,
@@ -179,10 +179,10 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
 
 CLI::App& add_check(CLI::App& program, CheckCommand& check) {
     CLI::App& app = *program.add_subcommand("check", "Measure a surface and look for what should not be there");
-    add_text(app, "SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
+    add_file(app, "SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
         ->required();
     app.add_flag("--closed", check.closed, "Blame every edge that is used unequally often in the two directions");
-    CLI::Option* grid = add_text(app, "--grid", check.grid.file, "FILE",
+    CLI::Option* grid = add_file(app, "--grid", check.grid.file, "FILE",
                                  "Blame such edges unless they lie in one boundary face of this grid");
     add_text(app, "-f,--field", check.field.name, "FIELD",
              "The field that was contoured: tets without a value do not count")
@@ -213,7 +213,7 @@ CLI::App& add_make(CLI::App& program, MakeCommand& make) {
         ->allow_extra_args(false);
     add_count(
         app, "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; without it 1");
-    add_text(app, "-o,--output", make.out, "OUT_FILE", "The grid: .vtu or .vtk")->required();
+    add_file(app, "-o,--output", make.out, "OUT_FILE", "The grid: .vtu or .vtk")->required();
     add_common(app, make.common);
     app.footer(make_details);
     return app;

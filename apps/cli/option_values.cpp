@@ -30,6 +30,19 @@ CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& targ
     return app.add_option(names, target, description)->type_name(type);
 }
 
+CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& type,
+                      const std::string& description) {
+    return app
+        .add_option_function<std::string>(
+            names,
+            [&target, names](const std::string& name) {
+                if (name.empty()) throw wrong_value(names, name, "the name of a file");
+                target = name;
+            },
+            description)
+        ->type_name(type);
+}
+
 CLI::Option* add_number(CLI::App& app, const std::string& names, std::function<void(double)> set,
                         const std::string& type, const std::string& description) {
     return app

@@ -21,6 +21,10 @@ CLI::ValidationError wrong_value(const std::string& names, std::string_view give
 CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& type,
                       const std::string& description);
 
+/// The name of a file; an empty one, of a script's empty variable perhaps, is refused.
+CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& type,
+                      const std::string& description);
+
 /// A finite number.
 CLI::Option* add_number(CLI::App& app, const std::string& names, std::function<void(double)> set,
                         const std::string& type, const std::string& description);
