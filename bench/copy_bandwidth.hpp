@@ -4,8 +4,8 @@
 
 namespace isotet::bench {
 
-/// Bytes a second, read and written ones both counted, of copying arrays far larger than any cache on `threads` threads:
-/// the best of a few passes.
+/// Bytes a second, read and written ones both counted, of copying arrays far larger than any cache on `threads`
+/// threads: the best of a few passes.
 double copy_bandwidth(int threads);
 
 } // namespace isotet::bench

@@ -58,7 +58,8 @@ std::vector<std::int32_t> valid_tets(const Grid& grid, const Array& field) {
     std::vector<std::int32_t> out;
     out.reserve(4 * tets.size());
     for (const auto& tet : tets) {
-        if (std::any_of(tet.begin(), tet.end(), [&](std::uint64_t point) { return std::isnan(field.at(point)); })) continue;
+        const auto has_no_data = [&](std::uint64_t point) { return std::isnan(field.at(point)); };
+        if (std::any_of(tet.begin(), tet.end(), has_no_data)) continue;
         for (const std::uint64_t point : tet) out.push_back(static_cast<std::int32_t>(point));
     }
     return out;
@@ -92,7 +93,11 @@ Reply write_grid_arrays(const std::string& source, const std::string& field, con
             upper = std::max(upper, value);
         }
     });
-    return Reply().count("points", grid.points.tuples()).count("tets", tets).number("lower", lower).number("upper", upper);
+    return Reply()
+        .count("points", grid.points.tuples())
+        .count("tets", tets)
+        .number("lower", lower)
+        .number("upper", upper);
 }
 
 } // namespace isotet::bench

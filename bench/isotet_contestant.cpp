@@ -53,9 +53,9 @@ Reply IsotetContestant::answer(const Words& words) {
     if (command == "extract") return extract_from(word(words, 1), number(words, 2), rest(3));
     if (command == "once") return extract_once(number(words, 1));
     if (command == "set_field") return set_field(word(words, 1));
-    if (command == "release") return Reply().count("released", packed_.erase(word(words, 1)));
     if (command == "copy") return Reply().number("bytes_per_second", copy_bandwidth(whole_number(words, 1)));
-    if (command == "arrays") return write_grid_arrays(word(words, 1), word(words, 2), word(words, 3), whole_number(words, 4));
+    if (command == "arrays")
+        return write_grid_arrays(word(words, 1), word(words, 2), word(words, 3), whole_number(words, 4));
     refuse("command", command);
 }
 
@@ -128,15 +128,17 @@ Reply IsotetContestant::extract_from(const std::string& name, double isovalue, c
     }
     const Stopwatch watch;
     const Extraction extraction = extract(from, isovalue, options).value();
-    return describe(extraction, watch.seconds()).count("must_move", extraction_must_move(from, isovalue, extraction.surface));
+    const double seconds = watch.seconds();
+    return describe(extraction, seconds)
+        .count("must_move", extraction_must_move(from, isovalue, extraction.surface));
 }
 
 Reply IsotetContestant::extract_once(double isovalue) {
     ExtractOptions options;
     options.threads = threads_;
     const Stopwatch watch;
-    // The packed grid goes before the time is taken: nothing is kept.
-    const Extraction extraction = [&] { return extract(pack(grid_, field_, pack_options()).value(), isovalue, options).value(); }();
+    // The packed grid is a temporary, gone before the clock stops: nothing is kept.
+    const Extraction extraction = extract(pack(grid_, field_, pack_options()).value(), isovalue, options).value();
     const double seconds = watch.seconds();
     const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
     return describe(extraction, seconds).count("must_move", input + bytes_of(extraction.surface));

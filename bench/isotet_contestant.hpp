@@ -16,7 +16,7 @@
 namespace isotet::bench {
 
 /// Commands: open FOLDER THREADS; pack NAME [gradients|source_cells]...; extract NAME ISOVALUE [ATTRIBUTE]...;
-/// once ISOVALUE; set_field NAME; release NAME; copy; arrays SOURCE FIELD FOLDER THREADS. NAME is that of a packed grid:
+/// once ISOVALUE; set_field NAME; copy THREADS; arrays SOURCE FIELD FOLDER THREADS. NAME is that of a packed grid:
 /// several may be kept. ATTRIBUTE: gradient_normals, face_normals, point_field, source_cells, edge_ends.
 class IsotetContestant {
 public:

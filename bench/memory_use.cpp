@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "bench/memory_use.hpp"
 
+#include <malloc.h>
+
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -22,7 +24,8 @@ std::uint64_t resident_bytes() { return 1024 * kibibytes_of("VmRSS:"); }
 
 std::uint64_t peak_bytes() { return 1024 * kibibytes_of("VmHWM:"); }
 
-void forget_peak() {
+void start_peak() {
+    malloc_trim(0);
     std::ofstream clear("/proc/self/clear_refs");
     clear << "5\n" << std::flush; // proc(5): resets the peak resident set size
     if (!clear) throw std::runtime_error("/proc/self/clear_refs cannot be written, so peaks cannot be told apart");

@@ -8,8 +8,10 @@ namespace isotet::bench {
 
 std::uint64_t resident_bytes();
 
-/// The most since the process began, or since forget_peak().
+/// The most since the process began, or since start_peak().
 std::uint64_t peak_bytes();
-void forget_peak();
+
+/// Gives back what the allocator keeps for later, so that it is counted when it is used again, and forgets the peak.
+void start_peak();
 
 } // namespace isotet::bench

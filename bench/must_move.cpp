@@ -40,18 +40,19 @@ std::uint64_t bytes_of(const Surface& surface) {
 
 std::uint64_t extraction_must_move(const PackedGrid& packed, double isovalue, const Surface& surface) {
     const core::Packed& data = packed.data();
-    const std::uint64_t read = data.single() ? bytes_of_selected(data, core::store_isovalue<float>(isovalue, data.storage))
-                                             : bytes_of_selected(data, core::store_isovalue<double>(isovalue, data.storage));
-    return read + bytes_of(surface);
+    const auto read = [&]<class Real>() {
+        return bytes_of_selected(data, core::store_isovalue<Real>(isovalue, data.storage));
+    };
+    return (data.single() ? read.operator()<float>() : read.operator()<double>()) + bytes_of(surface);
 }
 
 std::uint64_t new_field_must_move(const PackedGrid& packed, std::uint64_t field_bytes) {
     const core::Packed& data = packed.data();
-    const auto reals = [](const auto& values) { return values.values.bytes() + values.ranges.bytes(); };
-    const std::uint64_t written = data.group_ranges.bytes() + (data.single() ? reals(data.as<float>()) : reals(data.as<double>()));
-    const std::uint64_t read = field_bytes + data.point_ids.bytes() + data.wide_point_ids.bytes() + data.headers.bytes() +
-                               data.links.bytes() + data.tets.bytes();
-    return read + written;
+    const std::uint64_t read = field_bytes + data.point_ids.bytes() + data.wide_point_ids.bytes() +
+                               data.headers.bytes() + data.links.bytes() + data.tets.bytes();
+    const std::uint64_t written =
+        std::visit([](const auto& reals) { return reals.values.bytes() + reals.ranges.bytes(); }, data.reals);
+    return read + written + data.group_ranges.bytes();
 }
 
 } // namespace isotet::bench

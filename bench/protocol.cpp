@@ -48,8 +48,8 @@ Number parsed(const Words& words, std::size_t index) {
 
 Reply answer_with_peak(const std::function<Reply(const Words&)>& answer, Words words) {
     words.erase(words.begin());
+    start_peak();
     const std::uint64_t before = resident_bytes();
-    forget_peak();
     Reply reply = answer(words);
     const std::uint64_t peak = peak_bytes();
     return reply.count("peak_bytes", peak > before ? peak - before : 0);

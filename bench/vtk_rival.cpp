@@ -1,8 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // VTK's contour filters as a contestant of the race, on arrays that VTK borrows. Needs VTK's filters only. C++17.
 //
-// Commands: open FOLDER THREADS int32|int64; contour METHOD ISOVALUE; tree ISOVALUE (a fresh span space: building it and one
-// surface). METHOD: unmerged, merged, merged_normals, merged_attributes, span_space (vtkContour3DLinearGrid); contour_grid.
+// Commands: open FOLDER THREADS int32|int64; contour METHOD ISOVALUE; tree ISOVALUE (a fresh span space: building it
+// and one surface). METHOD: unmerged, merged, merged_normals, merged_attributes, span_space of vtkContour3DLinearGrid;
+// contour_grid, which is vtkContourGrid.
 // The last surface is given back before the clock starts, and the filter holds none of its results.
 #include <map>
 #include <stdexcept>
@@ -98,7 +99,8 @@ private:
         grid_->SetCells(VTK_TETRA, cells);
         grid_->GetPointData()->SetScalars(field);
 
-        must_read_ = static_cast<std::uint64_t>(tets) * (ids == "int32" ? 16 : 32) + isotet::bench::bytes(arrays_.field);
+        must_read_ = static_cast<std::uint64_t>(tets) * (ids == "int32" ? 16 : 32) +
+                     isotet::bench::bytes(arrays_.field);
         return Reply()
             .text("version", vtkVersion::GetVTKVersion())
             .text("backend", vtkSMPTools::GetBackend())

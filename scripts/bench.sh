@@ -18,6 +18,7 @@ usage: bench.sh [--quick] [--threads N] [--max-tets N] [--wheel] [OPTION...]
   --max-tets N     leave larger made grids out; 100 million need 16 GB
   --wheel          get the VTK wheel from the Python package index into build/bench, as another rival
   --rounds N       how often everything is measured (5)
+  --pack-rounds N  how often packing and what goes with it is measured (as --rounds; 3 with --quick)
   --isovalues N    surfaces a round, 1 to 5 (5)
   --only TEXT      only grids whose name holds TEXT
   --file PATH FIELD   race on this grid, too
@@ -50,4 +51,4 @@ if ((get_wheel)) && ! [[ -x $venv/bin/python ]]; then
 fi
 if [[ -x $venv/bin/python ]]; then options+=(--wheel-python "$venv/bin/python"); fi
 say "bench: measures"
-exec python3 "$root/bench/race" --build "$build" "${options[@]}"
+exec python3 -B "$root/bench/race" --build "$build" "${options[@]}"

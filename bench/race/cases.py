@@ -54,5 +54,6 @@ def made_cases(quick: bool, most_tets: float) -> list[Case]:
 
 def shipped_files(root: Path) -> list[Case]:
     """Real grids of data/ with a field worth a surface."""
-    files = [("vtu/artery_flow_tet_wedge.vtu", "Umag"), ("medit/cube_sphere_26k.meshb", "x"), ("vtkhdf/can_hex.hdf", "z")]
+    files = [("vtu/artery_flow_tet_wedge.vtu", "Umag"), ("medit/cube_sphere_26k.meshb", "x"),
+             ("vtkhdf/can_hex.hdf", "z")]
     return [file_case(root / "data" / path, field) for path, field in files]

@@ -23,7 +23,8 @@ STYLE = {
 SHORT = {
     "clusters": "isotet, packed before", "once": "isotet, pack and extract", "pack": "isotet, pack",
     "vtk_merged": "VTK merged", "vtk_unmerged": "VTK not merged", "vtk_span_space": "VTK, span space",
-    "vtk_contour_grid": "VTK contour grid, serial", "wheel_merged": "VTK wheel", "wheel_span_space": "VTK wheel, span space",
+    "vtk_contour_grid": "VTK contour grid, serial", "wheel_merged": "VTK wheel",
+    "wheel_span_space": "VTK wheel, span space",
 }
 
 
@@ -60,16 +61,16 @@ def write_charts(folder: Path, results: list[CaseResult], lines: list[Line], con
 def time_chart(shape: str, lines: list[Line], conditions: str) -> str:
     series = [svg.Series(SHORT[key], points=[(line.tets, line.median) for line in lines if line.method == key], **style)
               for key, style in STYLE.items()]
-    return svg.log_log(f"One surface: time against size, grid '{shape}'", conditions, "tetrahedra", "median time", series,
-                       short_count, short_time)
+    return svg.log_log(f"One surface: time against size, grid '{shape}'", conditions, "tetrahedra", "median time",
+                       series, short_count, short_time)
 
 
 def memory_bars(results: list[CaseResult]) -> list[svg.Bar]:
     bars = []
     for result in largest_of_each_shape(results):
         group = f"{result.case.name}, {result.tets / result.points:.2f} tetrahedra a point"
-        pack = result.packed["pack"]
-        bars.append(svg.Bar(group, "isotet, packed grid (stays)", pack["bytes"] / pack["tets"], STYLE["clusters"]["color"]))
+        kept = result.packed["pack"]["bytes"] / result.packed["pack"]["tets"]
+        bars.append(svg.Bar(group, "isotet, packed grid (stays)", kept, STYLE["clusters"]["color"]))
         for key, label in (("pack", "isotet, packing (peak)"), ("once", "isotet, pack and extract (peak)"),
                            ("clusters", "isotet, one surface (peak)"),
                            ("vtk_merged", "VTK merged, one surface (peak)"), ("vtk_tree", "VTK, span space (peak)"),

@@ -42,7 +42,7 @@ def facts(root: Path, build: Path) -> dict:
         "processor": _first(r"^model name\s*:(.*)$", cpu),
         "processors": len(os.sched_getaffinity(0)),
         "simd": simd[0] if simd else "baseline",
-        "virtual_machine": _output("systemd-detect-virt") or ("yes" if "hypervisor" in flags else "no"),
+        "virtual_machine": _output("systemd-detect-virt", "--vm") or ("yes" if "hypervisor" in flags else "no"),
         "memory_bytes": 1024 * int(_first(r"^MemTotal:\s*(\d+)", _text("/proc/meminfo")) or 0),
         "huge_pages": _first(r"\[(\w+)\]", _text("/sys/kernel/mm/transparent_hugepage/enabled")),
         "system": _first(r'^PRETTY_NAME="(.*)"$', _text("/etc/os-release")),
@@ -50,6 +50,6 @@ def facts(root: Path, build: Path) -> dict:
         "compiler": _output(compiler, "--version").split("\n")[0],
         "build_type": _first(r"^CMAKE_BUILD_TYPE:\w+=(.*)$", cache),
         "commit": _output("git", "-C", str(root), "rev-parse", "--short=12", "HEAD") or "unknown",
-        "changed_since_commit": bool(_output("git", "-C", str(root), "status", "--porcelain", "--", "src", "include", "bench",
-                                             "cmake")),
+        "changed_since_commit": bool(_output("git", "-C", str(root), "status", "--porcelain", "--",
+                                             "src", "include", "bench", "cmake")),
     }

@@ -46,16 +46,24 @@ class CaseResult:
     refused: list[str] = field(default_factory=list)
 
 
+@dataclass(frozen=True)
+class Plan:
+    threads: int
+    rounds: int
+    pack_rounds: int  # the first ones, in which what runs once a round is measured
+    isovalues: int
+
+
 class Race:
-    def __init__(self, case: Case, entrants: list[Entrant], threads: int, rounds: int, isovalue_count: int, say):
+    def __init__(self, case: Case, entrants: list[Entrant], plan: Plan, say):
         self.result = CaseResult(case)
-        self.entrants, self.threads, self.rounds = entrants, threads, rounds
-        self.isovalue_count = isovalue_count
-        self.say = say
+        self.entrants, self.plan, self.threads, self.say = entrants, plan, plan.threads, say
+        self.tied: dict[float, int] = {}  # isovalue -> tied points
 
     def run(self) -> CaseResult:
         with ExitStack() as stack:
-            folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="isotet_bench_", dir=arrays_home(self.result.case))))
+            home = arrays_home(self.result.case)
+            folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="isotet_bench_", dir=home)))
             self.make_arrays(folder)
             with ExitStack() as running:
                 contestants = {entrant.name: running.enter_context(entrant.start_with(folder, self.threads))
@@ -63,7 +71,7 @@ class Race:
                 self.result.rivals = {name: one.facts for name, one in contestants.items() if "version" in one.facts}
                 methods = [method for method in METHODS if self.takes_part(method)]
                 self.prepare(contestants, methods)
-                for number in range(self.rounds):
+                for number in range(self.plan.rounds):
                     self.run_round(number, contestants, methods)
             self.compare_surfaces()
             for key, before in MEASURED_FOR_MEMORY.items():
@@ -82,7 +90,7 @@ class Race:
         with self.entrants[0].start() as maker:
             facts = maker.ask("arrays", case.source, case.field, folder, self.threads)
         self.result.tets, self.result.points = facts["tets"], facts["points"]
-        self.result.isovalues = case.choose_isovalues(facts["lower"], facts["upper"], self.isovalue_count)
+        self.result.isovalues = case.choose_isovalues(facts["lower"], facts["upper"], self.plan.isovalues)
         self.say(f"{case.name}: {self.result.tets:,} tets, {self.result.points:,} points")
 
     def prepare(self, contestants: dict[str, Contestant], methods: list[Method]) -> None:
@@ -103,6 +111,8 @@ class Race:
             first = (number + place) % len(every)  # nobody always follows the same one
             for method in every[first:] + every[:first]:
                 self.measure(number, contestants, method, isovalue)
+        if number >= self.plan.pack_rounds:
+            return
         for method in methods:
             if not method.per_isovalue:
                 self.measure(number, contestants, method, self.middle())
@@ -116,7 +126,7 @@ class Race:
             isovalue if uses_isovalue else None, reply["seconds"], reply.get("vertices"), reply.get("triangles"),
             reply["must_move"]))
         if method.key == "clusters":
-            self.tied = getattr(self, "tied", {}) | {isovalue: reply["tied_points"]}
+            self.tied[isovalue] = reply["tied_points"]
 
     def compare_surfaces(self) -> None:
         """Without ties isotet's surface has the counts of VTK's merged one; every isovalue is looked at."""
@@ -131,8 +141,8 @@ class Race:
             ours, theirs = counts["clusters", isovalue], counts["vtk_merged", isovalue]
             if ours != theirs:
                 self.result.differences.append(
-                    f"{self.result.case.name}, isovalue {isovalue}: isotet has {ours[0]} vertices and {ours[1]} triangles, "
-                    f"VTK merged {theirs[0]} and {theirs[1]}")
+                    f"{self.result.case.name}, isovalue {isovalue}: isotet has {ours[0]} vertices and {ours[1]} "
+                    f"triangles, VTK merged {theirs[0]} and {theirs[1]}")
 
     def measure_peak(self, folder: Path, method: Method, before: tuple[str, ...]) -> None:
         if not self.takes_part(method):

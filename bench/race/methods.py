@@ -9,35 +9,47 @@ SERIAL_LIMIT = 5_100_000  # tets; vtkContourGrid takes a second for each 3 to 6 
 @dataclass(frozen=True)
 class Method:
     key: str
-    label: str
     contestant: str
+    label: str
     command: tuple[str, ...]  # "{isovalue}" is replaced
     per_isovalue: bool = True  # else once a round, at the middle isovalue
     most_tets: int | None = None
 
 
+def _surface(key: str, contestant: str, label: str, *command: str, most_tets: int | None = None) -> Method:
+    return Method(key, contestant, label, command, most_tets=most_tets)
+
+
+def _once_a_round(key: str, contestant: str, label: str, *command: str) -> Method:
+    return Method(key, contestant, label, command, per_isovalue=False)
+
+
 METHODS = [
-    Method("clusters", "isotet, packed before", "isotet", ("extract", "main", "{isovalue}")),
-    Method("face_normals", "isotet, face normals", "isotet", ("extract", "main", "{isovalue}", "face_normals")),
-    Method("gradient_normals", "isotet, gradient normals", "isotet", ("extract", "full", "{isovalue}", "gradient_normals")),
-    Method("point_field", "isotet, one point field", "isotet", ("extract", "main", "{isovalue}", "point_field")),
-    Method("source_cells", "isotet, source cells", "isotet", ("extract", "full", "{isovalue}", "source_cells")),
-    Method("vtk_unmerged", "VTK linear grid, points not merged", "vtk", ("contour", "unmerged", "{isovalue}")),
-    Method("vtk_merged", "VTK linear grid, merged", "vtk", ("contour", "merged", "{isovalue}")),
-    Method("vtk_span_space", "VTK linear grid, merged, span space built before", "vtk", ("contour", "span_space", "{isovalue}")),
-    Method("vtk_normals", "VTK linear grid, merged, normals", "vtk", ("contour", "merged_normals", "{isovalue}")),
-    Method("vtk_attributes", "VTK linear grid, merged, attributes", "vtk", ("contour", "merged_attributes", "{isovalue}")),
-    Method("vtk_contour_grid", "VTK contour grid (serial)", "vtk", ("contour", "contour_grid", "{isovalue}"),
-           most_tets=SERIAL_LIMIT),
-    Method("wheel_merged", "VTK wheel, merged", "wheel", ("contour", "merged", "{isovalue}")),
-    Method("wheel_span_space", "VTK wheel, merged, span space built before", "wheel", ("contour", "span_space", "{isovalue}")),
-    Method("pack", "isotet, pack", "isotet", ("pack", "main"), per_isovalue=False),
-    Method("pack_full", "isotet, pack with gradients and source cells", "isotet",
-           ("pack", "full", "gradients", "source_cells"), per_isovalue=False),
-    Method("once", "isotet, pack and extract, nothing kept", "isotet", ("once", "{isovalue}"), per_isovalue=False),
-    Method("new_field", "isotet, new field on a packed grid", "isotet", ("set_field", "main"), per_isovalue=False),
-    Method("vtk_tree", "VTK span space and one surface", "vtk", ("tree", "{isovalue}"), per_isovalue=False),
-    Method("wheel_tree", "VTK wheel, span space and one surface", "wheel", ("tree", "{isovalue}"), per_isovalue=False),
+    _surface("clusters", "isotet", "isotet, packed before", "extract", "main", "{isovalue}"),
+    _surface("face_normals", "isotet", "isotet, face normals", "extract", "main", "{isovalue}", "face_normals"),
+    _surface("gradient_normals", "isotet", "isotet, gradient normals",
+             "extract", "full", "{isovalue}", "gradient_normals"),
+    _surface("point_field", "isotet", "isotet, one point field", "extract", "main", "{isovalue}", "point_field"),
+    _surface("source_cells", "isotet", "isotet, source cells", "extract", "full", "{isovalue}", "source_cells"),
+    _surface("vtk_unmerged", "vtk", "VTK linear grid, points not merged", "contour", "unmerged", "{isovalue}"),
+    _surface("vtk_merged", "vtk", "VTK linear grid, merged", "contour", "merged", "{isovalue}"),
+    _surface("vtk_span_space", "vtk", "VTK linear grid, merged, span space built before",
+             "contour", "span_space", "{isovalue}"),
+    _surface("vtk_normals", "vtk", "VTK linear grid, merged, normals", "contour", "merged_normals", "{isovalue}"),
+    _surface("vtk_attributes", "vtk", "VTK linear grid, merged, one point field",
+             "contour", "merged_attributes", "{isovalue}"),
+    _surface("vtk_contour_grid", "vtk", "VTK contour grid (serial)", "contour", "contour_grid", "{isovalue}",
+             most_tets=SERIAL_LIMIT),
+    _surface("wheel_merged", "wheel", "VTK wheel, merged", "contour", "merged", "{isovalue}"),
+    _surface("wheel_span_space", "wheel", "VTK wheel, merged, span space built before",
+             "contour", "span_space", "{isovalue}"),
+    _once_a_round("pack", "isotet", "isotet, pack", "pack", "main"),
+    _once_a_round("pack_full", "isotet", "isotet, pack with gradients and source cells",
+                  "pack", "full", "gradients", "source_cells"),
+    _once_a_round("once", "isotet", "isotet, pack and extract, nothing kept", "once", "{isovalue}"),
+    _once_a_round("new_field", "isotet", "isotet, new field on a packed grid", "set_field", "main"),
+    _once_a_round("vtk_tree", "vtk", "VTK span space and one surface", "tree", "{isovalue}"),
+    _once_a_round("wheel_tree", "wheel", "VTK wheel, span space and one surface", "tree", "{isovalue}"),
 ]
 
 BY_KEY = {method.key: method for method in METHODS}
@@ -49,7 +61,8 @@ MERGED_RIVALS = ("vtk_merged", "wheel_merged")
 PREPARATIONS = ("pack", "pack_full", "vtk_tree", "wheel_tree")
 
 # Peak memory is measured in processes of their own, of these methods; some need another one first.
-MEASURED_FOR_MEMORY = {"pack": (), "once": (), "clusters": ("pack",), "vtk_merged": (), "vtk_tree": (), "wheel_merged": ()}
+MEASURED_FOR_MEMORY = {"pack": (), "once": (), "clusters": ("pack",), "vtk_merged": (), "vtk_tree": (),
+                       "wheel_merged": ()}
 
 
 def command_of(method: Method, isovalue: float) -> list[str]:

@@ -9,7 +9,7 @@ from statistics import median
 
 from charts import short_time, write_charts
 from measure import CaseResult, Measurement
-from methods import BY_KEY
+from methods import BY_KEY, MEASURED_FOR_MEMORY
 from summary import Line, growth_exponent, lines_of
 
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
@@ -20,7 +20,8 @@ def write_all(folder: Path, results: list[CaseResult], facts: dict) -> list[Line
     lines = [line for result in results for line in lines_of(result)]
     write_csv(folder / "measurements.csv", [one for result in results for one in result.measurements], Measurement)
     write_csv(folder / "summary.csv", lines, Line)
-    (folder / "run.json").write_text(json.dumps(facts | {"cases": [facts_of(result) for result in results]}, indent=1) + "\n")
+    run = facts | {"cases": [facts_of(result) for result in results]}
+    (folder / "run.json").write_text(json.dumps(run, indent=1) + "\n")
     write_charts(folder, results, lines, conditions(facts))
     (folder / "tables.md").write_text(tables(results, lines, facts))
     return lines
@@ -47,7 +48,8 @@ def conditions(facts: dict) -> str:
 
 
 def print_table(lines: list[Line], case: str) -> None:
-    print(f"  {'':<50} {'best':>9} {'median':>9} {'worst':>9} {'triangles':>10} {'Mtet/s':>8} {'share':>6} {'faster':>7}")
+    header = [("best", 9), ("median", 9), ("worst", 9), ("triangles", 10), ("Mtet/s", 8), ("share", 6), ("faster", 7)]
+    print(" " * 52, *(f"{name:>{width}}" for name, width in header))
     for line in lines:
         if line.case != case:
             continue
@@ -65,10 +67,12 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 
 
 def tables(results: list[CaseResult], lines: list[Line], facts: dict) -> str:
-    parts = [conditions_table(results, facts), "## One surface after another\n", speed_table(results, lines), exponents(lines),
-             "## What surrounds it\n", steps_table(results, lines), "## What normals and attributes cost\n",
-             attributes_table(results, lines), "## Memory\n", memory_table(results),
-             "## All methods\n", *(all_methods(result, lines) for result in results)]
+    parts = [conditions_table(results, facts),
+             "### One surface after another\n", speed_table(results, lines), exponents(lines),
+             "### Packing, new fields, and everything once\n", steps_table(results, lines),
+             "### What normals and attributes cost\n", attributes_table(results, lines),
+             "### Memory\n", memory_table(results),
+             "### All methods\n", *(all_methods(result, lines) for result in results)]
     return "\n".join(part for part in parts if part)
 
 
@@ -79,14 +83,17 @@ def conditions_table(results: list[CaseResult], facts: dict) -> str:
     for result in results:
         for name, rival in result.rivals.items():
             rivals[name] = f"VTK {rival['version']}, {rival['backend']}, {rival['threads']} threads"
-    rows = [
+    rows = [["circumstances", facts["note"]]] if facts["note"] else []
+    rows += [
         ["machine", f"{machine['processor']}, {machine['processors']} processors, {machine['simd']}, "
                     f"{machine['memory_bytes'] / 1e9:.0f} GB, virtual machine: {machine['virtual_machine']}, "
                     f"huge pages: {machine['huge_pages']}"],
         ["system", f"{machine['system']}, {machine['compiler']}, {machine['build_type']}"],
         ["commit", machine["commit"] + (" and changes" if machine["changed_since_commit"] else "")],
         ["date", facts["date"]],
-        ["threads, rounds, isovalues a round", f"{facts['threads']}, {facts['rounds']}, {facts['isovalues']}"],
+        ["threads", str(facts["threads"])],
+        ["rounds", f"{facts['rounds']}, of {facts['isovalues']} isovalues each; packing and what goes with it in "
+                   f"{facts['pack_rounds']} of them"],
         ["copy bandwidth, read and written", f"{median(copies) / 1e9:.1f} GB/s (median of the run; "
                                              f"{min(copies) / 1e9:.1f} to {max(copies) / 1e9:.1f})"],
         ["processes wanting to run, at start and end", f"{facts['load_before']:.1f}, {facts['load_after']:.1f}"],
@@ -112,8 +119,8 @@ def speed_table(results: list[CaseResult], lines: list[Line]) -> str:
         of = by_method(lines, result.case.name)
         ours = of["clusters"]
         ratio = f"{ours.speedup_best:.1f} x, {ours.speedup_median:.1f} x" if ours.speedup_best else ""
-        rows.append([result.case.name, f"{result.tets:,}", f"{ours.triangles:,.0f}", three(ours), three(of.get("vtk_merged")),
-                     three(of.get("wheel_merged")), three(of.get("vtk_span_space")), ratio])
+        rivals = [three(of.get(key)) for key in ("vtk_merged", "wheel_merged", "vtk_span_space")]
+        rows.append([result.case.name, f"{result.tets:,}", f"{ours.triangles:,.0f}", three(ours), *rivals, ratio])
     return table(["grid", "tetrahedra", "triangles", "isotet, packed before", "VTK merged", "VTK wheel, merged",
                   "VTK merged, span space", "faster than the faster merged VTK (best, median)"], rows)
 
@@ -125,35 +132,39 @@ def exponents(lines: list[Line]) -> str:
             slope = growth_exponent(lines, key, shape, 0.9e6)
             if slope is not None:
                 said.append(f"{BY_KEY[key].label}, {shape}: {slope:.2f}")
-    return f"Time grows with the number of tetrahedra, from 1 million on, to the power of: {'; '.join(said)}.\n" if said else ""
+    if not said:
+        return ""
+    return f"Time grows with the number of tetrahedra, from 1 million on, to the power of: {'; '.join(said)}.\n"
 
 
 def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
     rows = []
     for result in results:
         of = by_method(lines, result.case.name)
-        once = of["once"]
-        rows.append([result.case.name, three(of["pack"]), f"{of['pack'].tets_a_second / 1e6:.1f}", three(of["new_field"]),
-                     f"{of['new_field'].tets_a_second / 1e6:.0f}", three(once),
+        pack, new_field, once = of["pack"], of["new_field"], of["once"]
+        rows.append([result.case.name, three(pack), f"{pack.tets_a_second / 1e6:.1f}", three(new_field),
+                     f"{new_field.tets_a_second / 1e6:.0f}", three(once),
                      f"{once.speedup_best:.2f} x, {once.speedup_median:.2f} x" if once.speedup_best else "",
                      three(of.get("vtk_tree"))])
-    return table(["grid", "pack", "million tets a second", "new field", "million tets a second", "pack and extract, nothing kept",
-                  "against the faster merged VTK (best, median)", "VTK span space and one surface"], rows)
+    return table(["grid", "pack", "million tets a second", "new field", "million tets a second",
+                  "pack and extract, nothing kept", "against the faster merged VTK (best, median)",
+                  "VTK span space and one surface"], rows)
 
 
 def attributes_table(results: list[CaseResult], lines: list[Line]) -> str:
     rows = []
     for result in results:
         of = by_method(lines, result.case.name)
-        plain = of["clusters"].median
-        added = [short_time(max(0.0, of[key].median - plain)) for key in
+        plain = of["clusters"].best
+        added = [short_time(max(0.0, of[key].best - plain)) for key in
                  ("face_normals", "gradient_normals", "point_field", "source_cells")]
-        packing = short_time(max(0.0, of["pack_full"].median - of["pack"].median))
-        theirs = [short_time(max(0.0, of[key].median - of["vtk_merged"].median)) if key in of else ""
+        packing = short_time(max(0.0, of["pack_full"].best - of["pack"].best))
+        theirs = [short_time(max(0.0, of[key].best - of["vtk_merged"].best)) if key in of else ""
                   for key in ("vtk_normals", "vtk_attributes")]
         rows.append([result.case.name, short_time(plain), *added, packing, *theirs])
-    return table(["grid", "surface alone", "+ face normals", "+ gradient normals", "+ one point field", "+ source cells",
-                  "packing: + gradients and source cells", "VTK merged: + normals", "VTK merged: + its one point field"], rows)
+    return "Best time with it, less best time without.\n\n" + table(
+        ["grid", "surface alone", "+ face normals", "+ gradient normals", "+ one point field", "+ source cells",
+         "packing: + gradients and source cells", "VTK merged: + normals", "VTK merged: + one point field"], rows)
 
 
 def memory_table(results: list[CaseResult]) -> str:
@@ -163,7 +174,7 @@ def memory_table(results: list[CaseResult]) -> str:
         peak = {key: f"{value / result.tets:.1f}" for key, value in result.peaks.items()}
         rows.append([result.case.name, f"{result.tets / result.points:.2f}", f"{pack['bytes'] / pack['tets']:.2f}",
                      f"{full['source_bytes'] / full['tets']:.2f}", f"{full['gradient_bytes'] / full['tets']:.2f}",
-                     *(peak.get(key, "") for key in ("pack", "once", "clusters", "vtk_merged", "vtk_tree", "wheel_merged"))])
+                     *(peak.get(key, "") for key in MEASURED_FOR_MEMORY)])
     return "Bytes a tetrahedron. Peaks: beyond the input, in a process of its own.\n\n" + table(
         ["grid", "tets a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: pack and extract",
          "peak: one surface, packed before", "peak: VTK merged", "peak: VTK span space", "peak: VTK wheel"], rows)
@@ -173,10 +184,11 @@ def all_methods(result: CaseResult, lines: list[Line]) -> str:
     rows = []
     for line in lines:
         if line.case == result.case.name:
-            rows.append([BY_KEY[line.method].label, short_time(line.best), short_time(line.median), short_time(line.worst),
-                         f"{line.triangles:,.0f}" if line.triangles is not None else "", f"{line.must_move / 1e6:,.1f}",
+            triangles = f"{line.triangles:,.0f}" if line.triangles is not None else ""
+            rows.append([BY_KEY[line.method].label, short_time(line.best), short_time(line.median),
+                         short_time(line.worst), triangles, f"{line.must_move / 1e6:,.1f}",
                          f"{line.bandwidth / 1e9:.2f}", f"{100 * line.share:.0f} %"])
-    return f"### {result.case.name}\n\n" + table(
+    return f"#### {result.case.name}\n\n" + table(
         ["method", "best", "median", "worst", "triangles", "MB that must move", "GB/s", "share of copying"], rows)
 
 

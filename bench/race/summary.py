@@ -51,8 +51,9 @@ def lines_of(result: CaseResult) -> list[Line]:
         bandwidth = must_move / median(times)
         comparable = rivals and triangles  # makes a surface
         lines.append(Line(
-            result.case.name, result.case.shape, result.tets, result.points, method, mean(triangles) if triangles else None,
-            min(times), median(times), max(times), must_move, bandwidth, bandwidth / copy,
+            result.case.name, result.case.shape, result.tets, result.points, method,
+            mean(triangles) if triangles else None, min(times), median(times), max(times), must_move,
+            bandwidth, bandwidth / copy,
             min(min(rival) for rival in rivals) / min(times) if comparable else None,
             min(median(rival) for rival in rivals) / median(times) if comparable else None))
     order = list(BY_KEY)

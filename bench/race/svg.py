@@ -20,7 +20,8 @@ class Series:
     heavy: bool = False
 
 
-def _text(x: float, y: float, text: str, anchor: str = "start", size: int = 13, color: str = INK, extra: str = "") -> str:
+def _text(x: float, y: float, text: str, anchor: str = "start", size: int = 13, color: str = INK,
+          extra: str = "") -> str:
     return (f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" font-size="{size}" fill="{color}"{extra}>'
             f"{escape(text)}</text>")
 
@@ -33,7 +34,8 @@ def _document(title: str, subtitle: str, body: list[str], height: int = HEIGHT) 
     head = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" '
             f'font-family="sans-serif" role="img" aria-label="{escape(title)}">',
             f'<rect width="{WIDTH}" height="{height}" fill="#ffffff"/>',
-            _text(LEFT, 24, title, size=16, extra=' font-weight="bold"'), _text(LEFT, 42, subtitle, size=12, color="#555555")]
+            _text(LEFT, 24, title, size=16, extra=' font-weight="bold"'),
+            _text(LEFT, 42, subtitle, size=12, color="#555555")]
     return "\n".join(head + body + ["</svg>", ""])
 
 
@@ -80,7 +82,8 @@ def log_log(title: str, subtitle: str, x_title: str, y_title: str, series: list[
         dash = ' stroke-dasharray="6 4"' if one.dashed else ""
         body.append(f'<polyline points="{path}" fill="none" stroke="{one.color}" '
                     f'stroke-width="{3 if one.heavy else 1.8}"{dash}/>')
-        body += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{4 if one.heavy else 3}" fill="{one.color}"/>' for a, b in places]
+        radius = 4 if one.heavy else 3
+        body += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{radius}" fill="{one.color}"/>' for a, b in places]
     body += _labels_at_the_end(series, y)
     return _document(title, subtitle, body)
 

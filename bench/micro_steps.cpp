@@ -1,0 +1,109 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Single steps under Google Benchmark, for whoever makes one of them faster: 1 million tets, all threads. What users get
+// is measured by the race; these numbers are published nowhere.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include <isotet/extract.hpp>
+#include <isotet/make.hpp>
+#include <isotet/pack.hpp>
+
+#include "core/cells.hpp"
+#include "core/stored_tets.hpp"
+#include "core/storage.hpp"
+#include "core/tet_order.hpp"
+#include "cpu/steps.hpp"
+
+namespace isotet::bench {
+
+namespace {
+
+constexpr std::uint64_t side = 55;
+constexpr double isovalue = 0.25;
+const std::vector<std::string> shapes = {"kuhn", "shuffled", "layer"};
+
+struct Subject {
+    Grid grid;
+    PointField field;
+    PackedGrid packed;
+};
+
+/// Made once for each shape.
+const Subject& subject(benchmark::State& state) {
+    static std::vector<Subject> subjects(shapes.size());
+    const auto shape = static_cast<std::size_t>(state.range(0));
+    Subject& made = subjects[shape];
+    if (made.grid.points.empty()) {
+        MakeOptions options;
+        options.shape = shapes[shape];
+        options.side = side;
+        options.fields = {"gyroid"};
+        made.grid = make_grid(options).value();
+        made.field.name = "gyroid";
+        made.field.values = made.grid.point_fields[0].values;
+        made.packed = pack(made.grid, made.field).value();
+    }
+    state.SetLabel(shapes[shape]);
+    return made;
+}
+
+void count_tets(benchmark::State& state, const Subject& of) {
+    state.counters["tets"] = benchmark::Counter(static_cast<double>(of.grid.cells.count()),
+                                                benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void sort_tets(benchmark::State& state) {
+    const Subject& of = subject(state);
+    const auto cells = core::CellReader::open(of.grid).value();
+    for (auto _ : state) {
+        const core::TetSurvey survey = core::survey_tets(of.grid, cells);
+        benchmark::DoNotOptimize(core::sort_tets(of.grid, cells, survey, {}).value());
+    }
+    count_tets(state, of);
+}
+
+void pack_all(benchmark::State& state) {
+    const Subject& of = subject(state);
+    for (auto _ : state) benchmark::DoNotOptimize(pack(of.grid, of.field).value());
+    count_tets(state, of);
+}
+
+void select(benchmark::State& state) {
+    const Subject& of = subject(state);
+    const core::Packed& packed = of.packed.data();
+    const float stored = core::store_isovalue<float>(isovalue, packed.storage);
+    for (auto _ : state) benchmark::DoNotOptimize(cpu::select(packed, stored));
+    count_tets(state, of);
+}
+
+void select_and_count(benchmark::State& state) {
+    const Subject& of = subject(state);
+    const core::Packed& packed = of.packed.data();
+    const ops::Request<float> request{core::store_isovalue<float>(isovalue, packed.storage)};
+    for (auto _ : state) {
+        const cpu::Selection selection = cpu::select(packed, request.isovalue);
+        cpu::Masks masks(packed, selection);
+        benchmark::DoNotOptimize(cpu::count(packed, request, selection, masks, {}));
+    }
+    count_tets(state, of);
+}
+
+void extract_all(benchmark::State& state) {
+    const Subject& of = subject(state);
+    for (auto _ : state) benchmark::DoNotOptimize(extract(of.packed, isovalue).value());
+    count_tets(state, of);
+}
+
+BENCHMARK(sort_tets)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(pack_all)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(select)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(select_and_count)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(extract_all)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond)->UseRealTime();
+
+} // namespace
+
+} // namespace isotet::bench
+
+BENCHMARK_MAIN();
