@@ -52,19 +52,40 @@ bool tie_to_parent(const char* parent) {
     return ::getppid() == number; // else the parent died before the first line of this function
 }
 
+/// The limit counts from what the program and its libraries have mapped already, before the file is looked at.
 void limit_memory(std::uint64_t limit) {
-    if (limit == 0) {
-        const std::uint64_t used = address_space(), free = core::free_memory();
-        limit = free < RLIM_INFINITY - used ? used + free : RLIM_INFINITY;
-    }
+    const std::uint64_t used = address_space(), most = limit != 0 ? limit : core::free_memory();
+    limit = most < RLIM_INFINITY - used ? used + most : RLIM_INFINITY;
     rlimit current{};
     ::getrlimit(RLIMIT_AS, &current);
-    const rlimit wanted{std::min<rlim_t>(limit, current.rlim_max), std::min<rlim_t>(limit, current.rlim_max)};
+    const rlim_t least = std::min<rlim_t>(limit, current.rlim_cur);
+    const rlimit wanted{least, least};
     ::setrlimit(RLIMIT_AS, &wanted);
     std::set_new_handler([] {
         tell(status_memory_ran_out);
         std::set_new_handler(nullptr); // the next failure throws
     });
+}
+
+/// Bytes of the grid's file; nothing where it is spread over several, whose sizes are not known yet.
+std::optional<std::uint64_t> size_of_grid(const Request& request) {
+    for (const std::string_view format : {"vtu", "vti", "vtr", "vts", "vtk", "cgns", "vtkhdf", "ucd", ""}) {
+        struct stat status {};
+        if (request.format == format && ::stat(request.path.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.st_size);
+    }
+    return std::nullopt;
+}
+
+/// Processor time by the size of the file, some fifty times what the slowest encoding takes: on some broken files the CGNS
+/// library never comes to an end.
+void limit_processor_time(const Request& request) {
+    const auto size = size_of_grid(request);
+    if (!size) return;
+    rlimit current{};
+    ::getrlimit(RLIMIT_CPU, &current);
+    const rlim_t seconds = std::min<rlim_t>(10 + *size / 200000, current.rlim_cur);
+    const rlimit wanted{seconds, current.rlim_max};
+    ::setrlimit(RLIMIT_CPU, &wanted);
 }
 
 Result<Request> receive() {
@@ -120,6 +141,7 @@ int serve(const char* parent) {
         if (percent > last) tell(static_cast<unsigned char>(last = percent));
     });
     limit_memory(request->options.memory_limit);
+    limit_processor_time(*request);
     const auto written = write_reply(reply_descriptor, answer(*request));
     if (written) return EXIT_SUCCESS;
     tell(status_memory_ran_out);
