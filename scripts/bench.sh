@@ -15,12 +15,12 @@ usage: bench.sh [--quick] [--threads N] [--max-tets N] [--wheel] [OPTION...]
 
   --quick          regular grids to 30 million tetrahedra, the others at 5 million: some minutes
   --threads N      threads of every contestant (all processors)
-  --max-tets N     leave larger made grids out; 100 million need 16 GB
+  --max-tets N     leave larger made grids out; 100 million need 20 GB
   --wheel          get the VTK wheel from the Python package index into build/bench, as another rival
   --rounds N       how often everything is measured (5)
   --pack-rounds N  how often packing and what goes with it is measured (as --rounds; 3 with --quick)
   --isovalues N    surfaces a round, 1 to 5 (5)
-  --only TEXT      only grids whose name holds TEXT
+  --only TEXT      only made and shipped grids whose name holds TEXT
   --file PATH FIELD   race on this grid, too
   --out FOLDER     where results go (build/bench/results)
   --note TEXT      a sentence about the circumstances, kept with the results

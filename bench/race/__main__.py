@@ -27,7 +27,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--pack-rounds", type=int,
                         help="how often packing and what goes with it is measured (as --rounds; 3 with --quick)")
     parser.add_argument("--isovalues", type=int, default=5, choices=range(1, 6), help="surfaces a round (5)")
-    parser.add_argument("--only", default="", metavar="TEXT", help="only grids whose name holds TEXT")
+    parser.add_argument("--only", default="", metavar="TEXT", help="only made and shipped grids whose name holds TEXT")
     parser.add_argument("--file", nargs=2, action="append", default=[], metavar=("PATH", "FIELD"),
                         help="race on this grid, too")
     parser.add_argument("--out", type=Path, help="folder of the results (FOLDER OF THE BUILD/results)")
@@ -52,8 +52,8 @@ def main(arguments: list[str]) -> int:
     options = parse(arguments)
     options.build = options.build.resolve()
     cases = made_cases(options.quick, options.max_tets) + shipped_files(ROOT)
-    cases += [file_case(Path(path).resolve(), field) for path, field in options.file]
     cases = [case for case in cases if options.only in case.name]
+    cases += [file_case(Path(path).resolve(), field) for path, field in options.file]
     found, absent = entrants(options.build, options.wheel_python, options.vtk_ids)
     for name, why in absent.items():
         print(f"absent: {name}: {why}")

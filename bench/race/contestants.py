@@ -3,7 +3,6 @@
 
 import json
 import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +16,7 @@ class Contestant:
 
     def __init__(self, name: str, command: list[str]):
         self.name = name
+        self.facts = {}  # the reply to `open`
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def ask(self, *words) -> dict:
@@ -61,6 +61,11 @@ class Entrant:
         return contestant
 
 
+def has_wheel(python: Path) -> bool:
+    imports = "import vtkmodules.vtkFiltersCore, vtkmodules.util.numpy_support"
+    return subprocess.run([python, "-c", imports], capture_output=True, check=False).returncode == 0
+
+
 def entrants(build: Path, wheel_python: Path | None, vtk_ids: str) -> tuple[list[Entrant], dict[str, str]]:
     """Those that are there, and for those that are not, why."""
     found = [Entrant("isotet", (str(build / "bench/isotet_bench"),))]
@@ -69,13 +74,10 @@ def entrants(build: Path, wheel_python: Path | None, vtk_ids: str) -> tuple[list
     if vtk.exists():
         found.append(Entrant("vtk", (str(vtk),), (vtk_ids,)))
     else:
-        absent["vtk"] = f"{vtk} is not there: built without VTK"
-    wheel = str(Path(__file__).with_name("vtk_wheel_rival.py"))
-    python = str(wheel_python or sys.executable)
-    can = subprocess.run([python, "-c", "import vtkmodules.vtkFiltersCore, vtkmodules.util.numpy_support"],
-                         capture_output=True, check=False)
-    if wheel_python and can.returncode == 0:
-        found.append(Entrant("wheel", (python, wheel), (vtk_ids,)))
+        absent["vtk"] = "the build found no VTK"
+    if wheel_python and has_wheel(wheel_python):
+        wheel = Path(__file__).with_name("vtk_wheel_rival.py")
+        found.append(Entrant("wheel", (str(wheel_python), str(wheel)), (vtk_ids,)))
     else:
         absent["wheel"] = "no VTK wheel is installed: scripts/bench.sh --wheel gets it"
     return found, absent

@@ -151,17 +151,20 @@ def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
                   "VTK span space and one surface"], rows)
 
 
+def cost(of: dict[str, Line], method: str, without: str) -> str:
+    if method not in of:
+        return ""
+    seconds = of[method].best - of[without].best
+    return short_time(seconds) if seconds > 0 else "lost in noise"
+
+
 def attributes_table(results: list[CaseResult], lines: list[Line]) -> str:
     rows = []
     for result in results:
         of = by_method(lines, result.case.name)
-        plain = of["clusters"].best
-        added = [short_time(max(0.0, of[key].best - plain)) for key in
-                 ("face_normals", "gradient_normals", "point_field", "source_cells")]
-        packing = short_time(max(0.0, of["pack_full"].best - of["pack"].best))
-        theirs = [short_time(max(0.0, of[key].best - of["vtk_merged"].best)) if key in of else ""
-                  for key in ("vtk_normals", "vtk_attributes")]
-        rows.append([result.case.name, short_time(plain), *added, packing, *theirs])
+        added = [cost(of, key, "clusters") for key in ("face_normals", "gradient_normals", "point_field", "source_cells")]
+        theirs = [cost(of, key, "vtk_merged") for key in ("vtk_normals", "vtk_attributes")]
+        rows.append([result.case.name, short_time(of["clusters"].best), *added, cost(of, "pack_full", "pack"), *theirs])
     return "Best time with it, less best time without.\n\n" + table(
         ["grid", "surface alone", "+ face normals", "+ gradient normals", "+ one point field", "+ source cells",
          "packing: + gradients and source cells", "VTK merged: + normals", "VTK merged: + one point field"], rows)
