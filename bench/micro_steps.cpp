@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Single steps under Google Benchmark, for whoever makes one of them faster: 1 million tets, all threads. What users get
-// is measured by the race; these numbers are published nowhere.
+// Single steps under Google Benchmark, for whoever makes one of them faster: 1 million tets, all threads. What users
+// get is measured by the race; these numbers are published nowhere.
 #include <benchmark/benchmark.h>
 
 #include <string>

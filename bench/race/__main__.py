@@ -26,7 +26,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--rounds", type=int, default=5, help="how often everything is measured (5)")
     parser.add_argument("--pack-rounds", type=int,
                         help="how often packing and what goes with it is measured (as --rounds; 3 with --quick)")
-    parser.add_argument("--isovalues", type=int, default=5, choices=range(1, 6), help="surfaces a round (5)")
+    parser.add_argument("--isovalues", type=int, choices=range(1, 6), help="surfaces a round (5; 3 with --quick)")
     parser.add_argument("--only", default="", metavar="TEXT", help="only made and shipped grids whose name holds TEXT")
     parser.add_argument("--file", nargs=2, action="append", default=[], metavar=("PATH", "FIELD"),
                         help="race on this grid, too")
@@ -37,6 +37,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--vtk-ids", choices=("int32", "int64"), default="int32",
                         help="type of VTK's point numbers (int32)")
     options = parser.parse_args(arguments)
+    if options.isovalues is None:
+        options.isovalues = 3 if options.quick else 5
     if options.pack_rounds is None:
         options.pack_rounds = min(3, options.rounds) if options.quick else options.rounds
     if options.threads < 1 or not 1 <= options.pack_rounds <= options.rounds:

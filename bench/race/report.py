@@ -162,7 +162,8 @@ def attributes_table(results: list[CaseResult], lines: list[Line]) -> str:
     rows = []
     for result in results:
         of = by_method(lines, result.case.name)
-        added = [cost(of, key, "clusters") for key in ("face_normals", "gradient_normals", "point_field", "source_cells")]
+        added = [cost(of, key, "clusters")
+                 for key in ("face_normals", "gradient_normals", "point_field", "source_cells")]
         theirs = [cost(of, key, "vtk_merged") for key in ("vtk_normals", "vtk_attributes")]
         rows.append([result.case.name, short_time(of["clusters"].best), *added, cost(of, "pack_full", "pack"), *theirs])
     return "Best time with it, less best time without.\n\n" + table(
