@@ -11,6 +11,7 @@
 
 #include "determinism/packed_bytes.hpp"
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 #include "support/surface_bytes.hpp"
 
@@ -74,7 +75,7 @@ TEST(Threads, DoNotMatterInDoublePrecision) {
 }
 
 TEST(Threads, DoNotMatterWithTiesNaNAndTangledTets) {
-    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    for (const std::uint32_t seed : Seeds(1, 3)) {
         const NastyGrid g = nasty_grid(seed, {.side = 13,
                                               .values = 4,
                                               .no_data = 0.05,

@@ -12,6 +12,7 @@
 #include "golden/golden_files.hpp"
 #include "golden/vtk_contour.hpp"
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -101,7 +102,7 @@ void expect_random_grid_equal_to_vtk(std::uint32_t seed, const NastyOptions& nas
 
 TEST(RandomGrids, HaveTheCountsAndAreasOfVtk) {
     Compared compared;
-    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    for (const std::uint32_t seed : Seeds(1, 8)) {
         expect_random_grid_equal_to_vtk(seed, {.side = 9, .values = 0, .mirrored = 0.4, .repeated = 0.1},
                                         {-0.5, 0.1, 0.8}, compared);
         expect_random_grid_equal_to_vtk(seed, {.side = 6, .values = 4, .no_data = 0.05, .missing = 0.1}, {0.5, 1, 2},

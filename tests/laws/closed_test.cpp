@@ -9,6 +9,7 @@
 
 #include "support/brute_weld.hpp"
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -81,17 +82,17 @@ void expect_closed(std::uint32_t seed, const NastyOptions& nasty, const std::vec
 }
 
 TEST(Surfaces, AreClosedOffTheBoundaryWithTies) {
-    for (std::uint32_t seed = 1000; seed < 1016; ++seed)
+    for (const std::uint32_t seed : Seeds(1000, 16))
         expect_closed(seed, {.side = 2 + int(seed) % 6, .values = 2 + int(seed) % 3}, {0, 0.5, 1});
 }
 
 TEST(Surfaces, AreClosedOffTheBoundaryOfPointsWithData) {
-    for (std::uint32_t seed = 1100; seed < 1116; ++seed)
+    for (const std::uint32_t seed : Seeds(1100, 16))
         expect_closed(seed, {.side = 2 + int(seed) % 6, .values = 3, .no_data = 0.04 * (1 + seed % 5)}, {0, 1});
 }
 
 TEST(Surfaces, AreClosedOffTheBoundaryOfTangledGridsWithRepeatedTets) {
-    for (std::uint32_t seed = 1200; seed < 1216; ++seed)
+    for (const std::uint32_t seed : Seeds(1200, 16))
         expect_closed(seed,
                       {.side = 2 + int(seed) % 6,
                        .values = 3,
@@ -133,6 +134,22 @@ TEST(Surfaces, HaveFlatTrianglesFromTiesInKeptModeAlone) {
     ExtractOptions keep;
     keep.ties = Ties::keep;
     EXPECT_GT(check(extract(packed, 2, keep).value().surface).value().zero_area_triangles, 0u);
+}
+
+TEST(Surfaces, AreManifoldsInKeptModeWhereTheTetsAroundEveryEdgeAreOneFan) {
+    for (const char* shape : {"kuhn", "shuffled", "hex", "wedge", "pyramid", "mixed", "layer"}) {
+        const Grid grid = made_grid(shape, 7, {"integer"}, 11);
+        const PackedGrid packed = pack(grid, point_field(grid)).value();
+        ExtractOptions keep;
+        keep.ties = Ties::keep;
+        for (const double isovalue : {0.5, 1.0, 2.0, 4.0}) {
+            const SurfaceReport report = check(extract(packed, isovalue, keep).value().surface).value();
+            EXPECT_GT(report.triangles, 0u);
+            EXPECT_EQ(report.non_manifold_edges, 0u) << shape << ", isovalue " << isovalue;
+            EXPECT_EQ(report.inconsistent_edges, 0u) << shape << ", isovalue " << isovalue;
+            EXPECT_EQ(report.touching_vertices, 0u) << shape << ", isovalue " << isovalue;
+        }
+    }
 }
 
 /// A field that is below near the boundary of the cube, so that its surface does not reach it.

@@ -6,6 +6,7 @@
 #include <isotet/pack.hpp>
 
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/surface_bytes.hpp"
 
 namespace isotet::test {
@@ -40,22 +41,22 @@ void expect_engines_agree(std::uint32_t seed, const NastyOptions& nasty, Precisi
 }
 
 TEST(EnginesAgree, OnSmoothFields) {
-    for (std::uint32_t seed = 1; seed <= 4; ++seed)
+    for (const std::uint32_t seed : Seeds(1, 4))
         expect_engines_agree(seed, {.side = 11, .values = 0}, Precision::single, {-2, -0.4, 0, 0.3, 2});
 }
 
 TEST(EnginesAgree, OnIntegerFieldsFullOfTies) {
-    for (std::uint32_t seed = 1; seed <= 12; ++seed)
+    for (const std::uint32_t seed : Seeds(1, 12))
         expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 2 + int(seed) % 4}, Precision::single, {-1, 0, 0.5, 1, 2});
 }
 
 TEST(EnginesAgree, OnPointsWithoutData) {
-    for (std::uint32_t seed = 1; seed <= 12; ++seed)
+    for (const std::uint32_t seed : Seeds(1, 12))
         expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 4, .no_data = 0.05 * (seed % 5)}, Precision::single, {-1, 0, 1, 1.5});
 }
 
 TEST(EnginesAgree, OnTangledGridsWithRepeatedAndMissingTets) {
-    for (std::uint32_t seed = 1; seed <= 12; ++seed)
+    for (const std::uint32_t seed : Seeds(1, 12))
         expect_engines_agree(seed,
                              {.side = 4 + int(seed) % 6, .values = 3, .no_data = 0.03, .missing = 0.2, .inverted = 0.2,
                               .mirrored = 0.5, .repeated = 0.1},
@@ -63,7 +64,7 @@ TEST(EnginesAgree, OnTangledGridsWithRepeatedAndMissingTets) {
 }
 
 TEST(EnginesAgree, OnDoublePacking) {
-    for (std::uint32_t seed = 1; seed <= 6; ++seed)
+    for (const std::uint32_t seed : Seeds(1, 6))
         expect_engines_agree(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true}, Precision::double_, {0, 0.25, 1});
 }
 

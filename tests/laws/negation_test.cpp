@@ -8,6 +8,7 @@
 #include <isotet/pack.hpp>
 
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/surface_sets.hpp"
 
 namespace isotet::test {
@@ -38,7 +39,7 @@ PointField negated(const PointField& field) {
 }
 
 TEST(Negation, TurnsEveryTriangleRound) {
-    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    for (const std::uint32_t seed : Seeds(1, 8)) {
         const NastyGrid g =
             nasty_grid(seed, {.side = 8, .values = int(seed % 2) * 5, .no_data = 0.02, .inverted = 0.1});
         const double isovalue = seed % 2 ? 0.25 : 0.125;

@@ -10,6 +10,7 @@
 #include <isotet/pack.hpp>
 
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/surface_sets.hpp"
 
 namespace isotet::test {
@@ -99,22 +100,22 @@ void expect_same(std::uint32_t seed, const NastyOptions& nasty, bool points_too,
 }
 
 TEST(Permutation, OfTetsChangesNoGeometry) {
-    for (std::uint32_t seed = 1; seed <= 6; ++seed)
+    for (const std::uint32_t seed : Seeds(1, 6))
         expect_same(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02}, false, {0, 0.5});
 }
 
 TEST(Permutation, OfPointsAndTetsChangesNoGeometry) {
-    for (std::uint32_t seed = 11; seed <= 16; ++seed)
+    for (const std::uint32_t seed : Seeds(11, 6))
         expect_same(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02}, true, {0, 0.5});
 }
 
 TEST(Permutation, OfTangledGridsChangesNoGeometry) {
-    for (std::uint32_t seed = 21; seed <= 26; ++seed)
+    for (const std::uint32_t seed : Seeds(21, 6))
         expect_same(seed, {.side = 6, .values = 3, .missing = 0.2, .inverted = 0.3, .mirrored = 0.4}, true, {0, 0.5});
 }
 
 TEST(Permutation, OfGridsInFloat64ChangesNoGeometry) {
-    for (std::uint32_t seed = 31; seed <= 34; ++seed)
+    for (const std::uint32_t seed : Seeds(31, 4))
         expect_same(seed, {.side = 6, .values = 3, .missing = 0.1, .wide = true}, true, {0, 0.5});
 }
 

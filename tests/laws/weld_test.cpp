@@ -8,6 +8,7 @@
 
 #include "support/brute_weld.hpp"
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -44,21 +45,21 @@ void expect_equal_to_weld(std::uint32_t seed, const NastyOptions& nasty, const s
 }
 
 TEST(BruteWeld, EqualsSurfacesOfIntegerFields) {
-    for (std::uint32_t seed = 100; seed < 130; ++seed)
+    for (const std::uint32_t seed : Seeds(100, 30))
         expect_equal_to_weld(seed, {.side = 2 + int(seed) % 6, .values = 2 + int(seed) % 4}, {-1, 0, 1, 1.5});
 }
 
 TEST(BruteWeld, EqualsSurfacesOfSmoothFields) {
-    for (std::uint32_t seed = 200; seed < 204; ++seed) expect_equal_to_weld(seed, {.side = 9, .values = 0}, {-1, 0.1});
+    for (const std::uint32_t seed : Seeds(200, 4)) expect_equal_to_weld(seed, {.side = 9, .values = 0}, {-1, 0.1});
 }
 
 TEST(BruteWeld, EqualsSurfacesBesidePointsWithoutData) {
-    for (std::uint32_t seed = 300; seed < 330; ++seed)
+    for (const std::uint32_t seed : Seeds(300, 30))
         expect_equal_to_weld(seed, {.side = 3 + int(seed) % 5, .values = 3, .no_data = 0.05 * (seed % 6)}, {0, 0.5, 1});
 }
 
 TEST(BruteWeld, EqualsSurfacesOfTangledGridsWithRepeatedAndMissingTets) {
-    for (std::uint32_t seed = 400; seed < 430; ++seed)
+    for (const std::uint32_t seed : Seeds(400, 30))
         expect_equal_to_weld(seed,
                              {.side = 3 + int(seed) % 5,
                               .values = 3,
@@ -71,7 +72,7 @@ TEST(BruteWeld, EqualsSurfacesOfTangledGridsWithRepeatedAndMissingTets) {
 }
 
 TEST(BruteWeld, EqualsSurfacesOfDoublePackings) {
-    for (std::uint32_t seed = 500; seed < 510; ++seed)
+    for (const std::uint32_t seed : Seeds(500, 10))
         expect_equal_to_weld<double>(seed, {.side = 5, .values = int(seed % 2) * 3, .no_data = 0.02, .wide = true},
                                      {0, 0.3, 1});
 }

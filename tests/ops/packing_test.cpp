@@ -16,6 +16,7 @@
 #include "core/storage.hpp"
 #include "support/brute_weld.hpp"
 #include "support/random_grid.hpp"
+#include "support/seeds.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -184,7 +185,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
 }
 
 TEST(PackedArrays, SayWhatTheTetsSay) {
-    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    for (const std::uint32_t seed : Seeds(1, 4)) {
         const NastyGrid g = nasty_grid(seed, {.side = 8,
                                               .values = 5,
                                               .no_data = 0.05,

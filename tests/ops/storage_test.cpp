@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/seeds.hpp"
+
 namespace isotet::test {
 namespace {
 
@@ -64,7 +66,7 @@ void expect_rules(const std::vector<double>& values, ScalarType type) {
 }
 
 TEST(StoredValues, AreMonotoneNormalAndTieWithTheirOwnIsovalue) {
-    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    for (const std::uint32_t seed : Seeds(1, 4)) {
         expect_rules<float>(wild_values(seed, -10, 10), ScalarType::float64);
         expect_rules<float>(wild_values(seed, -1060, 1020), ScalarType::float64);
         expect_rules<float>(wild_values(seed, 700, 1020), ScalarType::float64);
