@@ -143,6 +143,37 @@ TEST(Surface, CanBeGivenALaterFieldByItsEdgeEnds) {
     }
 }
 
+TEST(GradientNormals, FallBackOnTheFirstTriangleWhereTheGradientCancels) {
+    // A peak in the middle of an octahedron: the gradients of the eight tets around it cancel.
+    const Grid grid =
+        tet_grid({{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}, {{0, 1, 3, 5},
+                                                                                                    {0, 3, 2, 5},
+                                                                                                    {0, 2, 4, 5},
+                                                                                                    {0, 4, 1, 5},
+                                                                                                    {0, 3, 1, 6},
+                                                                                                    {0, 2, 3, 6},
+                                                                                                    {0, 4, 2, 6},
+                                                                                                    {0, 1, 4, 6}});
+    PackOptions pack_options;
+    pack_options.gradients = true;
+    const PackedGrid packed = pack(grid, field_of<float>({1, 0, 0, 0, 0, 0, 0}), pack_options).value();
+    ExtractOptions gradient, face;
+    gradient.normals = Normals::gradient;
+    face.normals = Normals::face;
+    const Surface surface = extract(packed, 0.5, gradient).value().surface,
+                  faces = extract(packed, 0.5, face).value().surface;
+    ASSERT_EQ(surface.triangle_count(), 8u);
+    ASSERT_EQ(surface.vertices(), 6u);
+    std::vector<bool> seen(6, false);
+    for (std::size_t t = 0; t < 8; ++t)
+        for (const std::size_t v : corners_of(surface, t)) {
+            if (seen[v]) continue;
+            seen[v] = true;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                EXPECT_EQ(surface.normals.at(v, axis), faces.normals.at(t, axis));
+        }
+}
+
 TEST(Extraction, NeedsTheGridNoLonger) {
     PackedGrid packed;
     {
