@@ -109,7 +109,7 @@ struct Driver {
             for (std::uint64_t changes = 1 + random() % 3; changes > 0; --changes) mutate(broken, random);
             std::ofstream(target, std::ios::binary | std::ios::trunc) << broken;
             isotet::test::RunOptions options;
-            options.limit = std::chrono::seconds(30);
+            options.limit = std::chrono::seconds(120);
             judge(isotet::test::run_program({program, "info", target.string()}, options), file, seed + i);
         }
     }
