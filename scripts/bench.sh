@@ -15,7 +15,7 @@ usage: bench.sh [--quick] [--threads N] [--max-tets N] [--wheel] [OPTION...]
 
   --quick          regular grids to 30 million tetrahedra, the others at 5 million: some minutes, 8 GB
   --threads N      threads of every contestant (all processors)
-  --max-tets N     leave larger made grids out; 100 million need 20 GB
+  --max-tets N     leave larger made grids out; 100 million need 24 GB
   --wheel          get the VTK wheel from the Python package index into build/bench, as another rival
   --rounds N       how often everything is measured (5)
   --pack-rounds N  how often packing and what goes with it is measured (as --rounds; 3 with --quick)
