@@ -11,7 +11,6 @@
 #include <isotet/pack.hpp>
 
 #include "core/cells.hpp"
-#include "core/stored_tets.hpp"
 #include "core/storage.hpp"
 #include "core/tet_order.hpp"
 #include "cpu/steps.hpp"

@@ -10,7 +10,7 @@
 #include "core/cells.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
-#include "core/stored_tets.hpp"
+#include "core/faces.hpp"
 
 namespace isotet::checking {
 

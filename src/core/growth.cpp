@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 
 namespace isotet::core {
@@ -118,17 +119,20 @@ private:
         return seed;
     }
 
+    /// The candidate with the largest score; of equal ones the lowest. Two plain loops, which compilers turn into SIMD.
     std::uint32_t best_candidate() const {
+        std::int32_t best_score = 0;
+        for (const std::int32_t score : scores_) best_score = std::max(best_score, score);
         std::uint32_t best = none;
-        float best_score = 0;
-        for (const std::uint32_t v : candidates_) {
-            const float score = static_cast<float>(gain_[v]) * weight_[std::min<std::size_t>(left_[v], weight_.size() - 1)];
-            if (score > best_score || (score == best_score && v < best)) {
-                best_score = score;
-                best = v;
-            }
-        }
+        for (std::size_t i = 0; i < candidates_.size(); ++i)
+            best = std::min(best, scores_[i] == best_score ? candidates_[i] : none);
         return best;
+    }
+
+    void update_score(std::uint32_t v) {
+        if (candidate_[v] == none) return;
+        const float score = static_cast<float>(gain_[v]) * weight_[std::min<std::size_t>(left_[v], weight_.size() - 1)];
+        scores_[candidate_[v]] = std::bit_cast<std::int32_t>(score);
     }
 
     void join(std::uint32_t v) {
@@ -149,20 +153,27 @@ private:
     void take(std::uint32_t tet) {
         inside_[tet] = taken;
         tets_.push_back(tet);
-        for (const std::uint32_t v : corners_[tet]) --left_[v];
+        for (const std::uint32_t v : corners_[tet]) {
+            --left_[v];
+            update_score(v);
+        }
     }
 
     void add_gain(std::uint32_t v) {
         if (gain_[v]++ == 0) {
             candidate_[v] = static_cast<std::uint32_t>(candidates_.size());
             candidates_.push_back(v);
+            scores_.push_back(0);
         }
+        update_score(v);
     }
     void drop_candidate(std::uint32_t v) {
         const std::uint32_t last = candidates_.back();
         candidates_[candidate_[v]] = last;
+        scores_[candidate_[v]] = scores_.back();
         candidate_[last] = candidate_[v];
         candidates_.pop_back();
+        scores_.pop_back();
         candidate_[v] = none;
         gain_[v] = 0;
     }
@@ -191,6 +202,7 @@ private:
             candidate_[v] = none;
         }
         candidates_.clear();
+        scores_.clear();
         last_points_.swap(points_);
         points_.clear();
         tets_.clear();
@@ -236,6 +248,7 @@ private:
     std::vector<std::uint32_t> candidate_;  ///< position among the candidates, or none
     std::vector<std::uint32_t> first_, listed_, tets_of_; ///< tets of v: listed_[v] from first_[v] on
     std::vector<std::uint32_t> candidates_, points_, last_points_, tets_;
+    std::vector<std::int32_t> scores_; ///< gain x weight of each candidate, by its bits: positive floats order like integers
     std::array<float, 256> weight_{};
     std::size_t next_ = 0;
     bool full_ = false;

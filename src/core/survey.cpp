@@ -5,11 +5,11 @@
 
 #include <tbb/parallel_sort.h>
 
+#include "core/faces.hpp"
 #include "core/guard.hpp"
 #include "core/memory.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
-#include "core/stored_tets.hpp"
 #include "core/tet_order.hpp"
 
 namespace isotet {
@@ -71,15 +71,14 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
     if (!options.faces) return report;
 
     report.duplicate_points = count_duplicates(grid, used);
-    if (auto ok = require_memory("counting faces", tets.tets * (sizeof(Tet) + 4 * sizeof(StoredFace))); !ok) return ok.error();
-    const StoredTets stored = stored_tets(grid, *cells, tets);
-    report.repeated_tets = stored.repeated;
-    report.negative_tets = stored.negative;
-    report.inverted_tets = stored.inverted;
-    report.flat_tets = stored.flat;
-    progress("check", 0.7);
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
-    report.boundary_faces = boundary_faces(stored.tets).size();
+    // A quarter of what is free, but no less than a small grid needs.
+    const auto faces = survey_faces(grid, *cells, tets, std::max<std::uint64_t>(free_memory() / 4, 1 << 26), progress);
+    if (!faces) return faces.error();
+    report.repeated_tets = faces->repeated;
+    report.negative_tets = faces->orientation.negative + faces->orientation.twisted;
+    report.inverted_tets = faces->inverted;
+    report.flat_tets = faces->orientation.flat;
+    report.boundary_faces = faces->boundary_faces;
     progress("check", 1);
     return report;
 }
