@@ -65,6 +65,7 @@ def main(arguments: list[str]) -> int:
              "note": options.note, "absent": absent,
              "machine": machine.facts(ROOT, options.build), "load_before": machine.load()}
     plan = Plan(options.threads, options.rounds, options.pack_rounds, options.isovalues)
+    out = options.out or options.build / "results"
     results, failed = [], []
     for case in cases:
         try:
@@ -76,11 +77,10 @@ def main(arguments: list[str]) -> int:
         report.print_table(lines_of(results[-1]), case.name)
         for difference in results[-1].differences:
             print(f"  DIFFERENT SURFACE: {difference}", file=sys.stderr)
+        # After every grid, so that a race cut short leaves what it has.
+        report.write_all(out, results, facts | {"load_after": machine.load(), "not_measured": failed})
     if not results:
         return 1
-    facts |= {"load_after": machine.load(), "not_measured": failed}
-    out = options.out or options.build / "results"
-    report.write_all(out, results, facts)
     print(f"results: {out}")
     if options.publish:
         report.publish(out, ROOT / "docs/performance")
