@@ -40,10 +40,10 @@ def file_case(path: Path, field: str) -> Case:
 
 
 def made_cases(quick: bool, most_tets: float) -> list[Case]:
-    """All sizes and shapes; quick: the regular grid up to 30 million, the others at 5 million."""
+    """All shapes and sizes; quick: the regular grid up to 30 million, the others at 5 million."""
     cases = []
-    for millions in SIDES:
-        for shape in SHAPES:
+    for shape in SHAPES:
+        for millions in SIDES:
             if quick and (millions > 30 or (shape != "kuhn" and millions != 5)):
                 continue
             case = made(shape, millions)
