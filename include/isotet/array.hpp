@@ -71,6 +71,10 @@ public:
     std::size_t bytes() const noexcept { return size() * size_of(type_); }
     bool empty() const noexcept { return size() == 0; }
 
+    /// Who keeps the scalars alive; expired for a borrowed array. Two arrays with the same data() and a living owner in
+    /// common hold the same scalars.
+    std::weak_ptr<const void> owner() const noexcept { return owner_; }
+
     /// All scalars. T must be the array's type: behaviour is undefined otherwise (test type(), or use visit).
     template <class T>
     std::span<const T> as() const noexcept {

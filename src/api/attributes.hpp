@@ -10,7 +10,7 @@
 namespace isotet::api {
 
 /// A point field of the user's grid at the vertices: stored by the rules for values, interpolated between the edge ends.
-/// Cost   one pass over the field to choose offset and scale, then O(V)
+/// Cost   O(V); for a field that the packed grid has not seen, two passes over it to choose offset and scale
 template <class Real>
 SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw);
 

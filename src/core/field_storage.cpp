@@ -61,4 +61,27 @@ FieldStorage survey_field(const Array& values, const Packed& packed) {
     return out;
 }
 
+std::optional<Storage> StorageCache::find(const Array& values) const {
+    const std::lock_guard lock(mutex_);
+    for (const Entry& entry : entries_)
+        if (!entry.owner.expired() && entry.data == values.data() && entry.tuples == values.tuples() &&
+            entry.components == values.components() && entry.type == values.type())
+            return entry.storage;
+    return {};
+}
+
+void StorageCache::add(const Array& values, const Storage& storage) {
+    if (values.owner().expired()) return;
+    const std::lock_guard lock(mutex_);
+    std::erase_if(entries_, [](const Entry& entry) { return entry.owner.expired(); });
+    entries_.push_back({values.owner(), values.data(), values.tuples(), values.components(), values.type(), storage});
+}
+
+Storage choose_storage(const Array& values, const Packed& packed) {
+    if (const auto known = packed.storage_cache->find(values)) return *known;
+    const Storage storage = survey_field(values, packed).storage;
+    packed.storage_cache->add(values, storage);
+    return storage;
+}
+
 } // namespace isotet::core

@@ -2,6 +2,11 @@
 // Looking at a field's values at the points that tets use, to choose how they are stored.
 #pragma once
 
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
 #include <isotet/array.hpp>
 
 #include "core/packed.hpp"
@@ -18,6 +23,26 @@ struct FieldStorage {
 /// user's points. Parallel; two passes over the values at packed points.
 FieldStorage survey_field(const Array& values, const Packed& packed);
 
-inline Storage choose_storage(const Array& values, const Packed& packed) { return survey_field(values, packed).storage; }
+/// Storage of fields that were looked at before: so that a field carried onto many surfaces is looked at once. Arrays
+/// are told apart by their memory and its owner; borrowed ones, whose memory may be used again, are not remembered.
+class StorageCache {
+public:
+    std::optional<Storage> find(const Array& values) const;
+    void add(const Array& values, const Storage& storage);
+
+private:
+    struct Entry {
+        std::weak_ptr<const void> owner;
+        const void* data;
+        std::size_t tuples, components;
+        ScalarType type;
+        Storage storage;
+    };
+    mutable std::mutex mutex_;
+    std::vector<Entry> entries_;
+};
+
+/// As survey_field(), from the packed grid's cache where it can be.
+Storage choose_storage(const Array& values, const Packed& packed);
 
 } // namespace isotet::core

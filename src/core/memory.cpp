@@ -24,6 +24,15 @@ std::optional<std::uint64_t> number_in(const std::string& path) {
     return value;
 }
 
+/// A line "name 123" of a file of counters; 0 where there is none.
+std::uint64_t counter_in(const std::string& path, std::string_view name) {
+    std::ifstream file(path);
+    std::uint64_t value = 0;
+    for (std::string word; file >> word >> value;)
+        if (word == name) return value;
+    return 0;
+}
+
 /// A line "Name:   123 kB" of a file in /proc, in bytes.
 std::optional<std::uint64_t> proc_bytes(const char* path, std::string_view name) {
     std::ifstream file(path);
@@ -34,12 +43,16 @@ std::optional<std::uint64_t> proc_bytes(const char* path, std::string_view name)
     return {};
 }
 
-/// What the control group of this process (version 2, or 1) and those above it leave.
+/// What the control group of this process (version 2, or 1) and those above it leave. Files that are only cached are
+/// counted as used there, but give way.
 std::uint64_t control_group_free() {
     std::uint64_t least = unlimited;
-    const auto consider = [&](const std::string& limit, const std::string& used) {
-        const auto most = number_in(limit), now = number_in(used);
-        if (most && now) least = std::min(least, *most > *now ? *most - *now : 0);
+    const auto consider = [&](const std::string& limit, const std::string& used, const std::string& statistics) {
+        const auto most = number_in(limit), all = number_in(used);
+        if (!most || !all) return;
+        const std::uint64_t cached = counter_in(statistics, "inactive_file") + counter_in(statistics, "active_file");
+        const std::uint64_t now = *all - std::min(cached, *all);
+        least = std::min(least, *most > now ? *most - now : 0);
     };
     std::ifstream file("/proc/self/cgroup");
     for (std::string line; std::getline(file, line);) {
@@ -50,10 +63,10 @@ std::uint64_t control_group_free() {
         for (;; group.erase(group.find_last_of('/'))) {
             if (controllers.empty()) {
                 const std::string folder = "/sys/fs/cgroup" + group;
-                consider(folder + "/memory.max", folder + "/memory.current");
+                consider(folder + "/memory.max", folder + "/memory.current", folder + "/memory.stat");
             } else if (controllers == "memory") {
                 const std::string folder = "/sys/fs/cgroup/memory" + group;
-                consider(folder + "/memory.limit_in_bytes", folder + "/memory.usage_in_bytes");
+                consider(folder + "/memory.limit_in_bytes", folder + "/memory.usage_in_bytes", folder + "/memory.stat");
             }
             if (group.find('/') == std::string::npos) break;
         }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/field_storage.hpp"
 #include "core/guard.hpp"
 #include "core/memory.hpp"
 #include "core/orientation.hpp"
@@ -71,6 +72,7 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     draft.locals.release();
 
     auto packed = std::make_unique<Packed>(std::move(draft.packed));
+    packed->storage_cache = std::make_shared<StorageCache>();
     packed->user_points = grid.points.tuples();
     packed->user_cells = cells->count();
     packed->report.cells_left_out = survey.left_out;

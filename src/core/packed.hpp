@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <variant>
@@ -117,6 +118,8 @@ struct Storage {
     bool unchanged = true;
 };
 
+class StorageCache;
+
 struct Packed {
     Buffer<ClusterHeader> headers;
     Buffer<StoredTet> tets;             ///< 32 a group
@@ -132,6 +135,7 @@ struct Packed {
 
     std::array<double, 3> origin{};
     Storage storage;
+    std::shared_ptr<StorageCache> storage_cache; ///< of fields carried onto surfaces (field_storage.hpp)
     Array field;                        ///< as the user gave it; shared, to tell false ties
     std::uint64_t user_points = 0, user_cells = 0;
     PackReport report;

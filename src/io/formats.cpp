@@ -92,6 +92,17 @@ struct Head {
     bool folder = false;
 };
 
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
+    });
+    return extension;
+}
+
+/// OpenFOAM's files that only mark where a case is; mostly empty.
+bool is_marker(std::string_view extension) { return extension == ".foam" || extension == ".openfoam"; }
+
 Result<Head> read_head(const std::string& path) {
     const auto failed = [&](std::string_view what, int number) {
         return Error{ErrorCode::file, fmt::format("{}: {}: {}", path, what, std::generic_category().message(number))};
@@ -108,16 +119,9 @@ Result<Head> read_head(const std::string& path) {
     std::array<char, 4096> buffer;
     const ssize_t count = ::pread(descriptor.number(), buffer.data(), buffer.size(), 0);
     if (count < 0) return failed("cannot be read", errno);
-    if (count == 0) return Error{ErrorCode::file, fmt::format("{} is empty, so it is no grid", path)};
+    if (count == 0 && !is_marker(extension_of(path)))
+        return Error{ErrorCode::file, fmt::format("{} is empty, so it is no grid", path)};
     return Head{std::string(buffer.data(), static_cast<std::size_t>(count)), false};
-}
-
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
-    });
-    return extension;
 }
 
 Error nobody_knows(const std::string& path, const Head& head, const std::string& extension) {

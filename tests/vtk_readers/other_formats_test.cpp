@@ -120,6 +120,15 @@ TEST(ReadOpenfoam, GivesCellsAndNoMadeUpPointFields) {
     EXPECT_EQ(result->grid.cell_fields[0].values.at(1), 4);
 }
 
+TEST(ReadOpenfoam, TakesAnEmptyMarker) {
+    const TemporaryFolder folder;
+    write_foam_case(folder);
+    folder.write("empty.foam", "");
+    const auto result = read(folder.file("empty.foam"));
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.cells.count(), 2u);
+}
+
 TEST(ReadVtkhdf, GivesPointsCellsAndFields) {
     const TemporaryFolder folder;
     {
