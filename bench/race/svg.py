@@ -84,13 +84,18 @@ def log_log(title: str, subtitle: str, x_title: str, y_title: str, series: list[
                     f'stroke-width="{3 if one.heavy else 1.8}"{dash}/>')
         radius = 4 if one.heavy else 3
         body += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{radius}" fill="{one.color}"/>' for a, b in places]
-    body += _labels_at_the_end(series, y)
+    rightmost = max(point[0] for one in series for point in one.points)
+    short = [one for one in series if max(one.points)[0] < rightmost]
+    for one in short:
+        a, b = max(one.points)
+        body.append(_text(x.place(a), y.place(b) - 10, one.label, "end", color=one.color, size=12))
+    body += _labels_at_the_end([one for one in series if one not in short], y)
     return _document(title, subtitle, body)
 
 
 def _labels_at_the_end(series: list[Series], y: _LogAxis) -> list[str]:
     """Each label beside the last point of its line, pushed apart where they would overlap."""
-    wanted = sorted(((y.place(sorted(one.points)[-1][1]), one) for one in series), key=lambda pair: pair[0])
+    wanted = sorted(((y.place(max(one.points)[1]), one) for one in series), key=lambda pair: pair[0])
     heights, last = [], TOP - 6.0
     for place, _ in wanted:
         last = max(place + 4, last + 16)
