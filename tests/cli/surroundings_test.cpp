@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <thread>
+
 #include <fmt/format.h>
 
 #include "program.hpp"
@@ -87,6 +89,54 @@ TEST_F(Program, AFileTooLargeForTheLimitLeavesNothing) {
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(is_one_error(run, "g.vtu"));
     EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST_F(Program, KilledAtAnyMomentItLeavesTheOldFileOrTheNewOne) {
+    const auto make = [&](const char* side, const std::string& out) {
+        return std::vector<std::string>{ISOTET_PROGRAM, "make", "kuhn", "--side", side, "-o", out};
+    };
+    ASSERT_EQ(run_program(make("3", path("old.vtu"))).status, 0);
+    ASSERT_EQ(run_program(make("30", path("new.vtu"))).status, 0);
+    const std::string old_content = content_of(path("old.vtu")), new_content = content_of(path("new.vtu"));
+    int killed = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+        put_content(path("out.vtu"), old_content);
+        std::vector<std::string> command = make("30", path("out.vtu"));
+        const std::string moment = fmt::format("{:.3f}", 0.01 + 0.012 * trial);
+        command.insert(command.begin(), {"/usr/bin/timeout", "-s", "KILL", moment});
+        killed += run_program(command).status != 0;
+        const std::string content = content_of(path("out.vtu"));
+        EXPECT_TRUE(content == old_content || content == new_content) << "killed after " << moment << " s";
+    }
+    EXPECT_GT(killed, 0);
+}
+
+TEST_F(Program, TwoProcessesWithOneOutputLeaveOneWholeFile) {
+    const auto make = [&](const char* side, const std::string& out) {
+        return std::vector<std::string>{ISOTET_PROGRAM, "make", "kuhn", "--side", side, "-o", out};
+    };
+    ASSERT_EQ(run_program(make("20", path("a.vtu"))).status, 0);
+    ASSERT_EQ(run_program(make("24", path("b.vtu"))).status, 0);
+    for (int trial = 0; trial < 5; ++trial) {
+        RunResult first;
+        std::thread other([&] { first = run_program(make("20", path("out.vtu"))); });
+        const RunResult second = run_program(make("24", path("out.vtu")));
+        other.join();
+        EXPECT_EQ(first.status, 0) << first.err;
+        EXPECT_EQ(second.status, 0) << second.err;
+        const std::string content = content_of(path("out.vtu"));
+        EXPECT_TRUE(content == content_of(path("a.vtu")) || content == content_of(path("b.vtu")));
+        EXPECT_EQ(folder.entries(), 3u);
+    }
+}
+
+TEST_F(Program, TooLittleAddressSpaceIsToldWithTheAmounts) {
+    // Room to start and to make the grid, not to pack it.
+    const std::string command = fmt::format("exec '{}' extract make:kuhn:200:sphere -i 0.5 -q", ISOTET_PROGRAM);
+    const RunResult run = run_program({"/bin/bash", "-c", "ulimit -v 2200000; " + command});
+    EXPECT_EQ(run.status, 4) << run.err;
+    EXPECT_TRUE(is_one_error(run, " needs "));
+    EXPECT_TRUE(is_one_error(run, " free"));
 }
 
 TEST_F(Program, LocaleChangesNothing) {
