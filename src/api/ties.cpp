@@ -14,7 +14,7 @@ double snap(const Array& values, double isovalue) {
     return values.visit([&]<class T>(std::span<const T>) {
         if constexpr (std::is_same_v<T, double>) return isovalue;
         else if constexpr (std::is_same_v<T, float>) {
-            const auto nearest = static_cast<double>(static_cast<float>(isovalue));
+            const double nearest = core::rounded_to_float(isovalue);
             return std::isinf(nearest) ? std::copysign(double{std::numeric_limits<float>::max()}, isovalue) : nearest;
         } else {
             const auto lower = static_cast<double>(std::numeric_limits<T>::min());

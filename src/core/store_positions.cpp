@@ -83,7 +83,7 @@ void store_positions(const Array& array, Packed& packed) {
     if (!unchanged) {
         const Bounds bounds = bounds_of(points, packed);
         for (std::size_t axis = 0; axis < 3 && packed.points(); ++axis)
-            packed.origin[axis] = static_cast<float>(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
+            packed.origin[axis] = rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
     }
     Buffer<Real>& positions = packed.as<Real>().positions;
     if (positions.empty()) positions = Buffer<Real>(3 * packed.points());
