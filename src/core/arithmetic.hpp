@@ -3,9 +3,14 @@
 // Built with -ffp-contract=off; stored values (storage.hpp) keep every step away from denormals and overflow.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "core/normal_code.hpp"
 #include "core/storage.hpp"
@@ -74,10 +79,14 @@ template <class Real>
 Vector<Real> scaled_to_one(const Vector<Real>& v) {
     const Real largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (largest == 0) return {};
-    const int exponent = std::ilogb(largest);
+    // Stored coordinates keep `largest` normal, so its exponent stands in its bits; times 2^-exponent is exact.
+    using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+    constexpr int mantissa = std::numeric_limits<Real>::digits - 1;
+    constexpr Bits bias = std::numeric_limits<Real>::max_exponent - 1;
+    const Real factor = std::bit_cast<Real>((2 * bias - (std::bit_cast<Bits>(largest) >> mantissa)) << mantissa);
     Vector<Real> out;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        out[axis] = std::scalbn(v[axis], -exponent);
+        out[axis] = v[axis] * factor;
         if (std::abs(out[axis]) < Real(0x1p-40)) out[axis] = 0;
     }
     return out;
