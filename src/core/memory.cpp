@@ -43,9 +43,9 @@ std::optional<std::uint64_t> proc_bytes(const char* path, std::string_view name)
     return {};
 }
 
-/// What the control group of this process (version 2, or 1) and those above it leave. Files that are only cached are
-/// counted as used there, but give way.
-std::uint64_t control_group_free() {
+} // namespace
+
+std::uint64_t control_group_free(const std::string& membership, const std::string& mount) {
     std::uint64_t least = unlimited;
     const auto consider = [&](const std::string& limit, const std::string& used, const std::string& statistics) {
         const auto most = number_in(limit), all = number_in(used);
@@ -54,7 +54,7 @@ std::uint64_t control_group_free() {
         const std::uint64_t now = *all - std::min(cached, *all);
         least = std::min(least, *most > now ? *most - now : 0);
     };
-    std::ifstream file("/proc/self/cgroup");
+    std::ifstream file(membership);
     for (std::string line; std::getline(file, line);) {
         const auto first = line.find(':'), second = line.find(':', first + 1);
         if (first == std::string::npos || second == std::string::npos) continue;
@@ -62,10 +62,10 @@ std::uint64_t control_group_free() {
         std::string group = line.substr(second + 1);
         for (;; group.erase(group.find_last_of('/'))) {
             if (controllers.empty()) {
-                const std::string folder = "/sys/fs/cgroup" + group;
+                const std::string folder = mount + group;
                 consider(folder + "/memory.max", folder + "/memory.current", folder + "/memory.stat");
             } else if (controllers == "memory") {
-                const std::string folder = "/sys/fs/cgroup/memory" + group;
+                const std::string folder = mount + "/memory" + group;
                 consider(folder + "/memory.limit_in_bytes", folder + "/memory.usage_in_bytes", folder + "/memory.stat");
             }
             if (group.find('/') == std::string::npos) break;
@@ -74,11 +74,9 @@ std::uint64_t control_group_free() {
     return least;
 }
 
-} // namespace
-
 std::uint64_t free_memory() {
     std::uint64_t least = proc_bytes("/proc/meminfo", "MemAvailable:").value_or(unlimited);
-    least = std::min(least, control_group_free());
+    least = std::min(least, control_group_free("/proc/self/cgroup", "/sys/fs/cgroup"));
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
         const std::uint64_t used = proc_bytes("/proc/self/status", "VmSize:").value_or(0);

@@ -1,0 +1,61 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Free memory under control groups, from files as the system shows them: the smallest of all limits counts.
+#include "core/memory.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace isotet::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ControlGroup : public testing::Test {
+protected:
+    ControlGroup()
+        : folder(fs::path(testing::TempDir()) /
+                 ("isotet_" + std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name())) {}
+    ~ControlGroup() override { fs::remove_all(folder); }
+    void put(const std::string& name, const std::string& content) const {
+        fs::create_directories((folder / name).parent_path());
+        std::ofstream(folder / name) << content;
+    }
+    std::uint64_t free() const { return core::control_group_free(folder / "membership", folder / "mount"); }
+    fs::path folder;
+};
+
+TEST_F(ControlGroup, OfVersionTwoLeavesItsLimitLessWhatIsUsedAndNotCached) {
+    put("membership", "0::/jobs/one\n");
+    put("mount/jobs/one/memory.max", "1000000\n");
+    put("mount/jobs/one/memory.current", "700000\n");
+    put("mount/jobs/one/memory.stat", "anon 400000\ninactive_file 200000\nactive_file 100000\n");
+    EXPECT_EQ(free(), 600000u);
+}
+
+TEST_F(ControlGroup, AboveItCountsWhenItLeavesLess) {
+    put("membership", "0::/jobs/one\n");
+    put("mount/jobs/one/memory.max", "max\n");
+    put("mount/jobs/one/memory.current", "700\n");
+    put("mount/jobs/memory.max", "5000\n");
+    put("mount/jobs/memory.current", "4000\n");
+    EXPECT_EQ(free(), 1000u);
+}
+
+TEST_F(ControlGroup, OfVersionOneIsReadFromItsMemoryController) {
+    put("membership", "5:cpu:/elsewhere\n4:memory:/one\n");
+    put("mount/memory/one/memory.limit_in_bytes", "3000\n");
+    put("mount/memory/one/memory.usage_in_bytes", "3500\n");
+    EXPECT_EQ(free(), 0u);
+}
+
+TEST_F(ControlGroup, WithoutALimitLeavesEverything) {
+    put("membership", "0::/\n");
+    EXPECT_EQ(free(), std::numeric_limits<std::uint64_t>::max());
+}
+
+} // namespace
+} // namespace isotet::test
