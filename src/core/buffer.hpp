@@ -1,14 +1,19 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A fixed-size array that is not cleared when it is made: large arrays are first touched by the threads that fill them.
+// Its memory comes from blocks (core/block.hpp).
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
 
 #include <isotet/array.hpp>
+
+#include "core/block.hpp"
 
 namespace isotet::core {
 
@@ -18,7 +23,11 @@ class Buffer {
 
 public:
     Buffer() = default;
-    explicit Buffer(std::size_t size) : data_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+    explicit Buffer(std::size_t size) : size_(size) {
+        if (size > std::numeric_limits<std::size_t>::max() / sizeof(T)) throw std::bad_array_new_length();
+        const Block block = take_block(size * sizeof(T));
+        data_ = {static_cast<T*>(block.data), GiveBack{block.bytes}};
+    }
 
     T* data() noexcept { return data_.get(); }
     const T* data() const noexcept { return data_.get(); }
@@ -48,7 +57,12 @@ public:
     }
 
 private:
-    std::unique_ptr<T[]> data_;
+    struct GiveBack {
+        std::size_t bytes = 0;
+        void operator()(T* data) const noexcept { give_back({data, bytes}); }
+    };
+
+    std::unique_ptr<T[], GiveBack> data_;
     std::size_t size_ = 0;
 };
 

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "core/block.hpp"
+
 namespace isotet::core {
 
 namespace {
@@ -94,7 +96,8 @@ std::string format_bytes(std::uint64_t bytes) {
 }
 
 Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
-    const std::uint64_t free = free_memory();
+    std::uint64_t free = free_memory();
+    if (bytes > free && drop_kept_blocks() > 0) free = free_memory();
     if (bytes <= free) return {};
     return Error{ErrorCode::out_of_memory,
                  fmt::format("{} needs {}, but {} are free", what, format_bytes(bytes), format_bytes(free))};

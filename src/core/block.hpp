@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Where the memory of large arrays comes from. The first touch of fresh memory costs more than most of what is done with
+// it: the system clears it page by page. So large blocks ask for huge pages, and a few of those given back are kept for
+// the next surface, which is about as large as the last one.
+#pragma once
+
+#include <cstddef>
+
+namespace isotet::core {
+
+/// A piece of memory, aligned for every type. `bytes` may be more than was asked for.
+struct Block {
+    void* data = nullptr;
+    std::size_t bytes = 0;
+};
+
+/// Guarantees   not cleared; aligned to a huge page from large_block on
+/// Errors       throws std::bad_alloc
+/// Threads      safe from many threads
+Block take_block(std::size_t bytes);
+
+/// Gives a block of take_block() back. Up to 1/64 of the machine's memory is kept for later.
+void give_back(Block block) noexcept;
+
+/// Gives what is kept to the system; returns how many bytes that were.
+std::size_t drop_kept_blocks() noexcept;
+
+/// Smaller blocks come from the ordinary heap.
+constexpr std::size_t large_block = std::size_t{4} << 20;
+
+} // namespace isotet::core

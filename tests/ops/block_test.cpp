@@ -1,0 +1,63 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <new>
+
+#include "core/block.hpp"
+#include "core/buffer.hpp"
+
+namespace isotet::core {
+namespace {
+
+constexpr std::size_t megabyte = std::size_t{1} << 20;
+
+TEST(Block, OfAnySizeCanBeWrittenToItsEnd) {
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, large_block - 1, large_block, large_block + 1, 9 * megabyte + 123}) {
+        const Block block = take_block(bytes);
+        ASSERT_NE(block.data, nullptr);
+        EXPECT_GE(block.bytes, bytes);
+        std::memset(block.data, 1, bytes);
+        give_back(block);
+    }
+}
+
+TEST(Block, GivenBackIsUsedAgainByTheNextOfAboutItsSize) {
+    drop_kept_blocks();
+    const Block first = take_block(8 * megabyte);
+    std::memset(first.data, 1, first.bytes);
+    give_back(first);
+    const Block small = take_block(5 * megabyte); // over a quarter would be wasted
+    const Block next = take_block(7 * megabyte);
+#if !defined(__SANITIZE_ADDRESS__)
+    EXPECT_NE(small.data, first.data);
+    EXPECT_EQ(next.data, first.data);
+    EXPECT_EQ(next.bytes, first.bytes);
+#endif
+    give_back(small);
+    give_back(next);
+    drop_kept_blocks();
+    EXPECT_EQ(drop_kept_blocks(), 0u);
+}
+
+TEST(Block, ThatCannotBeHadThrowsBadAlloc) {
+    EXPECT_THROW(give_back(take_block(std::numeric_limits<std::size_t>::max() - 100)), std::bad_alloc);
+    EXPECT_THROW(give_back(take_block(std::size_t{1} << 60)), std::bad_alloc);
+    EXPECT_THROW(Buffer<std::uint64_t>(std::numeric_limits<std::size_t>::max() / 4), std::bad_alloc);
+}
+
+TEST(Block, ManyGivenBackAreKeptOnlyUpToALimit) {
+    drop_kept_blocks();
+    std::size_t given = 0;
+    for (int i = 0; i < 400; ++i) { // never touched, so they cost nothing
+        Block block = take_block((64 + static_cast<std::size_t>(i)) * megabyte);
+        given += block.bytes;
+        give_back(block);
+    }
+    EXPECT_LT(drop_kept_blocks(), given);
+}
+
+} // namespace
+} // namespace isotet::core
