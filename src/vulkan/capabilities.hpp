@@ -1,0 +1,57 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a device can do, asked and never assumed, and whether that is enough.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <isotet/device.hpp>
+
+#include "vulkan/functions.hpp"
+
+namespace isotet::vulkan {
+
+/// A queue family.
+struct QueueFamily {
+    VkQueueFlags flags = 0;
+    std::uint32_t timestamp_bits = 0;
+};
+
+/// What was asked of a physical device.
+struct Capabilities {
+    VkPhysicalDeviceProperties properties{};
+    VkPhysicalDeviceVulkan11Properties properties11{};
+    VkPhysicalDeviceVulkan12Properties properties12{}; ///< driver, float controls
+    VkPhysicalDeviceVulkan12Features features12{};
+    VkPhysicalDeviceMemoryProperties memory{};
+    std::array<VkDeviceSize, VK_MAX_MEMORY_HEAPS> heap_free{}; ///< of each heap, for this process; its size where not known
+    std::vector<QueueFamily> queues;
+    bool memory_budget = false; ///< VK_EXT_memory_budget: heap_free is known, and changes
+
+    static constexpr std::uint32_t none = UINT32_MAX;
+    std::uint32_t compute_family = none;
+    std::uint32_t transfer_family = none; ///< one that only copies, if there is one; else compute_family
+};
+
+/// Asks.
+Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device);
+
+/// Asks again what is free.
+void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& call, VkPhysicalDevice device);
+
+/// Why isotet cannot use the device; empty: it can. A sentence with what is there and what is needed.
+std::string why_unusable(const Capabilities& capabilities);
+
+/// The public description. `index` is the device's place in the list.
+DeviceInfo describe(const Capabilities& capabilities, std::size_t index);
+
+/// The memory type for device buffers: the device's own, in the largest heap; mapped as well where memory is unified.
+std::uint32_t device_memory_type(const Capabilities& capabilities);
+
+/// The machine's memory for going up (write-combined will do) or down (cached, where there is such).
+std::uint32_t upload_memory_type(const Capabilities& capabilities);
+std::uint32_t download_memory_type(const Capabilities& capabilities);
+
+} // namespace isotet::vulkan

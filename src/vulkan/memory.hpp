@@ -1,0 +1,116 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Buffers on the device, cut from large blocks of its memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include <isotet/result.hpp>
+
+#include "vulkan/capabilities.hpp"
+#include "vulkan/free_ranges.hpp"
+#include "vulkan/logical_device.hpp"
+
+namespace isotet::vulkan {
+
+/// What a buffer is for, and so which memory it lies in.
+enum class Where : std::uint8_t {
+    device,   ///< the device's own memory; mapped only where that is the machine's memory
+    upload,   ///< the machine's memory, always mapped: written by the processor, read by the device once
+    download, ///< the machine's memory, always mapped and cached: written by the device, read by the processor
+};
+
+class Memory;
+struct Block;
+
+/// A buffer with an address on the device. Gives its memory back when it goes; must not outlive its Context, nor be given
+/// back while the device works on it (Recorder::run and Staging wait, so nothing can be under way between calls).
+class Buffer {
+public:
+    Buffer() = default;
+    Buffer(Buffer&& other) noexcept { swap(other); }
+    Buffer& operator=(Buffer&& other) noexcept {
+        Buffer(std::move(other)).swap(*this);
+        return *this;
+    }
+    ~Buffer();
+
+    VkBuffer handle() const noexcept { return handle_; }
+    VkDeviceAddress address() const noexcept { return address_; } ///< a multiple of 256
+    std::uint64_t size() const noexcept { return size_; }         ///< bytes, as asked for
+    explicit operator bool() const noexcept { return handle_ != VK_NULL_HANDLE; }
+
+    /// The bytes, for the processor; empty where it cannot reach them.
+    std::span<std::byte> mapped() const noexcept { return {static_cast<std::byte*>(mapped_), mapped_ ? size_ : 0}; }
+
+    /// Whether the processor also reads them fast.
+    bool cached() const noexcept { return cached_; }
+
+private:
+    friend class Memory;
+    void swap(Buffer& other) noexcept;
+
+    Memory* memory_ = nullptr;
+    Block* block_ = nullptr;
+    std::uint64_t begin_ = 0, taken_ = 0; ///< in the block
+    VkBuffer handle_ = VK_NULL_HANDLE;
+    VkDeviceAddress address_ = 0;
+    std::uint64_t size_ = 0;
+    void* mapped_ = nullptr;
+    bool cached_ = false;
+};
+
+/// The memory of one device.
+///
+/// Threads   safe from many threads
+class Memory {
+public:
+    struct Options {
+        std::uint64_t limit = 0;   ///< bytes that buffers in Where::device may take in all; 0: what is free
+        bool hide_unified = false; ///< never map Where::device, so that everything is staged
+    };
+    Memory(LogicalDevice& device, const Capabilities& capabilities, const Options& options);
+    ~Memory();
+
+    /// A buffer of `bytes` (at least one is taken), not cleared. It can be copied from and to, filled, read and written by
+    /// kernels, and hold arguments of indirect dispatches. Four more bytes than asked for may be read behind its end.
+    ///
+    /// `name`    for messages and debuggers: "triangles"
+    /// Cost      in Where::device memory comes in blocks of 64 MiB (less under a small limit), larger buffers alone
+    /// Errors    out_of_memory with the amount needed, the amount free, and the limit; machine
+    Result<Buffer> take(std::uint64_t bytes, Where where, std::string_view name);
+
+    std::uint64_t used() const; ///< bytes of buffers in Where::device
+    std::uint64_t peak() const; ///< the most that used() has been
+    std::uint64_t free() const; ///< bytes that take() can still give in Where::device, apart from fragmentation
+
+private:
+    friend class Buffer;
+    struct Pool {
+        std::uint32_t type = 0;
+        bool mapped = false, cached = false;
+        std::list<Block> blocks;
+    };
+
+    Result<Block*> new_block(Pool& pool, std::uint64_t bytes);
+    Result<void> place(Buffer& buffer, Pool& pool, const VkMemoryRequirements& needs);
+    Result<void> require(std::uint64_t bytes, std::string_view name) const;
+    std::uint64_t free_locked() const;
+    void give_back(Buffer& buffer) noexcept;
+
+    LogicalDevice& device_;
+    const Capabilities& capabilities_;
+    Options options_;
+    mutable std::mutex mutex_;
+    Pool pools_[3];
+    std::uint64_t block_bytes_ = 0;
+    std::uint64_t used_ = 0, peak_ = 0;
+};
+
+} // namespace isotet::vulkan

@@ -1,0 +1,44 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Bytes between the processor and the device.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <isotet/result.hpp>
+
+#include "vulkan/memory.hpp"
+
+namespace isotet::vulkan {
+
+class Context;
+
+/// Copies directly where the processor reaches the buffer, else through two staging buffers in turn, on the queue that only
+/// copies where there is one.
+///
+/// Threads   one call at a time
+class Staging {
+public:
+    Staging(Context& context, std::uint64_t chunk_bytes) : context_(context), chunk_bytes_(chunk_bytes) {}
+    ~Staging();
+
+    /// Returns when the bytes are on the device. Offset and size multiples of 4.
+    /// Errors   invalid_argument when they do not fit; out_of_memory; machine
+    Result<void> upload(const Buffer& to, std::uint64_t offset, std::span<const std::byte> bytes);
+
+    /// Returns when the bytes are here. Offset and size multiples of 4.
+    Result<void> download(const Buffer& from, std::uint64_t offset, std::span<std::byte> bytes);
+
+    /// Bytes that went up and down since the beginning, copied directly or not: the traffic that extraction reports.
+    std::uint64_t uploaded() const noexcept { return uploaded_; }
+    std::uint64_t downloaded() const noexcept { return downloaded_; }
+
+private:
+    Context& context_;
+    std::uint64_t chunk_bytes_;
+    std::uint64_t uploaded_ = 0, downloaded_ = 0;
+};
+
+} // namespace isotet::vulkan
