@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,9 @@ struct ExtractReport {
     std::optional<std::uint64_t> false_ties;  ///< of these, not ties in the input's own precision; nothing when the input is no longer at hand
     bool near_tie = false; ///< no point is tied, but points hold the value of the field's type nearest to the isovalue (0.7 on float32)
     double isovalue_stored = 0;               ///< the isovalue as rounded for the comparison, in the unit of the field
-    std::uint64_t transient_bytes = 0;        ///< beyond the surface itself, at the peak
+    std::uint64_t surface_bytes = 0;          ///< all arrays of the surface
+    std::uint64_t transient_bytes = 0;        ///< beyond the surfaces themselves, at the peak of the call
+    std::uint64_t predicted_bytes = 0;        ///< what the call was expected to need at most, surfaces included, before it began
 };
 
 struct Extraction {
@@ -63,6 +66,18 @@ struct Extraction {
 /// Method       marching tetrahedra over clusters; docs/inside/clusters.md
 Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options = {},
                            const Progress& progress = {});
+
+/// Extracts the surfaces of several isovalues in one pass: the ranges of all clusters are looked at once, and a cluster that
+/// several isovalues cut is read once. The more clusters they have in common, the more this saves.
+///
+/// `isovalues`  finite; in any order, with repetitions or none at all
+///
+/// Guarantees   the surfaces stand in the order of `isovalues`, each the same bytes as when extracted alone
+/// Cost         O(C + V + F) of all surfaces; they are in memory together, and so is the transient memory of each: limits as
+///              above, a cluster counted once for every isovalue that selects it
+/// Errors       as above; all or nothing
+Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
+                                        const ExtractOptions& options = {}, const Progress& progress = {});
 
 /// The nearest value that the type of the field can hold: 0.7 becomes 0.699999988 on a float32 field, 3.2 becomes 3 on
 /// integers.

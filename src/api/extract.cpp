@@ -18,10 +18,18 @@ namespace isotet {
 
 namespace {
 
-Result<void> check_options(const PackedGrid& packed, double isovalue, const ExtractOptions& options) {
-    const auto wrong = [](std::string message) { return Error{ErrorCode::invalid_argument, std::move(message)}; };
-    const core::Packed& data = packed.data();
-    if (!std::isfinite(isovalue)) return wrong(fmt::format("the isovalue is {}, but must be finite", isovalue));
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+Result<void> check_isovalues(std::span<const double> isovalues) {
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        if (std::isfinite(isovalues[i])) continue;
+        if (isovalues.size() == 1) return wrong(fmt::format("the isovalue is {}, but must be finite", isovalues[i]));
+        return wrong(fmt::format("isovalues[{}] is {}, but must be finite", i, isovalues[i]));
+    }
+    return {};
+}
+
+Result<void> check_options(const core::Packed& data, const ExtractOptions& options) {
     if (options.normals == Normals::gradient && data.gradients.empty() && data.points() != 0)
         return wrong("gradient normals need a grid that was packed with gradients, but this one was not");
     if ((options.source_cells || !options.cell_fields.empty()) && !data.has_cell_ids() && data.clusters() != 0)
@@ -37,10 +45,41 @@ Result<void> check_options(const PackedGrid& packed, double isovalue, const Extr
     return {};
 }
 
+std::uint64_t bytes_of(const Surface& surface) {
+    std::uint64_t bytes = 0;
+    for (const Array* array : {&surface.positions, &surface.triangles, &surface.normals, &surface.edge_ends,
+                               &surface.edge_weights, &surface.source_cells})
+        bytes += array->bytes();
+    for (const auto* fields : {&surface.point_fields, &surface.cell_fields})
+        for (const SurfaceField& field : *fields) bytes += field.values.bytes();
+    return bytes;
+}
+
 template <class Real>
-Result<Extraction> extract_as(const core::Packed& packed, double isovalue, const ExtractOptions& options,
-                              const Progress& progress) {
-    ops::Request<Real> request{core::store_isovalue<Real>(isovalue, packed.storage)};
+Surface finish(const core::Packed& packed, const ExtractOptions& options, const ops::RawSurface& raw) {
+    Surface surface;
+    surface.origin = packed.origin;
+    surface.positions = raw.positions;
+    surface.triangles = raw.triangles;
+    surface.normals_kind = options.normals;
+    if (options.normals == Normals::gradient) surface.normals = api::fill_normals<Real>(raw);
+    else if (options.normals == Normals::face) surface.normals = api::face_normals<Real>(raw);
+    for (const Field& field : options.point_fields)
+        surface.point_fields.push_back(api::interpolate_field<Real>(field, packed, raw));
+    for (const Field& field : options.cell_fields) surface.cell_fields.push_back(api::copy_cell_field(field, raw));
+    if (options.edge_ends) {
+        surface.edge_ends = raw.ends;
+        surface.edge_weights = raw.weights;
+    }
+    if (options.source_cells) surface.source_cells = raw.source_cells;
+    return surface;
+}
+
+template <class Real>
+Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span<const double> isovalues,
+                                           const ExtractOptions& options, const Progress& progress) {
+    ops::Request<Real> request;
+    for (const double isovalue : isovalues) request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
     request.ties = options.ties;
     request.ends = options.edge_ends || !options.point_fields.empty();
     request.normals = options.normals == Normals::gradient;
@@ -51,42 +90,42 @@ Result<Extraction> extract_as(const core::Packed& packed, double isovalue, const
     if (!raw) return std::move(raw).error();
     progress("extract", 0.8);
 
-    Extraction out;
-    Surface& surface = out.surface;
-    surface.origin = packed.origin;
-    surface.positions = raw->positions;
-    surface.triangles = raw->triangles;
-    surface.normals_kind = options.normals;
-    if (options.normals == Normals::gradient) surface.normals = api::fill_normals<Real>(*raw);
-    else if (options.normals == Normals::face) surface.normals = api::face_normals<Real>(*raw);
-    for (const Field& field : options.point_fields)
-        surface.point_fields.push_back(api::interpolate_field<Real>(field, packed, *raw));
-    for (const Field& field : options.cell_fields) surface.cell_fields.push_back(api::copy_cell_field(field, *raw));
-    if (options.edge_ends) {
-        surface.edge_ends = raw->ends;
-        surface.edge_weights = raw->weights;
+    std::vector<Extraction> out(isovalues.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        ops::RawSurface& surface = raw->surfaces[i];
+        ExtractReport& report = out[i].report;
+        out[i].surface = finish<Real>(packed, options, surface);
+        api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report);
+        report.selected_clusters = surface.selected_clusters;
+        report.surface_bytes = bytes_of(out[i].surface);
+        report.transient_bytes = raw->transient_bytes;
+        report.predicted_bytes = raw->predicted_bytes;
+        surface = {}; // parts that only attributes needed go as soon as they can
     }
-    if (options.source_cells) surface.source_cells = raw->source_cells;
-
-    api::count_ties(packed, isovalue, request.isovalue, out.report);
-    out.report.selected_clusters = raw->selected_clusters;
-    out.report.transient_bytes = raw->transient_bytes;
     progress("extract", 1);
     return out;
 }
 
 } // namespace
 
-Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options, const Progress& progress) {
-    return core::guarded("extraction", [&]() -> Result<Extraction> {
-        if (auto ok = check_options(packed, isovalue, options); !ok) return ok.error();
-        Result<Extraction> result = Error{};
+Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
+                                        const ExtractOptions& options, const Progress& progress) {
+    return core::guarded("extraction", [&]() -> Result<std::vector<Extraction>> {
+        if (auto ok = check_isovalues(isovalues); !ok) return ok.error();
+        if (auto ok = check_options(packed.data(), options); !ok) return ok.error();
+        Result<std::vector<Extraction>> result = Error{};
         core::with_threads(options.threads, [&] {
-            result = packed.data().single() ? extract_as<float>(packed.data(), isovalue, options, progress)
-                                            : extract_as<double>(packed.data(), isovalue, options, progress);
+            result = packed.data().single() ? extract_as<float>(packed.data(), isovalues, options, progress)
+                                            : extract_as<double>(packed.data(), isovalues, options, progress);
         });
         return result;
     });
+}
+
+Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options, const Progress& progress) {
+    auto all = extract(packed, std::span(&isovalue, 1), options, progress);
+    if (!all) return std::move(all).error();
+    return std::move(all->front());
 }
 
 } // namespace isotet

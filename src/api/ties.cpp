@@ -43,32 +43,34 @@ void for_points_with(const core::Packed& packed, Real stored, const F& f) {
 } // namespace
 
 template <class Real>
-void count_ties(const core::Packed& packed, double isovalue, Real stored, ExtractReport& report) {
+void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points, ExtractReport& report) {
     report.isovalue_stored = core::restore_value(static_cast<double>(stored), packed.storage);
-    const bool has_field = packed.field.tuples() == packed.user_points;
-    std::atomic<std::uint64_t> tied{0}, exact{0};
+    report.tied_points = tied_points;
+    if (packed.field.tuples() != packed.user_points) return;
     const auto holds_exactly = [&](std::uint64_t point, double value) {
         return packed.field.visit([&](auto values) { return core::equals_exactly(values[packed.user_point(point)], value); });
     };
-    for_points_with(packed, stored, [&](std::uint64_t point) {
-        tied.fetch_add(1, std::memory_order_relaxed);
-        if (has_field && holds_exactly(point, isovalue)) exact.fetch_add(1, std::memory_order_relaxed);
-    });
-    report.tied_points = tied;
-    if (has_field) report.false_ties = tied - exact;
-    if (!has_field) return;
-
+    if (tied_points) {
+        std::atomic<std::uint64_t> exact{0};
+        for_points_with(packed, stored, [&](std::uint64_t point) {
+            if (holds_exactly(point, isovalue)) exact.fetch_add(1, std::memory_order_relaxed);
+        });
+        report.false_ties = tied_points - exact;
+        return;
+    }
+    report.false_ties = 0;
     const double nearest = snap(packed.field, isovalue);
-    if (nearest == isovalue || tied != 0) return;
+    const Real nearest_stored = core::store_value<Real>(nearest, packed.storage);
+    if (nearest == isovalue || nearest_stored == stored) return;
     std::atomic<bool> near{false};
-    for_points_with(packed, core::store_value<Real>(nearest, packed.storage), [&](std::uint64_t point) {
+    for_points_with(packed, nearest_stored, [&](std::uint64_t point) {
         if (holds_exactly(point, nearest)) near.store(true, std::memory_order_relaxed);
     });
     report.near_tie = near;
 }
 
-template void count_ties<float>(const core::Packed&, double, float, ExtractReport&);
-template void count_ties<double>(const core::Packed&, double, double, ExtractReport&);
+template void report_ties<float>(const core::Packed&, double, float, std::uint64_t, ExtractReport&);
+template void report_ties<double>(const core::Packed&, double, double, std::uint64_t, ExtractReport&);
 
 } // namespace api
 } // namespace isotet

@@ -70,6 +70,7 @@ template <class Real>
 struct Scratch {
     CutCluster<Real> cut;
     PlainScratch plain;
+    std::uint64_t tied_points = 0;
 };
 
 template <class Real>
@@ -83,7 +84,8 @@ void count_cluster(const Packed& packed, const Request<Real>& request, const Sel
     }
     const std::size_t cluster = selection.clusters[place];
     CutCluster<Real>& cut = scratch.cut;
-    cut.cut(packed, cluster, request);
+    cut.cut(packed, cluster, request.isovalues.front(), request.ties);
+    scratch.tied_points += cut.own_with(request.isovalues.front(), packed.headers[cluster].foreign_points);
     const std::uint32_t seams = count_seams(packed, cluster, place, selection, masks, cut);
     if (cut.has_tied()) count_tied(packed, cluster, place, selection, masks, cut);
     out.counts[place] = {cut.edges.count() - seams, cut.triangles};
@@ -106,6 +108,7 @@ Counted count(const Packed& packed, const Request<Real>& request, const Selectio
     });
     for (std::shared_ptr<Memory>& memory : scratch) {
         out.record_bytes += memory->plain.arena.bytes();
+        out.tied_points += memory->tied_points;
         out.memory.push_back(std::move(memory));
     }
     return out;

@@ -65,18 +65,18 @@ public:
     };
 
     /// Fills everything below for a cluster.
-    void cut(const Packed& packed, std::size_t cluster, const ops::Request<Real>& request) {
+    void cut(const Packed& packed, std::size_t cluster, Real isovalue, Ties ties) {
         edges.clear();
         used_tied.fill(0);
         cut_count = 0;
         triangles = 0;
         points = core::load_values(packed, cluster, values.data());
-        classify(request);
+        const bool merge = ties == Ties::merge;
+        classify(isovalue, merge);
         const core::Range<Real> range = packed.as<Real>().ranges[cluster];
-        if (!(range.lower < request.isovalue)) return; // nothing below: no tet is cut
-        const bool merge = request.ties == Ties::merge;
-        if (!has_tied_ && !has_no_data_) cut_tets<false>(packed, cluster, request.isovalue, range, merge);
-        else cut_tets<true>(packed, cluster, request.isovalue, range, merge);
+        if (!(range.lower < isovalue)) return; // nothing below: no tet is cut
+        if (!has_tied_ && !has_no_data_) cut_tets<false>(packed, cluster, isovalue, range, merge);
+        else cut_tets<true>(packed, cluster, isovalue, range, merge);
     }
 
     bool is_above(std::size_t local) const { return flags_[local] & above_flag; }
@@ -87,6 +87,9 @@ public:
         return ((a ^ b) & above_flag) && !((a | b) & no_data_flag) && !((a | b) & tied_flag);
     }
     bool has_tied() const { return has_tied_; }
+    std::size_t own_with(Real isovalue, std::size_t foreign_points) const {
+        return static_cast<std::size_t>(std::count(values.begin() + foreign_points, values.begin() + points, isovalue));
+    }
 
     std::array<Real, max_cluster_points> values;
     std::size_t points = 0;
@@ -100,14 +103,13 @@ private:
     // Flags of a point, spaced so that four of them shifted by 0 to 3 make three nibbles of a tet.
     static constexpr unsigned above_flag = 0x001, no_data_flag = 0x010, tied_flag = 0x100;
 
-    void classify(const ops::Request<Real>& request) {
+    void classify(Real isovalue, bool merge) {
         unsigned seen = 0;
-        const bool merge = request.ties == Ties::merge;
         for (std::size_t k = 0; k < points; ++k) {
             const Real value = values[k];
-            unsigned flags = value >= request.isovalue ? above_flag : 0u;
+            unsigned flags = value >= isovalue ? above_flag : 0u;
             if (core::is_nan(value)) flags |= no_data_flag;
-            if (merge && value == request.isovalue) flags |= tied_flag;
+            if (merge && value == isovalue) flags |= tied_flag;
             flags_[k] = static_cast<std::uint16_t>(flags);
             seen |= flags;
         }

@@ -38,7 +38,7 @@ public:
         const std::size_t cluster = selection_.clusters[place];
         if constexpr (sizeof(Real) == sizeof(float))
             if (const Record* record = counted_.records[place]) return copy_record(cluster, *record, start, s);
-        s.cut.cut(packed_, cluster, request_);
+        s.cut.cut(packed_, cluster, request_.isovalues.front(), request_.ties);
         if (has_vertices) {
             core::load_positions(packed_, cluster, s.positions.data());
             if (target_.ends || target_.normals) core::local_points(packed_, cluster, s.packed_points.data());
@@ -121,7 +121,7 @@ private:
 
     void emit_on_edge(const Scratch<Real, Index>& s, std::uint64_t vertex, std::size_t a, std::size_t b) const {
         if (s.cut.is_above(a)) std::swap(a, b);
-        emit_vertex(s, vertex, a, b, core::edge_weight(request_.isovalue, s.cut.values[a], s.cut.values[b]));
+        emit_vertex(s, vertex, a, b, core::edge_weight(request_.isovalues.front(), s.cut.values[a], s.cut.values[b]));
     }
 
     void emit_vertex(const Scratch<Real, Index>& s, std::uint64_t vertex, std::size_t below, std::size_t above, Real t) const {

@@ -1,15 +1,20 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "cpu/extract.hpp"
 
+#include <algorithm>
+
 #include "core/memory.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {
 
+namespace {
+
+/// The surface of the one isovalue of the request.
 template <class Real>
-Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
+Result<ops::RawSurfaces> extract_one(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "extraction was cancelled"}; };
-    const Selection selection = select(packed, request.isovalue);
+    const Selection selection = select(packed, request.isovalues.front());
     Masks masks(packed, selection);
     const Counted counted = count(packed, request, selection, masks, progress);
     if (progress.cancelled()) return cancelled();
@@ -33,7 +38,8 @@ Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<R
     }
     if (request.source_cells) target.source_cells = source_cells.data();
 
-    ops::RawSurface surface;
+    ops::RawSurfaces out;
+    ops::RawSurface& surface = out.surfaces.emplace_back();
     const auto emit_with = [&]<class Index>(core::Buffer<Index> triangles) {
         emit(packed, request, selection, masks, counted, starts, target, triangles.data(), progress);
         surface.triangles = std::move(triangles).to_array(3);
@@ -50,12 +56,29 @@ Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<R
     }
     if (request.source_cells) surface.source_cells = std::move(source_cells).to_array();
     surface.selected_clusters = selection.clusters.size();
-    surface.transient_bytes = selection.clusters.bytes() + selection.place.bytes() + masks.bytes() +
+    surface.tied_points = counted.tied_points;
+    out.transient_bytes = selection.clusters.bytes() + selection.place.bytes() + masks.bytes() +
                               counted.counts.bytes() + counted.records.bytes() + counted.record_bytes + starts.bytes();
-    return surface;
+    return out;
 }
 
-template Result<ops::RawSurface> extract<float>(const core::Packed&, const ops::Request<float>&, const Progress&);
-template Result<ops::RawSurface> extract<double>(const core::Packed&, const ops::Request<double>&, const Progress&);
+} // namespace
+
+template <class Real>
+Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
+    ops::RawSurfaces all;
+    for (const Real isovalue : request.isovalues) {
+        ops::Request<Real> single = request;
+        single.isovalues = {isovalue};
+        auto one = extract_one(packed, single, progress);
+        if (!one) return one;
+        all.surfaces.push_back(std::move(one->surfaces.front()));
+        all.transient_bytes = std::max(all.transient_bytes, one->transient_bytes);
+    }
+    return all;
+}
+
+template Result<ops::RawSurfaces> extract<float>(const core::Packed&, const ops::Request<float>&, const Progress&);
+template Result<ops::RawSurfaces> extract<double>(const core::Packed&, const ops::Request<double>&, const Progress&);
 
 } // namespace isotet::cpu

@@ -10,7 +10,7 @@ namespace isotet::cpu {
 /// Cost         O(C + V + F); transient memory: 4 bytes a cluster; about 120 a selected cluster; 150 kB a thread
 /// Errors       out_of_memory before the surface is allocated; cancelled
 template <class Real>
-Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress);
+Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress);
 
 /// From this many vertices on indices have 64 bits. Tests lower it.
 inline std::uint64_t wide_from = std::uint64_t{1} << 32;

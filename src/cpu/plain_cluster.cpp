@@ -133,7 +133,7 @@ void write_vertices(const Packed& packed, const Request<float>& request, const P
     for (std::size_t i = 0; i < s.own.size(); ++i, out += 3) {
         std::size_t below = s.own[i] / points, above = s.own[i] % points;
         if (s.above[below]) std::swap(below, above);
-        const float t = core::edge_weight(request.isovalue, s.values[below], s.values[above]);
+        const float t = core::edge_weight(request.isovalues.front(), s.values[below], s.values[above]);
         const float* const a = positions + 3 * s.packed_points[below];
         const float* const b = positions + 3 * s.packed_points[above];
         for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = core::interpolate(a[axis], b[axis], t);
@@ -169,8 +169,8 @@ const Record* cut_plain(const Packed& packed, const Request<float>& request, con
     const core::ClusterLinks links = packed.cluster_links(cluster);
     prefetch_cluster(packed, selection, place);
     load(packed, h, links, s);
-    if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, request.isovalue, s.above.data())) return nullptr;
-    cut_tets<Simd>(packed, cluster, request.isovalue, s);
+    if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, request.isovalues.front(), s.above.data())) return nullptr;
+    cut_tets<Simd>(packed, cluster, request.isovalues.front(), s);
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) add_edge(s, s.keys[i]);
     std::uint32_t triangles = 0;
     for (std::size_t i = 0; i < s.cut.count; ++i) triangles += core::case_table[s.cut.cases[i]].triangles;

@@ -56,6 +56,7 @@ struct Counted {
     core::Buffer<const Record*> records;  ///< N; null where the cluster is not plain: emit then looks at its tets again
     std::vector<std::shared_ptr<const void>> memory; ///< keeps the records
     std::size_t record_bytes = 0;
+    std::uint64_t tied_points = 0;
 };
 
 /// The numbers of the first vertex and triangle of each selected cluster.

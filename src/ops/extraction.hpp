@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Extraction, the contract that every engine meets: from a packed grid and a stored isovalue to the bytes of a surface.
+// Extraction, the contract that every engine meets: from a packed grid and stored isovalues to the bytes of surfaces, each
+// the same as if it were the only one.
 //
 // Vertices: clusters ascending; within the owner first tied own points (Ties::merge), then own seam edges in stored order,
 // then inner edges by (lower, higher local index). Triangles: clusters ascending, stored tets ascending, then the case table.
@@ -11,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <isotet/extract.hpp>
 #include <isotet/progress.hpp>
@@ -23,14 +25,14 @@ namespace isotet::ops {
 /// What to extract.
 template <class Real>
 struct Request {
-    Real isovalue; ///< stored form
+    std::vector<Real> isovalues; ///< stored form, in any order; one surface each
     Ties ties = Ties::merge;
     bool ends = false;          ///< edge ends and weights
     bool normals = false;       ///< gradient normals (packed.gradients is there)
     bool source_cells = false;  ///< packed cell ids are there
 };
 
-/// What comes out; V vertices, F triangles. Parts that were not asked for are empty.
+/// The surface of one isovalue; V vertices, F triangles. Parts that were not asked for are empty.
 struct RawSurface {
     Array positions;    ///< Real x 3, V
     Array triangles;    ///< uint32 or uint64 x 3, F
@@ -39,7 +41,14 @@ struct RawSurface {
     Array weights;      ///< Real, V
     Array source_cells; ///< int64, F: user's cells
     std::uint64_t selected_clusters = 0;
-    std::uint64_t transient_bytes = 0;
+    std::uint64_t tied_points = 0; ///< points whose stored value equals the isovalue, in tets that count or not
+};
+
+/// What comes out.
+struct RawSurfaces {
+    std::vector<RawSurface> surfaces;  ///< in the order of the isovalues
+    std::uint64_t transient_bytes = 0; ///< beyond the surfaces, at the peak
+    std::uint64_t predicted_bytes = 0; ///< needed at most, surfaces included, as known before the start
 };
 
 } // namespace isotet::ops

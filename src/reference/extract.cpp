@@ -60,12 +60,9 @@ enum Kind { tied_point = 0, seam_edge = 1, inner_edge = 2 };
 /// packed points, and so do own seam edges in stored order.
 using Place = std::tuple<std::uint32_t, int, std::uint64_t, std::uint64_t>;
 
-} // namespace
-
 template <class Real>
-Result<ops::RawSurface> extract(const Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
+Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Real>& request, Real isovalue, const Progress& progress) {
     const auto& reals = packed.as<Real>();
-    const Real isovalue = request.isovalue;
     const auto value = [&](std::uint64_t p) { return reals.values[p]; };
     const auto is_above = [&](std::uint64_t p) { return value(p) >= isovalue; };
     const auto is_tied = [&](std::uint64_t p) { return value(p) == isovalue; };
@@ -154,10 +151,24 @@ Result<ops::RawSurface> extract(const Packed& packed, const ops::Request<Real>& 
     if (request.source_cells) surface.source_cells = Array::own(std::move(source_cells));
     for (std::size_t c = 0; c < packed.clusters(); ++c)
         surface.selected_clusters += reals.ranges[c].lower <= isovalue && isovalue <= reals.ranges[c].upper;
+    surface.tied_points = static_cast<std::uint64_t>(std::count(reals.values.begin(), reals.values.end(), isovalue));
     return surface;
 }
 
-template Result<ops::RawSurface> extract<float>(const Packed&, const ops::Request<float>&, const Progress&);
-template Result<ops::RawSurface> extract<double>(const Packed&, const ops::Request<double>&, const Progress&);
+} // namespace
+
+template <class Real>
+Result<ops::RawSurfaces> extract(const Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
+    ops::RawSurfaces out;
+    for (const Real isovalue : request.isovalues) {
+        auto surface = extract_one(packed, request, isovalue, progress);
+        if (!surface) return std::move(surface).error();
+        out.surfaces.push_back(*std::move(surface));
+    }
+    return out;
+}
+
+template Result<ops::RawSurfaces> extract<float>(const Packed&, const ops::Request<float>&, const Progress&);
+template Result<ops::RawSurfaces> extract<double>(const Packed&, const ops::Request<double>&, const Progress&);
 
 } // namespace isotet::reference

@@ -7,8 +7,8 @@
 
 namespace isotet::reference {
 
-/// Cost: O((T + V) log(T + V)) and some 200 bytes a tet.
+/// Cost: O((T + V) log(T + V)) an isovalue, and some 200 bytes a tet.
 template <class Real>
-Result<ops::RawSurface> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress);
+Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress);
 
 } // namespace isotet::reference

@@ -11,13 +11,15 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
+#include "core/block.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
 namespace {
 
-/// Leaves this process so many bytes of address space beyond what it has.
+/// Leaves this process so many bytes of address space beyond what it has and uses.
 void leave_memory(std::uint64_t bytes) {
+    core::drop_kept_blocks();
     std::ifstream status("/proc/self/status");
     std::uint64_t kib = 0;
     for (std::string word; status >> word;)

@@ -37,6 +37,7 @@ void expect_engines_agree(std::uint32_t seed, const NastyOptions& nasty, Precisi
             ASSERT_TRUE(bytes_of(cpu.surface) == bytes_of(reference.surface))
                 << "seed " << seed << ", isovalue " << isovalue << ", ties " << int(ties);
             ASSERT_EQ(cpu.report.selected_clusters, reference.report.selected_clusters);
+            ASSERT_EQ(cpu.report.tied_points, reference.report.tied_points);
         }
 }
 
