@@ -80,9 +80,9 @@ void select(benchmark::State& state) {
 void select_and_count(benchmark::State& state) {
     const Subject& of = subject(state);
     const core::Packed& packed = of.packed.data();
-    const ops::Request<float> request{core::store_isovalue<float>(isovalue, packed.storage)};
+    const ops::Request<float> request{{core::store_isovalue<float>(isovalue, packed.storage)}};
     for (auto _ : state) {
-        const cpu::Selection selection = cpu::select(packed, request.isovalue);
+        const cpu::Selection selection = cpu::select(packed, request.isovalues.front());
         cpu::Masks masks(packed, selection);
         benchmark::DoNotOptimize(cpu::count(packed, request, selection, masks, {}));
     }
