@@ -9,6 +9,7 @@
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
 #include "core/storage.hpp"
+#include "core/tet_gradient.hpp"
 
 namespace isotet::core {
 
@@ -76,28 +77,17 @@ private:
             const auto& v = tet.corners;
             if (!wanted(v[0]) && !wanted(v[1]) && !wanted(v[2]) && !wanted(v[3])) continue;
             if (is_nan(values[v[0]]) || is_nan(values[v[1]]) || is_nan(values[v[2]]) || is_nan(values[v[3]])) continue;
-            const Point gradient = six_volumes_times_gradient(positions, values, v);
+            std::array<Point, 4> corners;
+            std::array<double, 4> corner_values;
+            for (std::size_t k = 0; k < 4; ++k) {
+                for (std::size_t axis = 0; axis < 3; ++axis) corners[k][axis] = positions[3 * v[k] + axis];
+                corner_values[k] = values[v[k]];
+            }
+            const Point gradient = six_volumes_times_gradient(corners, corner_values);
             for (const std::uint8_t corner : v)
                 if (wanted(corner))
                     for (std::size_t axis = 0; axis < 3; ++axis) sums[corner - first][axis] += gradient[axis];
         }
-    }
-
-    static Point six_volumes_times_gradient(const Real* positions, const Real* values, const std::array<std::uint8_t, 4>& v) {
-        Point edge[3];
-        double rise[3];
-        for (std::size_t k = 0; k < 3; ++k) {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                edge[k][axis] = double{positions[3 * v[k + 1] + axis]} - double{positions[3 * v[0] + axis]};
-            rise[k] = double{values[v[k + 1]]} - double{values[v[0]]};
-        }
-        const auto cross = [](const Point& a, const Point& b) {
-            return Point{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-        };
-        const Point n0 = cross(edge[1], edge[2]), n1 = cross(edge[2], edge[0]), n2 = cross(edge[0], edge[1]);
-        Point gradient;
-        for (std::size_t axis = 0; axis < 3; ++axis) gradient[axis] = rise[0] * n0[axis] + rise[1] * n1[axis] + rise[2] * n2[axis];
-        return gradient;
     }
 
     Packed& packed_;
