@@ -30,8 +30,7 @@ void with_indices(const Array& triangles, Work&& work) {
 } // namespace
 
 template <class Real>
-SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw) {
-    const core::Storage storage = core::choose_storage(field.values, packed);
+SurfaceField interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw) {
     const std::size_t components = field.values.components(), vertices = raw.ends.tuples();
     const auto ends = raw.ends.as<std::int64_t>();
     const auto weights = raw.weights.as<Real>();
@@ -46,6 +45,11 @@ SurfaceField interpolate_field(const Field& field, const core::Packed& packed, c
         });
     });
     return {field.name, std::move(out).to_array(components), storage.offset, storage.scale};
+}
+
+template <class Real>
+SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw) {
+    return interpolate_field<Real>(field, core::choose_storage(field.values, packed), raw);
 }
 
 SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw) {
@@ -110,6 +114,8 @@ Array fill_normals(const ops::RawSurface& raw) {
     return std::move(normals).to_array(3);
 }
 
+template SurfaceField interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&);
+template SurfaceField interpolate_field<double>(const Field&, const core::Storage&, const ops::RawSurface&);
 template SurfaceField interpolate_field<float>(const Field&, const core::Packed&, const ops::RawSurface&);
 template SurfaceField interpolate_field<double>(const Field&, const core::Packed&, const ops::RawSurface&);
 template Array face_normals<float>(const ops::RawSurface&);

@@ -10,7 +10,12 @@
 namespace isotet::api {
 
 /// A point field of the user's grid at the vertices: stored by the rules for values, interpolated between the edge ends.
-/// Cost   O(V); for a field that the packed grid has not seen, two passes over it to choose offset and scale
+/// Cost   O(V)
+template <class Real>
+SurfaceField interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw);
+
+/// The same, stored as the values at packed points ask for.
+/// Cost   for a field that the packed grid has not seen, two more passes over it to choose offset and scale
 template <class Real>
 SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw);
 
