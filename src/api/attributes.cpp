@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/arithmetic.hpp"
-#include "core/field_storage.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet::api {
@@ -45,11 +44,6 @@ SurfaceField interpolate_field(const Field& field, const core::Storage& storage,
         });
     });
     return {field.name, std::move(out).to_array(components), storage.offset, storage.scale};
-}
-
-template <class Real>
-SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw) {
-    return interpolate_field<Real>(field, core::choose_storage(field.values, packed), raw);
 }
 
 SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw) {
@@ -116,8 +110,6 @@ Array fill_normals(const ops::RawSurface& raw) {
 
 template SurfaceField interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&);
 template SurfaceField interpolate_field<double>(const Field&, const core::Storage&, const ops::RawSurface&);
-template SurfaceField interpolate_field<float>(const Field&, const core::Packed&, const ops::RawSurface&);
-template SurfaceField interpolate_field<double>(const Field&, const core::Packed&, const ops::RawSurface&);
 template Array face_normals<float>(const ops::RawSurface&);
 template Array face_normals<double>(const ops::RawSurface&);
 template Array fill_normals<float>(const ops::RawSurface&);

@@ -14,11 +14,6 @@ namespace isotet::api {
 template <class Real>
 SurfaceField interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw);
 
-/// The same, stored as the values at packed points ask for.
-/// Cost   for a field that the packed grid has not seen, two more passes over it to choose offset and scale
-template <class Real>
-SurfaceField interpolate_field(const Field& field, const core::Packed& packed, const ops::RawSurface& raw);
-
 /// A cell field of the user's grid at the triangles, in its own type.
 SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw);
 

@@ -1,12 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/extract.hpp>
 
-#include <cmath>
-
 #include <fmt/format.h>
 
-#include "api/attributes.hpp"
+#include "api/finish.hpp"
 #include "api/ties.hpp"
+#include "core/field_storage.hpp"
 #include "core/guard.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
@@ -19,15 +18,6 @@ namespace isotet {
 namespace {
 
 Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
-Result<void> check_isovalues(std::span<const double> isovalues) {
-    for (std::size_t i = 0; i < isovalues.size(); ++i) {
-        if (std::isfinite(isovalues[i])) continue;
-        if (isovalues.size() == 1) return wrong(fmt::format("the isovalue is {}, but must be finite", isovalues[i]));
-        return wrong(fmt::format("isovalues[{}] is {}, but must be finite", i, isovalues[i]));
-    }
-    return {};
-}
 
 Result<void> check_options(const core::Packed& data, const ExtractOptions& options) {
     if (options.normals == Normals::gradient && data.gradients.empty() && data.points() != 0)
@@ -45,36 +35,6 @@ Result<void> check_options(const core::Packed& data, const ExtractOptions& optio
     return {};
 }
 
-std::uint64_t bytes_of(const Surface& surface) {
-    std::uint64_t bytes = 0;
-    for (const Array* array : {&surface.positions, &surface.triangles, &surface.normals, &surface.edge_ends,
-                               &surface.edge_weights, &surface.source_cells})
-        bytes += array->bytes();
-    for (const auto* fields : {&surface.point_fields, &surface.cell_fields})
-        for (const SurfaceField& field : *fields) bytes += field.values.bytes();
-    return bytes;
-}
-
-template <class Real>
-Surface finish(const core::Packed& packed, const ExtractOptions& options, const ops::RawSurface& raw) {
-    Surface surface;
-    surface.origin = packed.origin;
-    surface.positions = raw.positions;
-    surface.triangles = raw.triangles;
-    surface.normals_kind = options.normals;
-    if (options.normals == Normals::gradient) surface.normals = api::fill_normals<Real>(raw);
-    else if (options.normals == Normals::face) surface.normals = api::face_normals<Real>(raw);
-    for (const Field& field : options.point_fields)
-        surface.point_fields.push_back(api::interpolate_field<Real>(field, packed, raw));
-    for (const Field& field : options.cell_fields) surface.cell_fields.push_back(api::copy_cell_field(field, raw));
-    if (options.edge_ends) {
-        surface.edge_ends = raw.ends;
-        surface.edge_weights = raw.weights;
-    }
-    if (options.source_cells) surface.source_cells = raw.source_cells;
-    return surface;
-}
-
 template <class Real>
 Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span<const double> isovalues,
                                            const ExtractOptions& options, const Progress& progress) {
@@ -90,14 +50,16 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     if (!raw) return std::move(raw).error();
     progress("extract", 0.8);
 
+    std::vector<core::Storage> storages;
+    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
     std::vector<Extraction> out(isovalues.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
         ops::RawSurface& surface = raw->surfaces[i];
         ExtractReport& report = out[i].report;
-        out[i].surface = finish<Real>(packed, options, surface);
+        out[i].surface = api::finish<Real>(packed.origin, options, storages, surface);
         api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report);
         report.selected_clusters = surface.selected_clusters;
-        report.surface_bytes = bytes_of(out[i].surface);
+        report.surface_bytes = api::bytes_of(out[i].surface);
         report.transient_bytes = raw->transient_bytes;
         report.predicted_bytes = raw->predicted_bytes;
         surface = {}; // parts that only attributes needed go as soon as they can
@@ -111,7 +73,7 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
 Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
                                         const ExtractOptions& options, const Progress& progress) {
     return core::guarded("extraction", [&]() -> Result<std::vector<Extraction>> {
-        if (auto ok = check_isovalues(isovalues); !ok) return ok.error();
+        if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         if (auto ok = check_options(packed.data(), options); !ok) return ok.error();
         Result<std::vector<Extraction>> result = Error{};
         core::with_threads(options.threads, [&] {

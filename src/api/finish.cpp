@@ -1,0 +1,58 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "api/finish.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "api/attributes.hpp"
+
+namespace isotet::api {
+
+Result<void> check_isovalues(std::span<const double> isovalues) {
+    const auto wrong = [](std::string message) { return Error{ErrorCode::invalid_argument, std::move(message)}; };
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        if (std::isfinite(isovalues[i])) continue;
+        if (isovalues.size() == 1) return wrong(fmt::format("the isovalue is {}, but must be finite", isovalues[i]));
+        return wrong(fmt::format("isovalues[{}] is {}, but must be finite", i, isovalues[i]));
+    }
+    return {};
+}
+
+template <class Real>
+Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options, std::span<const core::Storage> storages,
+               const ops::RawSurface& raw) {
+    Surface surface;
+    surface.origin = origin;
+    surface.positions = raw.positions;
+    surface.triangles = raw.triangles;
+    surface.normals_kind = options.normals;
+    if (options.normals == Normals::gradient) surface.normals = fill_normals<Real>(raw);
+    else if (options.normals == Normals::face) surface.normals = face_normals<Real>(raw);
+    for (std::size_t i = 0; i < options.point_fields.size(); ++i)
+        surface.point_fields.push_back(interpolate_field<Real>(options.point_fields[i], storages[i], raw));
+    for (const Field& field : options.cell_fields) surface.cell_fields.push_back(copy_cell_field(field, raw));
+    if (options.edge_ends) {
+        surface.edge_ends = raw.ends;
+        surface.edge_weights = raw.weights;
+    }
+    if (options.source_cells) surface.source_cells = raw.source_cells;
+    return surface;
+}
+
+template Surface finish<float>(const std::array<double, 3>&, const ExtractOptions&, std::span<const core::Storage>,
+                               const ops::RawSurface&);
+template Surface finish<double>(const std::array<double, 3>&, const ExtractOptions&, std::span<const core::Storage>,
+                                const ops::RawSurface&);
+
+std::uint64_t bytes_of(const Surface& surface) {
+    std::uint64_t bytes = 0;
+    for (const Array* array : {&surface.positions, &surface.triangles, &surface.normals, &surface.edge_ends,
+                               &surface.edge_weights, &surface.source_cells})
+        bytes += array->bytes();
+    for (const auto* fields : {&surface.point_fields, &surface.cell_fields})
+        for (const SurfaceField& field : *fields) bytes += field.values.bytes();
+    return bytes;
+}
+
+} // namespace isotet::api

@@ -1,0 +1,27 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// From what an engine gives to the surface that the caller asked for.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <isotet/extract.hpp>
+
+#include "core/packed.hpp"
+#include "ops/extraction.hpp"
+
+namespace isotet::api {
+
+/// Errors   invalid_argument for an isovalue that is not finite
+Result<void> check_isovalues(std::span<const double> isovalues);
+
+/// Geometry, normals and fields. `storages` are those of the point fields of `options`, in their order.
+template <class Real>
+Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options, std::span<const core::Storage> storages,
+               const ops::RawSurface& raw);
+
+/// All arrays of a surface.
+std::uint64_t bytes_of(const Surface& surface);
+
+} // namespace isotet::api
