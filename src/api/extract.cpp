@@ -1,9 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/extract.hpp>
 
-#include <fmt/format.h>
-
 #include "api/finish.hpp"
+#include "api/fits.hpp"
 #include "api/ties.hpp"
 #include "core/field_storage.hpp"
 #include "core/guard.hpp"
@@ -16,24 +15,6 @@
 namespace isotet {
 
 namespace {
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
-Result<void> check_options(const core::Packed& data, const ExtractOptions& options) {
-    if (options.normals == Normals::gradient && data.gradients.empty() && data.points() != 0)
-        return wrong("gradient normals need a grid that was packed with gradients, but this one was not");
-    if ((options.source_cells || !options.cell_fields.empty()) && !data.has_cell_ids() && data.clusters() != 0)
-        return wrong("source cells and cell fields need a grid that was packed with source cells, but this one was not");
-    for (const Field& field : options.point_fields)
-        if (field.values.tuples() != data.user_points)
-            return wrong(fmt::format("point field '{}' has {} tuples, but the packed grid has {} points", field.name,
-                                     field.values.tuples(), data.user_points));
-    for (const Field& field : options.cell_fields)
-        if (field.values.tuples() != data.user_cells)
-            return wrong(fmt::format("cell field '{}' has {} tuples, but the packed grid has {} cells", field.name,
-                                     field.values.tuples(), data.user_cells));
-    return {};
-}
 
 template <class Real>
 Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span<const double> isovalues,
@@ -74,7 +55,7 @@ Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<cons
                                         const ExtractOptions& options, const Progress& progress) {
     return core::guarded("extraction", [&]() -> Result<std::vector<Extraction>> {
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
-        if (auto ok = check_options(packed.data(), options); !ok) return ok.error();
+        if (auto ok = api::check_fit(options, packed.data()); !ok) return ok.error();
         Result<std::vector<Extraction>> result = Error{};
         core::with_threads(options.threads, [&] {
             result = packed.data().single() ? extract_as<float>(packed.data(), isovalues, options, progress)

@@ -1,0 +1,25 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "api/fits.hpp"
+
+#include <fmt/format.h>
+
+namespace isotet::api {
+
+Result<void> check_fit(const ExtractOptions& options, const core::Packed& packed) {
+    const auto wrong = [](std::string message) { return Error{ErrorCode::invalid_argument, std::move(message)}; };
+    if (options.normals == Normals::gradient && packed.gradients.empty() && packed.points() != 0)
+        return wrong("gradient normals need a grid that was packed with gradients, but this one was not");
+    if ((options.source_cells || !options.cell_fields.empty()) && !packed.has_cell_ids() && packed.clusters() != 0)
+        return wrong("source cells and cell fields need a grid that was packed with source cells, but this one was not");
+    for (const Field& field : options.point_fields)
+        if (field.values.tuples() != packed.user_points)
+            return wrong(fmt::format("point field '{}' has {} tuples, but the packed grid has {} points", field.name,
+                                     field.values.tuples(), packed.user_points));
+    for (const Field& field : options.cell_fields)
+        if (field.values.tuples() != packed.user_cells)
+            return wrong(fmt::format("cell field '{}' has {} tuples, but the packed grid has {} cells", field.name,
+                                     field.values.tuples(), packed.user_cells));
+    return {};
+}
+
+} // namespace isotet::api
