@@ -45,8 +45,8 @@ ${declarations}} // namespace isotet::vulkan::${namespace}
 namespace isotet::vulkan::${namespace} {
 ${definitions}} // namespace isotet::vulkan::${namespace}
 ")
-    add_custom_target(${target}_shaders DEPENDS ${numbers})
-    add_dependencies(${target} ${target}_shaders)
+    add_custom_target(${target}_${file} DEPENDS ${numbers})
+    add_dependencies(${target} ${target}_${file})
     target_sources(${target} PRIVATE ${folder}/${file}.cpp)
     target_include_directories(${target} PRIVATE ${folder})
 endfunction()

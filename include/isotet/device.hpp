@@ -49,10 +49,11 @@ struct DeviceList {
     std::string unavailable;         ///< why there is no Vulkan at all, a sentence; empty: there is
 };
 
-/// Looks for Vulkan devices. Opens the Vulkan loader (libvulkan.so.1) at run time: without it `unavailable` says so.
+/// Looks for Vulkan devices. Opens the Vulkan loader (libvulkan.so.1) at run time: without it, or without a driver,
+/// `unavailable` says so.
 ///
 /// Cost      about 50 ms
-/// Errors    machine when the loader is there but fails; no device is not an error
+/// Errors    out_of_memory; no Vulkan and no device are none
 /// Threads   safe from many threads
 Result<DeviceList> list_devices();
 

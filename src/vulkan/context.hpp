@@ -34,9 +34,10 @@ struct Settings {
     std::optional<std::filesystem::path> cache_folder;     ///< of compiled pipelines; empty path: none
     std::function<void(Capabilities&)> alter_capabilities; ///< before they are judged
     std::function<void(DeviceFunctions&)> alter_functions; ///< so that calls can fail
-    std::function<void(Instance&)> seen_instance;          ///< whose complaints() a test reads
 };
 
+/// Opening it runs the self-test: notices() says when it failed.
+///
 /// Threads   one operation at a time
 class Context {
 public:
@@ -59,6 +60,7 @@ public:
 
 private:
     Context() = default;
+    static Result<std::shared_ptr<Context>> open_unguarded(const DeviceOptions& options, const Settings& settings);
 
     DeviceInfo info_;
     Capabilities capabilities_;

@@ -18,6 +18,7 @@ public:
     /// Gives back a range that take() gave.
     void give_back(std::uint64_t begin, std::uint64_t bytes);
 
+    std::uint64_t size() const noexcept { return size_; }
     bool all_free() const noexcept { return free_.size() == 1 && free_.begin()->second == size_; }
 
 private:

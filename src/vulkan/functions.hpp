@@ -26,6 +26,7 @@ namespace isotet::vulkan {
     X(vkGetDeviceProcAddr)                    \
     X(vkGetPhysicalDeviceFeatures2)           \
     X(vkGetPhysicalDeviceMemoryProperties2)   \
+    X(vkGetPhysicalDeviceProperties)          \
     X(vkGetPhysicalDeviceProperties2)         \
     X(vkGetPhysicalDeviceQueueFamilyProperties2)
 
@@ -72,6 +73,7 @@ namespace isotet::vulkan {
     X(vkGetBufferDeviceAddress)           \
     X(vkGetBufferMemoryRequirements)      \
     X(vkGetDeviceQueue)                   \
+    X(vkGetFenceStatus)                   \
     X(vkGetPipelineCacheData)             \
     X(vkGetQueryPoolResults)              \
     X(vkMapMemory)                        \

@@ -40,10 +40,11 @@ public:
 
 private:
     struct History {
-        VkPipelineStageFlags write_stage = 0;   ///< of the last write
+        VkPipelineStageFlags write_stage = 0; ///< of the last write; 0: none yet
         VkAccessFlags write_access = 0;
-        VkPipelineStageFlags seen_by = 0;       ///< stages that a barrier has made the last write visible to
-        VkPipelineStageFlags read_stages = 0;   ///< that read since the last write, with no barrier behind them yet
+        VkAccessFlags visible = 0;            ///< uses that barriers have made the last write visible to
+        VkPipelineStageFlags read_stages = 0; ///< that read since the last write
+        VkPipelineStageFlags after_reads = 0; ///< that barriers make wait for all these reads
     };
     std::map<std::uint64_t, History> buffers_;
 };

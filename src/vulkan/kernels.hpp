@@ -11,6 +11,7 @@
 #include <isotet/result.hpp>
 
 #include "vulkan/capabilities.hpp"
+#include "vulkan/float_controls.hpp"
 #include "vulkan/logical_device.hpp"
 #include "vulkan/pipeline_cache.hpp"
 #include "vulkan/shader_code.hpp"
@@ -21,6 +22,7 @@ namespace isotet::vulkan {
 struct Kernel {
     std::string name;
     VkPipeline pipeline = VK_NULL_HANDLE;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
 };
 
 /// All kernels of a device. They take at most 128 bytes of push constants, and reach buffers by address; there are no
@@ -40,8 +42,6 @@ public:
     /// Errors   machine when the driver cannot build it; out_of_memory
     Result<const Kernel*> get(const ShaderCode& code, std::span<const std::uint32_t> constants = {});
 
-    VkPipelineLayout layout() const noexcept { return layout_; }
-
 private:
     struct Made {
         const std::uint32_t* code;
@@ -49,9 +49,12 @@ private:
         Kernel kernel;
     };
 
+    Result<void> make_layout();
+    Result<VkPipeline> build(const ShaderCode& code, std::span<const std::uint32_t> constants);
+
     LogicalDevice& device_;
-    const Capabilities& capabilities_;
     PipelineCache& cache_;
+    FloatControls controls_;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     std::list<Made> made_;
 };

@@ -2,10 +2,10 @@
 // Buffers on the device, cut from large blocks of its memory.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <list>
-#include <memory>
 #include <mutex>
 #include <span>
 #include <string_view>
@@ -27,7 +27,21 @@ enum class Where : std::uint8_t {
 };
 
 class Memory;
-struct Block;
+
+/// One allocation of the driver's, from which buffers are cut.
+struct Block {
+    explicit Block(std::uint64_t bytes) : free(bytes) {}
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::byte* mapped = nullptr;
+    FreeRanges free;
+};
+
+/// The blocks of one memory type for one purpose.
+struct Pool {
+    std::uint32_t type = 0;
+    bool mapped = false, cached = false;
+    std::list<Block> blocks;
+};
 
 /// A buffer with an address on the device. Gives its memory back when it goes; must not outlive its Context, nor be given
 /// back while the device works on it (Recorder::run and Staging wait, so nothing can be under way between calls).
@@ -42,7 +56,7 @@ public:
     ~Buffer();
 
     VkBuffer handle() const noexcept { return handle_; }
-    VkDeviceAddress address() const noexcept { return address_; } ///< a multiple of 256
+    VkDeviceAddress address() const noexcept { return address_; } ///< a multiple of 256 where memory begins at one, as it does on every known driver; at least of 16
     std::uint64_t size() const noexcept { return size_; }         ///< bytes, as asked for
     explicit operator bool() const noexcept { return handle_ != VK_NULL_HANDLE; }
 
@@ -57,6 +71,7 @@ private:
     void swap(Buffer& other) noexcept;
 
     Memory* memory_ = nullptr;
+    Pool* pool_ = nullptr;
     Block* block_ = nullptr;
     std::uint64_t begin_ = 0, taken_ = 0; ///< in the block
     VkBuffer handle_ = VK_NULL_HANDLE;
@@ -86,31 +101,38 @@ public:
     /// Errors    out_of_memory with the amount needed, the amount free, and the limit; machine
     Result<Buffer> take(std::uint64_t bytes, Where where, std::string_view name);
 
+    /// What a buffer of `bytes` counts against the limit: a few bytes more (some drivers add more still).
+    static std::uint64_t cost(std::uint64_t bytes) noexcept;
+
     std::uint64_t used() const; ///< bytes of buffers in Where::device
     std::uint64_t peak() const; ///< the most that used() has been
     std::uint64_t free() const; ///< bytes that take() can still give in Where::device, apart from fragmentation
 
 private:
     friend class Buffer;
-    struct Pool {
-        std::uint32_t type = 0;
-        bool mapped = false, cached = false;
-        std::list<Block> blocks;
-    };
 
-    Result<Block*> new_block(Pool& pool, std::uint64_t bytes);
-    Result<void> place(Buffer& buffer, Pool& pool, const VkMemoryRequirements& needs);
-    Result<void> require(std::uint64_t bytes, std::string_view name) const;
+    /// Bytes behind the end of each buffer that may be read.
+    static constexpr std::uint64_t slack = 4;
+
+    Pool& pool_of(Where where) noexcept { return pools_[static_cast<std::size_t>(where)]; }
     std::uint64_t free_locked() const;
+    Result<void> make_buffer(Buffer& buffer, std::uint64_t bytes, std::string_view name);
+    Result<void> place(Buffer& buffer, Pool& pool);
+    Result<Block*> new_block(Pool& pool, std::uint64_t bytes);
+    void give_back_range(const Buffer& buffer) noexcept;
     void give_back(Buffer& buffer) noexcept;
 
     LogicalDevice& device_;
-    const Capabilities& capabilities_;
-    Options options_;
-    mutable std::mutex mutex_;
-    Pool pools_[3];
+    std::uint64_t limit_;
+    std::uint64_t largest_; ///< buffer that the driver allows
+    std::uint32_t heap_ = 0;
+    std::uint64_t heap_bytes_ = 0;
+    bool budget_ = false;
     std::uint64_t block_bytes_ = 0;
+    mutable std::mutex mutex_;
+    std::array<Pool, 3> pools_;
     std::uint64_t used_ = 0, peak_ = 0;
+    std::uint64_t reserved_ = 0; ///< bytes of blocks in Where::device
 };
 
 } // namespace isotet::vulkan

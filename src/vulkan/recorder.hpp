@@ -13,9 +13,12 @@
 
 #include <isotet/result.hpp>
 
+#include "vulkan/groups.hpp"
 #include "vulkan/hazards.hpp"
 #include "vulkan/kernels.hpp"
 #include "vulkan/memory.hpp"
+#include "vulkan/submission.hpp"
+#include "vulkan/timestamps.hpp"
 
 namespace isotet::vulkan {
 
@@ -69,18 +72,18 @@ public:
     /// Runs a kernel on `groups` workgroups, folded into three axes: the kernel finds its number by group_index() of
     /// kernels/shared/groups.glsl and must compare it with the count, which is rounded up. No groups: no pass.
     template <class Push>
-    void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups, std::vector<Use> uses) {
+    void dispatch(const Kernel& kernel, const Push& push, std::uint64_t groups, const std::vector<Use>& uses) {
         static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= Kernels::push_bytes);
-        add_dispatch(kernel, std::as_bytes(std::span(&push, 1)), groups, std::move(uses));
+        add_dispatch(kernel, std::as_bytes(std::span(&push, 1)), groups, uses);
     }
 
     /// The same, with three counts that stand in `arguments` at `offset` (a multiple of 4) when the pass begins; each at most
     /// groups_an_axis(), see fold_groups() in kernels/shared/groups.glsl. `uses` need not name `arguments`.
     template <class Push>
     void dispatch_indirect(const Kernel& kernel, const Push& push, const Buffer& arguments, std::uint64_t offset,
-                           std::vector<Use> uses) {
+                           const std::vector<Use>& uses) {
         static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= Kernels::push_bytes);
-        add_dispatch_indirect(kernel, std::as_bytes(std::span(&push, 1)), arguments, offset, std::move(uses));
+        add_dispatch_indirect(kernel, std::as_bytes(std::span(&push, 1)), arguments, offset, uses);
     }
 
     /// Gives the passes that follow this name in timings and debuggers, until the next call; "": their own (the kernel's, or
@@ -95,19 +98,53 @@ public:
     /// Runs all passes and waits for the end; nothing to run is fine.
     ///
     /// `limit`   zero: the Context's
-    /// Errors    invalid_argument when a pass goes beyond its buffer, or has too many groups; machine when the device is lost
+    /// Errors    internal when a pass goes beyond its buffer, or has too many groups; machine when the device is lost
     ///           or does not answer within the limit, named with the label of the passes; out_of_memory
     Result<Timings> run(std::chrono::milliseconds limit = {});
 
 private:
-    struct Pass;
-    void add_dispatch(const Kernel&, std::span<const std::byte> push, std::uint64_t groups, std::vector<Use> uses);
-    void add_dispatch_indirect(const Kernel&, std::span<const std::byte> push, const Buffer& arguments, std::uint64_t offset,
-                               std::vector<Use> uses);
+    struct Fill {
+        VkBuffer buffer;
+        std::uint64_t offset, bytes;
+        std::uint32_t word;
+    };
+    struct Copy {
+        VkBuffer from, to;
+        VkBufferCopy region;
+    };
+    struct Write {
+        VkBuffer buffer;
+        std::uint64_t offset;
+        std::vector<std::byte> bytes;
+    };
+    struct Dispatch {
+        const Kernel* kernel;
+        std::vector<std::byte> push;
+        Groups groups;
+        VkBuffer arguments; ///< of an indirect one; null: `groups` count
+        std::uint64_t offset;
+    };
+    struct Pass {
+        std::string name;
+        std::vector<BufferUse> uses;
+        std::variant<Fill, Copy, Write, Dispatch> work;
+    };
+
+    static std::vector<BufferUse> uses_of(std::span<const Use> uses);
+    void add(Pass pass);
+    void add_dispatch(const Kernel& kernel, std::span<const std::byte> push, std::uint64_t groups, std::span<const Use> uses);
+    void add_dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push, const Buffer& arguments,
+                               std::uint64_t offset, std::span<const Use> uses);
+    void complain(std::string what);
+    void record(VkCommandBuffer commands, const Pass& pass) const;
+    void record_all(VkCommandBuffer commands);
 
     Context& context_;
     std::vector<Pass> passes_;
     std::string label_;
+    std::string wrong_; ///< with the first pass that cannot be run
+    Timestamps timestamps_;
+    Submission submission_;
 };
 
 } // namespace isotet::vulkan

@@ -10,6 +10,7 @@
 #include <isotet/result.hpp>
 
 #include "vulkan/memory.hpp"
+#include "vulkan/submission.hpp"
 
 namespace isotet::vulkan {
 
@@ -21,14 +22,14 @@ class Context;
 /// Threads   one call at a time
 class Staging {
 public:
-    Staging(Context& context, std::uint64_t chunk_bytes) : context_(context), chunk_bytes_(chunk_bytes) {}
+    Staging(Context& context, std::uint64_t chunk_bytes);
     ~Staging();
 
-    /// Returns when the bytes are on the device. Offset and size multiples of 4.
-    /// Errors   invalid_argument when they do not fit; out_of_memory; machine
+    /// Returns when the bytes are on the device.
+    /// Errors   internal when they do not fit; out_of_memory; machine
     Result<void> upload(const Buffer& to, std::uint64_t offset, std::span<const std::byte> bytes);
 
-    /// Returns when the bytes are here. Offset and size multiples of 4.
+    /// Returns when the bytes are here. Everything that ran before is seen.
     Result<void> download(const Buffer& from, std::uint64_t offset, std::span<std::byte> bytes);
 
     /// Bytes that went up and down since the beginning, copied directly or not: the traffic that extraction reports.
@@ -36,8 +37,19 @@ public:
     std::uint64_t downloaded() const noexcept { return downloaded_; }
 
 private:
+    /// A staging buffer and the copy that is under way with it.
+    struct Lane {
+        Buffer buffer;
+        Submission work; // goes first
+    };
+    /// Waits for what is under way, and has room for up to `bytes`.
+    Result<void> prepare(Lane& lane, Where where, std::uint64_t bytes);
+    Result<void> start_copy(Lane& lane, const Buffer& from, const Buffer& to, const VkBufferCopy& region);
+    Result<void> finish(Lane& lane);
+
     Context& context_;
     std::uint64_t chunk_bytes_;
+    std::array<Lane, 2> up_, down_;
     std::uint64_t uploaded_ = 0, downloaded_ = 0;
 };
 

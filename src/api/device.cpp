@@ -1,0 +1,32 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/device.hpp>
+
+#include <utility>
+
+#include "core/guard.hpp"
+#include "vulkan/context.hpp"
+#include "vulkan/found_devices.hpp"
+
+namespace isotet {
+
+Result<DeviceList> list_devices() {
+    return core::guarded("listing the devices", []() -> Result<DeviceList> {
+        Result<vulkan::FoundDevices> found = vulkan::find_devices(vulkan::Validation::off, {});
+        if (found) return DeviceList{std::move(found->infos), ""};
+        if (found.error().code == ErrorCode::machine) return DeviceList{{}, std::move(found.error().message)};
+        return found.error();
+    });
+}
+
+Result<Device> Device::open(const DeviceOptions& options) {
+    Result<std::shared_ptr<vulkan::Context>> context = vulkan::Context::open(options);
+    if (!context) return context.error();
+    return Device(*std::move(context));
+}
+
+const DeviceInfo& Device::info() const noexcept { return context_->info(); }
+const std::vector<std::string>& Device::notices() const noexcept { return context_->notices(); }
+std::uint64_t Device::memory_used() const { return context_->memory().used(); }
+std::uint64_t Device::memory_free() const { return context_->memory().free(); }
+
+} // namespace isotet

@@ -1,0 +1,59 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/context.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/guard.hpp"
+#include "vulkan/choice.hpp"
+#include "vulkan/found_devices.hpp"
+#include "vulkan/self_test.hpp"
+
+namespace isotet::vulkan {
+
+Result<std::shared_ptr<Context>> Context::open(const DeviceOptions& options, const Settings& settings) {
+    return core::guarded("opening the device", [&] { return open_unguarded(options, settings); });
+}
+
+Result<std::shared_ptr<Context>> Context::open_unguarded(const DeviceOptions& options, const Settings& settings) {
+    Result<FoundDevices> found = find_devices(settings.validation, settings.alter_capabilities);
+    if (!found) return found.error();
+    const Result<std::size_t> chosen = choose(found->infos, options.choice);
+    if (!chosen) return chosen.error();
+
+    std::shared_ptr<Context> context(new Context);
+    context->settings_ = settings;
+    context->info_ = found->infos[*chosen];
+    context->capabilities_ = found->capabilities[*chosen];
+    context->instance_ = std::move(found->instance);
+    const Capabilities& capabilities = context->capabilities_;
+    const auto& limits = capabilities.properties.limits.maxComputeWorkGroupCount;
+    context->groups_an_axis_ = *std::min_element(std::begin(limits), std::end(limits));
+    if (settings.groups_an_axis) context->groups_an_axis_ = std::min(context->groups_an_axis_, settings.groups_an_axis);
+
+    auto device = LogicalDevice::open(*context->instance_, found->handles[*chosen], capabilities, settings.alter_functions);
+    if (!device) return device.error();
+    context->device_ = *std::move(device);
+    context->memory_ = std::make_unique<Memory>(*context->device_, capabilities,
+                                                Memory::Options{options.memory_limit, settings.force_staging});
+    context->cache_ = std::make_unique<PipelineCache>(*context->device_, capabilities,
+                                                      settings.cache_folder.value_or(pipeline_cache_folder()));
+    context->kernels_ = std::make_unique<Kernels>(*context->device_, capabilities, *context->cache_);
+    context->staging_ = std::make_unique<Staging>(*context, settings.staging_bytes);
+
+    Result<std::string> notice = self_test(*context);
+    if (!notice) return notice.error();
+    if (!notice->empty()) context->notices_.push_back(*std::move(notice));
+    return context;
+}
+
+Context::~Context() {
+    staging_.reset();
+    kernels_.reset();
+    cache_.reset();
+    memory_.reset();
+    // A device that is left behind needs its instance.
+    if (device_ && device_->hung()) static_cast<void>(instance_.release());
+}
+
+} // namespace isotet::vulkan

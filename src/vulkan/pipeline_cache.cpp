@@ -1,0 +1,145 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/pipeline_cache.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <isotet/version.hpp>
+
+namespace isotet::vulkan {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a file begins with.
+struct Head {
+    char magic[8];
+    std::uint64_t bytes; ///< that follow
+    std::uint64_t hash;  ///< of them
+};
+constexpr char magic[8] = {'i', 's', 'o', 't', 'e', 't', 'P', '1'};
+
+/// Larger files are not ours.
+constexpr std::uint64_t most_bytes = std::uint64_t{256} << 20;
+
+/// FNV-1a: not against enemies (who could write into the folder as well), against broken disks and cut files.
+class Hash {
+public:
+    void add(std::span<const std::byte> bytes) {
+        for (const std::byte byte : bytes) value_ = (value_ ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
+    }
+    template <class T>
+    void add_value(const T& value) {
+        add(std::as_bytes(std::span(&value, 1)));
+    }
+    std::uint64_t value() const noexcept { return value_; }
+
+private:
+    std::uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+std::uint64_t hash_of(std::span<const std::byte> bytes) {
+    Hash hash;
+    hash.add(bytes);
+    return hash.value();
+}
+
+/// Driver and build: what makes compiled pipelines the same.
+std::uint64_t key_of(const Capabilities& capabilities) {
+    Hash hash;
+    const VkPhysicalDeviceProperties& properties = capabilities.properties;
+    hash.add_value(properties.vendorID);
+    hash.add_value(properties.deviceID);
+    hash.add_value(properties.driverVersion);
+    hash.add_value(properties.pipelineCacheUUID);
+    for (const std::string_view build : {ISOTET_VERSION, ISOTET_COMMIT}) hash.add(std::as_bytes(std::span(build)));
+    return hash.value();
+}
+
+/// What stands in the file behind a head that fits it; empty otherwise.
+std::vector<std::byte> read_checked(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    Head head{};
+    if (!file.read(reinterpret_cast<char*>(&head), sizeof head)) return {};
+    std::error_code failed;
+    const std::uintmax_t size = fs::file_size(path, failed);
+    if (failed || std::memcmp(head.magic, magic, sizeof magic) != 0 || head.bytes > most_bytes ||
+        size != sizeof head + head.bytes)
+        return {};
+    std::vector<std::byte> bytes(head.bytes);
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) return {};
+    if (hash_of(bytes) != head.hash) return {};
+    return bytes;
+}
+
+} // namespace
+
+fs::path pipeline_cache_folder() {
+    // As the XDG specification has it, relative paths do not count.
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return fs::path(cache) / "isotet";
+    if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "isotet";
+    return {};
+}
+
+PipelineCache::PipelineCache(LogicalDevice& device, const Capabilities& capabilities, const fs::path& folder)
+    : device_(device) {
+    std::vector<std::byte> bytes;
+    if (!folder.empty()) {
+        file_ = folder / fmt::format("pipelines-{:016x}.bin", key_of(capabilities));
+        bytes = read_checked(file_);
+    }
+    VkPipelineCacheCreateInfo create{};
+    create.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    create.initialDataSize = bytes.size();
+    create.pInitialData = bytes.data();
+    const DeviceFunctions& call = device_.call();
+    VkResult made = call.vkCreatePipelineCache(device_.handle(), &create, nullptr, &handle_);
+    bytes_read_ = made == VK_SUCCESS ? bytes.size() : 0;
+    if (made != VK_SUCCESS && !bytes.empty()) {
+        create.initialDataSize = 0;
+        made = call.vkCreatePipelineCache(device_.handle(), &create, nullptr, &handle_);
+    }
+    if (made != VK_SUCCESS) handle_ = VK_NULL_HANDLE; // kernels are built without
+}
+
+PipelineCache::~PipelineCache() {
+    if (!handle_ || device_.hung()) return;
+    if (changed_ && !file_.empty() && device_.alive()) save();
+    device_.call().vkDestroyPipelineCache(device_.handle(), handle_, nullptr);
+}
+
+void PipelineCache::save() const {
+    const DeviceFunctions& call = device_.call();
+    std::size_t size = 0;
+    if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, nullptr) != VK_SUCCESS || size > most_bytes) return;
+    std::vector<std::byte> bytes(size);
+    if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, bytes.data()) != VK_SUCCESS) return;
+    bytes.resize(size);
+    Head head{};
+    std::memcpy(head.magic, magic, sizeof magic);
+    head.bytes = bytes.size();
+    head.hash = hash_of(bytes);
+
+    // Written beside and renamed, so that a reader sees the old file or the new one.
+    std::error_code failed;
+    fs::create_directories(file_.parent_path(), failed);
+    const fs::path beside = fs::path(file_).concat(fmt::format(".{}", getpid()));
+    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(&head), sizeof head);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (file) fs::rename(beside, file_, failed);
+    if (!file || failed) fs::remove(beside, failed);
+}
+
+} // namespace isotet::vulkan

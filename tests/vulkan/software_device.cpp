@@ -1,0 +1,58 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/software_device.hpp"
+
+#include <stdexcept>
+
+namespace isotet::test {
+
+vulkan::Settings watched() {
+    vulkan::Settings settings;
+    settings.validation = vulkan::Validation::on;
+    settings.wait_limit = std::chrono::seconds(30);
+    settings.cache_folder = std::filesystem::path();
+    return settings;
+}
+
+std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings, std::uint64_t memory_limit) {
+    auto context = vulkan::Context::open({"software", memory_limit}, settings);
+    if (context) return *context;
+    throw std::runtime_error("these tests need Mesa's software device, version 25 or later, and the Khronos validation "
+                             "layer: run scripts/test.sh, or source build/test/mesa/env.sh first. " +
+                             context.error().message);
+}
+
+void OnDevice::reopen(const vulkan::Settings& settings, std::uint64_t memory_limit) {
+    if (context_) TearDown();
+    context_.reset();
+    context_ = open_software(settings, memory_limit);
+}
+
+void OnDevice::TearDown() {
+    if (!context_) return;
+    for (const std::string& complaint : context_->instance().complaints()) ADD_FAILURE() << complaint;
+    EXPECT_EQ(context_->notices(), std::vector<std::string>());
+}
+
+vulkan::Buffer OnDevice::take(std::uint64_t bytes, vulkan::Where where) {
+    return context().memory().take(bytes, where, "a test's").value();
+}
+
+vulkan::Buffer OnDevice::upload(std::span<const std::uint32_t> words) {
+    vulkan::Buffer buffer = take(words.size_bytes());
+    context().staging().upload(buffer, 0, std::as_bytes(words)).value();
+    return buffer;
+}
+
+std::vector<std::uint32_t> OnDevice::download(const vulkan::Buffer& buffer) {
+    std::vector<std::uint32_t> words(buffer.size() / sizeof(std::uint32_t));
+    context().staging().download(buffer, 0, std::as_writable_bytes(std::span(words))).value();
+    return words;
+}
+
+std::vector<std::uint32_t> ramp(std::size_t count, std::uint32_t step) {
+    std::vector<std::uint32_t> words(count);
+    for (std::size_t i = 0; i < count; ++i) words[i] = static_cast<std::uint32_t>(i) * step;
+    return words;
+}
+
+} // namespace isotet::test
