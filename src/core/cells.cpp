@@ -96,14 +96,10 @@ int corners_of(std::uint8_t vtk_type) {
 
 bool is_contoured(std::uint8_t vtk_type) { return corners_of(vtk_type) != 0; }
 
-CellTets CellReader::tets(std::size_t cell) const {
-    CellTets out;
+void CellReader::split(std::size_t cell, CellTets& out) const {
     const std::uint64_t start = first(cell);
     std::uint64_t v[8];
     switch (type(cell)) {
-    case tetrahedron:
-        out.add(corner(start), corner(start + 1), corner(start + 2), corner(start + 3));
-        break;
     case voxel:
         for (std::uint64_t i = 0; i < 8; ++i) v[i] = corner(start + (i ^ (i >> 1 & 1))); // 0 1 3 2 4 5 7 6
         split_hexahedron(v, out);
@@ -122,7 +118,6 @@ CellTets CellReader::tets(std::size_t cell) const {
         break;
     default: break;
     }
-    return out;
 }
 
 Result<CellReader> CellReader::open(const Grid& grid) {
@@ -183,6 +178,39 @@ namespace {
 
 enum class Fault { none, offset_falls, offset_end, corner_count, point_range, coordinate };
 
+/// Whether a point that cells use may be contoured.
+template <class T>
+bool is_sound(const T* point) {
+    constexpr auto limit = static_cast<T>(0x1p91);
+    return std::abs(point[0]) < limit && std::abs(point[1]) < limit && std::abs(point[2]) < limit; // false for NaN
+}
+
+bool is_sound(const Grid& grid, std::uint64_t point) {
+    return grid.points.type() == ScalarType::float32 ? is_sound(grid.points.as<float>().data() + 3 * point)
+                                                     : is_sound(grid.points.as<double>().data() + 3 * point);
+}
+
+/// True for nearly every grid; then nobody need look at the points of each cell.
+bool all_points_are_sound(const Grid& grid) {
+    std::atomic<bool> sound{true};
+    parallel_ranges(grid.points.tuples(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        bool all = true;
+        for (std::size_t point = begin; point < end; ++point) all &= is_sound(grid, point);
+        if (!all) sound.store(false, std::memory_order_relaxed);
+    });
+    return sound;
+}
+
+/// Whether the cells [begin, end), four point numbers each, use only points that are there.
+bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::size_t end) {
+    return cells.connectivity().visit([&](const auto* corners) {
+        auto highest = std::make_unsigned_t<std::remove_cvref_t<decltype(*corners)>>{0};
+        for (std::size_t i = 4 * begin; i < 4 * end; ++i)
+            highest = std::max(highest, static_cast<decltype(highest)>(corners[i])); // negative numbers become huge ones
+        return begin == end || highest < cells.points();
+    });
+}
+
 Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
     const std::uint64_t begin = cells.first(cell);
     const std::uint64_t corners = cells.corners(cell);
@@ -194,14 +222,7 @@ Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
     for (std::uint64_t k = 0; k < corners; ++k) {
         const std::uint64_t point = cells.corner(begin + k);
         if (point >= cells.points()) return Fault::point_range;
-        const auto good = [](auto coordinates, std::uint64_t p) {
-            constexpr auto limit = 0x1p91;
-            return std::abs(coordinates[3 * p]) < limit && std::abs(coordinates[3 * p + 1]) < limit &&
-                   std::abs(coordinates[3 * p + 2]) < limit; // false for NaN
-        };
-        const bool fine = grid.points.type() == ScalarType::float32 ? good(grid.points.as<float>(), point)
-                                                                    : good(grid.points.as<double>(), point);
-        if (!fine) return Fault::coordinate;
+        if (!is_sound(grid, point)) return Fault::coordinate;
     }
     return Fault::none;
 }
@@ -239,10 +260,12 @@ Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progre
     if (grid.cells.offsets.tuples() > 0 && IndexColumn(grid.cells.offsets)[0] > cells.connectivity_size())
         return Error{ErrorCode::invalid_data, fmt::format("the first offset is {}, but the connectivity has {} entries",
                                                           IndexColumn(grid.cells.offsets)[0], cells.connectivity_size())};
+    const bool corners_are_enough = cells.bare_tets() && all_points_are_sound(grid);
     // The lowest broken cell is the one reported, whatever the threads do.
     std::atomic<std::size_t> lowest{std::numeric_limits<std::size_t>::max()};
     parallel_ranges(cells.count(), 1 << 14, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled() || begin > lowest.load(std::memory_order_relaxed)) return;
+        if (corners_are_enough && all_corners_are_points(cells, begin, end)) return;
         for (std::size_t cell = begin; cell < end; ++cell) {
             if (fault_of(grid, cells, cell) == Fault::none) continue;
             std::size_t seen = lowest.load(std::memory_order_relaxed);

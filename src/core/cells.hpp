@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <isotet/grid.hpp>
 
@@ -33,19 +34,32 @@ bool is_contoured(std::uint8_t vtk_type);
 /// Corners of a contoured type; 0 for all others.
 int corners_of(std::uint8_t vtk_type);
 
-/// Reads a column of point numbers or offsets of any integer type. Negative numbers become huge ones.
+/// A point number or offset as 64 bits; a negative one becomes a huge one.
+template <class T>
+std::uint64_t widened(T index) {
+    if constexpr (std::is_signed_v<T>) return static_cast<std::uint64_t>(std::int64_t{index});
+    else return index;
+}
+
+/// Reads a column of point numbers or offsets of any integer type.
 class IndexColumn {
 public:
     IndexColumn() = default;
     explicit IndexColumn(const Array& array) : data_(array.data()), type_(array.type()) {}
 
-    std::uint64_t operator[](std::size_t i) const {
+    /// Calls f with a pointer to the numbers in their own type.
+    template <class F>
+    decltype(auto) visit(const F& f) const {
         switch (type_) {
-        case ScalarType::int32: return static_cast<std::uint64_t>(std::int64_t{static_cast<const std::int32_t*>(data_)[i]});
-        case ScalarType::uint32: return static_cast<const std::uint32_t*>(data_)[i];
-        case ScalarType::int64: return static_cast<std::uint64_t>(static_cast<const std::int64_t*>(data_)[i]);
-        default: return static_cast<const std::uint64_t*>(data_)[i];
+        case ScalarType::int32: return f(static_cast<const std::int32_t*>(data_));
+        case ScalarType::uint32: return f(static_cast<const std::uint32_t*>(data_));
+        case ScalarType::int64: return f(static_cast<const std::int64_t*>(data_));
+        default: return f(static_cast<const std::uint64_t*>(data_));
         }
+    }
+
+    std::uint64_t operator[](std::size_t i) const {
+        return visit([i](const auto* indices) { return widened(indices[i]); });
     }
 
 private:
@@ -69,7 +83,42 @@ public:
 
     /// The tets of a cell, none for a type that is not contoured. Corners in the order of the file (tetrahedra) or of the
     /// splitting; the cell must have passed check_cells().
-    CellTets tets(std::size_t cell) const;
+    CellTets tets(std::size_t cell) const {
+        CellTets out;
+        if (type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron)) {
+            const std::uint64_t start = first(cell);
+            out.add(corner(start), corner(start + 1), corner(start + 2), corner(start + 3));
+        } else {
+            split(cell, out);
+        }
+        return out;
+    }
+
+    /// Calls f(cell, its tets) for the cells [begin, end). What tets() gives, faster where all cells are tetrahedra.
+    template <class F>
+    void for_cells(std::size_t begin, std::size_t end, const F& f) const {
+        if (!bare_tets()) {
+            for (std::size_t cell = begin; cell < end; ++cell) f(cell, tets(cell));
+            return;
+        }
+        connectivity_.visit([&](const auto* corners) {
+            for (std::size_t cell = begin; cell < end; ++cell) {
+                const auto* const v = corners + 4 * cell;
+                CellTets out;
+                out.add(widened(v[0]), widened(v[1]), widened(v[2]), widened(v[3]));
+                f(cell, out);
+            }
+        });
+    }
+
+    /// Asks for the point numbers of a cell that will be wanted soon.
+    void prefetch(std::size_t cell) const {
+        connectivity_.visit([&](const auto* corners) { __builtin_prefetch(corners + first(cell)); });
+    }
+
+    /// Nothing but four point numbers for each tetrahedron.
+    bool bare_tets() const { return only_tets_ && !has_offsets_; }
+    const IndexColumn& connectivity() const { return connectivity_; }
 
     /// Corners of the cell according to the offsets.
     std::uint64_t corners(std::size_t cell) const {
@@ -77,6 +126,9 @@ public:
     }
 
 private:
+    /// Splits a cell that is not a tetrahedron.
+    void split(std::size_t cell, CellTets& out) const;
+
     IndexColumn connectivity_, offsets_;
     const std::uint8_t* types_ = nullptr;
     std::size_t count_ = 0;
