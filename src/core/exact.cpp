@@ -89,29 +89,13 @@ std::array<Point, N> scaled(std::array<Point, N> points) {
     return points;
 }
 
-int exact_orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
+} // namespace
+
+int exact_orientation_sign(const Point& a, const Point& b, const Point& c, const Point& d) {
     const auto p = scaled<4>({a, b, c, d});
     const Difference u(p[1], p[0]), v(p[2], p[0]), w(p[3], p[0]);
     const Expansion sum = u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) + u.z * (v.x * w.y - v.y * w.x);
     return sum.sign();
-}
-
-} // namespace
-
-int orientation_sign(const Point& a, const Point& b, const Point& c, const Point& d) {
-    const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
-    const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
-    const double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
-    const double determinant = bx * (cy * dz - cz * dy) + by * (cz * dx - cx * dz) + bz * (cx * dy - cy * dx);
-    // Shewchuk's bound for orient3d: (7 + 56 eps) eps times the permanent, eps = 2^-53.
-    const double permanent = (std::abs(cy * dz) + std::abs(cz * dy)) * std::abs(bx) +
-                             (std::abs(cz * dx) + std::abs(cx * dz)) * std::abs(by) +
-                             (std::abs(cx * dy) + std::abs(cy * dx)) * std::abs(bz);
-    constexpr double epsilon = 0x1p-53;
-    const double bound = (7.0 + 56.0 * epsilon) * epsilon * permanent;
-    // The filter holds while no product underflows.
-    if (std::abs(determinant) > bound && bound > 0x1p-900) return determinant > 0 ? 1 : -1;
-    return exact_orientation(a, b, c, d);
 }
 
 bool is_collinear(const Point& a, const Point& b, const Point& c) {

@@ -55,6 +55,16 @@ inline Tet canonical(Tet t) {
     return t;
 }
 
+/// What decides on the stored form of a tet, in three bits.
+struct TetSigns {
+    bool negative = false;      ///< its volume; exact on the user's coordinates
+    bool flat = false;          ///< its volume is zero
+    bool cell_negative = false; ///< the volume of the split cell of which it is a piece; false for a whole tetrahedron
+
+    static TetSigns from_bits(std::uint64_t bits) { return {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}; }
+    std::uint64_t bits() const { return std::uint64_t{negative} | std::uint64_t{flat} << 1 | std::uint64_t{cell_negative} << 2; }
+};
+
 /// Gives the tets of cells their stored form.
 ///
 /// A tet of negative volume (exact sign on the user's coordinates) is mirrored. A flat tet keeps the orientation of the
@@ -77,15 +87,30 @@ public:
 
     /// The stored form of one of a cell's tets; adds to `counts`.
     Tet stored(std::uint8_t cell_type, const CellTets& cell, unsigned piece, Counts& counts) const {
-        const bool whole = cell_type == static_cast<std::uint8_t>(CellType::tetrahedron);
-        Tet t = cell.tets[piece];
-        const int sign = points_.orientation(t);
-        const bool mirrored = whole ? mostly_negative_ : six_volumes(cell) < 0;
-        if (sign == 0) ++counts.flat;
-        else if (whole) ++(sign < 0 ? counts.negative : counts.upright);
-        else if ((sign < 0) != mirrored) ++counts.twisted;
-        if (sign < 0 || (sign == 0 && mirrored)) std::swap(t[2], t[3]);
+        const int sign = points_.orientation(cell.tets[piece]);
+        TetSigns signs{sign < 0, sign == 0};
+        if (!is_whole(cell_type)) signs.cell_negative = six_volumes(points_, cell) < 0;
+        return stored(cell_type, cell.tets[piece], signs, counts);
+    }
+
+    /// The same when the signs are known: no coordinate is looked at.
+    Tet stored(std::uint8_t cell_type, Tet t, TetSigns signs, Counts& counts) const {
+        const bool whole = is_whole(cell_type);
+        const bool mirrored = whole ? mostly_negative_ : signs.cell_negative;
+        if (signs.flat) ++counts.flat;
+        else if (whole) ++(signs.negative ? counts.negative : counts.upright);
+        else if (signs.negative != mirrored) ++counts.twisted;
+        if (signs.negative || (signs.flat && mirrored)) std::swap(t[2], t[3]);
         return canonical(t);
+    }
+
+    static bool is_whole(std::uint8_t cell_type) { return cell_type == static_cast<std::uint8_t>(CellType::tetrahedron); }
+
+    /// Six times the volume of a split cell, rounded.
+    static double six_volumes(const PointReader& points, const CellTets& cell) {
+        double sum = 0;
+        for (const Tet& t : cell) sum += points.six_volumes(t);
+        return sum;
     }
 
     /// Tetrahedra whose sign is not that of most, and twisted pieces.
@@ -94,12 +119,6 @@ public:
     }
 
 private:
-    double six_volumes(const CellTets& cell) const {
-        double sum = 0;
-        for (const Tet& t : cell) sum += points_.six_volumes(t);
-        return sum;
-    }
-
     PointReader points_;
     bool mostly_negative_;
 };

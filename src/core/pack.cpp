@@ -57,15 +57,16 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     if (!cells) return cells.error();
     if (auto ok = check_field(field, grid.points.tuples()); !ok) return ok.error();
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
-    const TetSurvey survey = survey_tets(grid, *cells);
-    if (survey.tets == 0) return nothing_to_contour(grid, *cells);
-    if (auto ok = require_memory("packing the grid", packing_memory(survey.tets, grid.points.tuples())); !ok) return ok.error();
+    TetCounts counts = count_tets(*cells);
+    if (counts.tets() == 0) return nothing_to_contour(grid, *cells);
+    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets(), grid.points.tuples())); !ok) return ok.error();
 
-    auto order = sort_tets(grid, *cells, survey, progress);
+    const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;
+    auto order = sort_tets(grid, *cells, std::move(counts), progress);
     if (!order) return order.error();
     Draft draft;
     if (options.precision == Precision::double_) draft.packed.reals = Values<double>{};
-    if (auto ok = form_clusters(grid, *cells, survey, *std::move(order), options, draft, progress); !ok) return ok.error();
+    if (auto ok = form_clusters(grid, *cells, *std::move(order), options, draft, progress); !ok) return ok.error();
     number_points(grid.points.tuples(), draft);
     progress("pack", 0.7);
     if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
@@ -75,8 +76,8 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     packed->storage_cache = std::make_shared<StorageCache>();
     packed->user_points = grid.points.tuples();
     packed->user_cells = cells->count();
-    packed->report.cells_left_out = survey.left_out;
-    packed->report.collapsed_tets = survey.collapsed;
+    packed->report.cells_left_out = left_out;
+    packed->report.collapsed_tets = collapsed;
     store_points(grid.points, *packed);
     if (auto ok = store_field(field, *packed, progress); !ok) return ok.error();
     if (options.gradients) store_gradients(*packed);

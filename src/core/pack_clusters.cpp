@@ -24,9 +24,9 @@ std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / grou
 
 } // namespace
 
-Result<void> form_clusters(const Grid& grid, const CellReader& cells, const TetSurvey& survey, TetOrder order,
-                           const PackOptions& options, Draft& draft, const Progress& progress) {
-    const Orienter orienter(grid.points, survey.mostly_negative);
+Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder order, const PackOptions& options,
+                           Draft& draft, const Progress& progress) {
+    const Orienter orienter(grid.points, order.mostly_negative);
     const std::size_t count = order.tets.size();
     const std::size_t block_count = (count + tets_a_block - 1) / tets_a_block;
     std::vector<BlockClusters> blocks(block_count);
@@ -38,9 +38,11 @@ Result<void> form_clusters(const Grid& grid, const CellReader& cells, const TetS
         const std::span<SortedTet> sorted(order.tets.data() + b * tets_a_block,
                                           std::min(tets_a_block, count - b * tets_a_block));
         std::vector<Tet> tets(sorted.size());
+        constexpr std::size_t ahead = 16;
         for (std::size_t i = 0; i < sorted.size(); ++i) {
-            const TetId id = sorted[i].tet;
-            tets[i] = orienter.stored(cells.type(id.cell()), cells.tets(id.cell()), id.piece(), counts[b]);
+            if (i + ahead < sorted.size()) cells.prefetch(sorted[i + ahead].tet().cell());
+            const TetId id = sorted[i].tet();
+            tets[i] = orienter.stored(cells.type(id.cell()), cells.tets(id.cell()).tets[id.piece()], sorted[i].signs(), counts[b]);
         }
         blocks[b] = grow_clusters(tets);
         if (options.source_cells) reorder(sorted, blocks[b].order);
@@ -97,7 +99,7 @@ Result<void> form_clusters(const Grid& grid, const CellReader& cells, const TetS
                 const std::size_t to = at.group * group_size + i;
                 packed.tets[to] = block.tets[from];
                 if (!options.source_cells) continue;
-                const std::uint64_t cell = order.tets[b * tets_a_block + from].tet.cell();
+                const std::uint64_t cell = order.tets[b * tets_a_block + from].tet().cell();
                 if (wide_cells) packed.wide_cell_ids[to] = cell;
                 else packed.cell_ids[to] = static_cast<std::uint32_t>(cell);
             }

@@ -35,8 +35,7 @@ struct Draft {
 
 /// Grows clusters block by block. Fills headers (tets, first_group), tets (corners as positions among the cluster's
 /// points), first_local and locals; and cell ids if asked for.
-Result<void> form_clusters(const Grid& grid, const CellReader& cells, const TetSurvey& survey, TetOrder order,
-                           const PackOptions& options, Draft& draft, const Progress& progress);
+Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder order, const PackOptions& options, Draft& draft, const Progress& progress);
 
 /// Gives every point its owner and packed number, and every cluster its local order. Fills headers (own and foreign
 /// points, first_point) and point ids; turns locals into PointRefs and corners of tets into local indices.
