@@ -19,12 +19,10 @@ public:
 
     std::uint32_t number(std::uint64_t point) {
         std::size_t slot = hash(point);
-        while (slots_[slot] != none) {
-            if (points_[slots_[slot]] == point) return slots_[slot];
-            slot = (slot + 1) & mask_;
-        }
+        for (; slots_[slot].number != none; slot = (slot + 1) & mask_)
+            if (slots_[slot].low == static_cast<std::uint32_t>(point) && points_[slots_[slot].number] == point) return slots_[slot].number;
         const auto number = static_cast<std::uint32_t>(points_.size());
-        slots_[slot] = number;
+        slots_[slot] = {static_cast<std::uint32_t>(point), number};
         points_.push_back(point);
         if (2 * points_.size() > slots_.size()) rehash(2 * slots_.size());
         return number;
@@ -32,20 +30,106 @@ public:
     const std::vector<std::uint64_t>& points() const { return points_; }
 
 private:
+    struct Slot {
+        std::uint32_t low; ///< of the point: tells most others apart without a look at the list
+        std::uint32_t number;
+    };
+
     std::size_t hash(std::uint64_t point) const { return (point * 0x9e3779b97f4a7c15u >> 32) & mask_; }
     void rehash(std::size_t size) {
-        slots_.assign(size, none);
+        slots_.assign(size, {0, none});
         mask_ = size - 1;
         for (std::uint32_t i = 0; i < points_.size(); ++i) {
             std::size_t slot = hash(points_[i]);
-            while (slots_[slot] != none) slot = (slot + 1) & mask_;
-            slots_[slot] = i;
+            while (slots_[slot].number != none) slot = (slot + 1) & mask_;
+            slots_[slot] = {static_cast<std::uint32_t>(points_[i]), i};
         }
     }
 
-    std::vector<std::uint32_t> slots_;
+    std::vector<Slot> slots_;
     std::vector<std::uint64_t> points_;
     std::size_t mask_ = 0;
+};
+
+/// Points that would complete a tet, and how much each is wanted. Looking for the best one is what growth does most: the
+/// scores stand side by side in 16 bits, in loops without exits that compilers turn into SIMD, eight at a time and more.
+class Candidates {
+public:
+    std::uint32_t add(std::uint32_t point) {
+        const std::size_t at = points_.size();
+        points_.push_back(point);
+        if (at == scores_.size()) scores_.resize(at + piece, 0);
+        return static_cast<std::uint32_t>(at);
+    }
+    void set_score(std::uint32_t at, std::int16_t score) { scores_[at] = score; }
+
+    /// Puts the last candidate where the dropped one was, and returns it.
+    std::uint32_t drop(std::uint32_t at) {
+        const std::uint32_t last = points_.back();
+        points_[at] = last;
+        scores_[at] = scores_[points_.size() - 1];
+        scores_[points_.size() - 1] = 0;
+        points_.pop_back();
+        return last;
+    }
+
+    /// The first of those with the highest score, or none.
+    std::uint32_t best() const {
+        std::int16_t highest = 0;
+        const std::size_t n = (points_.size() + piece - 1) / piece * piece; // behind the last candidate all scores are 0
+        for (std::size_t i = 0; i < n; ++i) highest = std::max(highest, scores_[i]);
+        if (highest == 0) return none;
+        std::size_t begin = 0;
+        while (!holds(begin, highest)) begin += piece;
+        while (scores_[begin] != highest) ++begin;
+        return points_[begin];
+    }
+
+    const std::vector<std::uint32_t>& points() const { return points_; }
+    void clear() {
+        std::fill_n(scores_.begin(), points_.size(), std::int16_t{0});
+        points_.clear();
+    }
+
+private:
+    static constexpr std::size_t piece = 32;
+
+    bool holds(std::size_t begin, std::int16_t score) const {
+        std::int16_t found = 0;
+        for (std::size_t i = begin; i < begin + piece; ++i) found |= static_cast<std::int16_t>(-(scores_[i] == score));
+        return found != 0;
+    }
+
+    std::vector<std::uint32_t> points_;
+    std::vector<std::int16_t> scores_;
+};
+
+/// A set of numbers below tets_a_block that is read in ascending order.
+class TetSet {
+public:
+    void add(std::uint32_t tet) {
+        words_[tet / 64] |= std::uint64_t{1} << tet % 64;
+        full_words_[tet / 4096] |= std::uint64_t{1} << tet / 64 % 64;
+        ++size_;
+    }
+    std::size_t size() const { return size_; }
+
+    /// Calls f for each number and forgets it.
+    template <class F>
+    void drain(const F& f) {
+        for (std::size_t i = 0; i < full_words_.size(); ++i)
+            for (; full_words_[i]; full_words_[i] &= full_words_[i] - 1) {
+                const std::size_t word = 64 * i + static_cast<std::size_t>(std::countr_zero(full_words_[i]));
+                for (; words_[word]; words_[word] &= words_[word] - 1)
+                    f(static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(words_[word]))));
+            }
+        size_ = 0;
+    }
+
+private:
+    std::array<std::uint64_t, tets_a_block / 64> words_{};
+    std::array<std::uint64_t, tets_a_block / 4096> full_words_{}; ///< which words are not 0
+    std::size_t size_ = 0;
 };
 
 class Grower {
@@ -53,27 +137,25 @@ public:
     explicit Grower(std::span<const Tet> tets) : corners_(tets.size()), inside_(tets.size(), 0) {
         for (std::size_t i = 0; i < tets.size(); ++i)
             for (std::size_t k = 0; k < 4; ++k) corners_[i][k] = numbers_.number(tets[i][k]);
-        const std::size_t n = numbers_.points().size();
-        left_.assign(n, 0);
-        gain_.assign(n, 0);
-        place_.assign(n, none);
-        candidate_.assign(n, none);
+        vertices_.resize(numbers_.points().size());
         for (const auto& tet : corners_)
-            for (const std::uint32_t v : tet) ++left_[v];
-        listed_ = left_;
-        first_.assign(n + 1, 0);
-        for (std::size_t v = 0; v < n; ++v) first_[v + 1] = first_[v] + left_[v];
+            for (const std::uint32_t v : tet) ++vertices_[v].left;
+        std::uint32_t first = 0;
+        for (Vertex& vertex : vertices_) {
+            vertex.first = first;
+            first += vertex.left;
+        }
         tets_of_.resize(4 * tets.size());
-        auto next = first_;
         for (std::uint32_t i = 0; i < corners_.size(); ++i)
-            for (const std::uint32_t v : corners_[i]) tets_of_[next[v]++] = i;
-        for (std::size_t k = 0; k < weight_.size(); ++k) weight_[k] = k ? 1.0f + 20.0f / static_cast<float>(k) : 0.0f;
+            for (const std::uint32_t v : corners_[i]) tets_of_[vertices_[v].first + vertices_[v].listed++] = i;
+        for (std::size_t k = 1; k < weight_.size(); ++k) weight_[k] = static_cast<std::uint32_t>(score_one + 20 * score_one / k);
     }
 
     BlockClusters run() {
         BlockClusters out;
         out.order.reserve(corners_.size());
         out.tets.reserve(corners_.size());
+        out.points.reserve(corners_.size() / 2);
         while (out.order.size() < corners_.size()) {
             grow_one();
             finish_cluster(out);
@@ -82,10 +164,18 @@ public:
     }
 
 private:
+    struct Vertex {
+        std::uint32_t first = 0, listed = 0;           ///< its tets: `listed` from tets_of_[first] on
+        std::uint32_t left = 0;                        ///< tets that are in no cluster
+        std::uint32_t gain = 0;                        ///< tets that it would complete
+        std::uint32_t place = none;                    ///< in the growing cluster, or none
+        std::uint32_t candidate = none;                ///< position among the candidates, or none
+    };
+
     void grow_one() {
         start();
         while (points_.size() < max_cluster_points && !full_) {
-            const std::uint32_t best = best_candidate();
+            const std::uint32_t best = candidates_.best();
             if (best != none) join(best);
             else if (!start()) break; // nothing left beside the cluster: go on with the next tet along the curve
         }
@@ -101,10 +191,10 @@ private:
             seed = static_cast<std::uint32_t>(next_);
         }
         std::size_t missing = 0;
-        for (const std::uint32_t v : corners_[seed]) missing += place_[v] == none;
+        for (const std::uint32_t v : corners_[seed]) missing += vertices_[v].place == none;
         if (points_.size() + missing > max_cluster_points) return false;
         for (const std::uint32_t v : corners_[seed])
-            if (place_[v] == none && !full_) join(v);
+            if (vertices_[v].place == none && !full_) join(v);
         return true;
     }
 
@@ -112,37 +202,29 @@ private:
     std::uint32_t beside(const std::vector<std::uint32_t>& points) {
         std::uint32_t best = none;
         for (const std::uint32_t v : points)
-            if (left_[v] && (best == none || left_[v] < left_[best])) best = v;
+            if (vertices_[v].left && (best == none || vertices_[v].left < vertices_[best].left)) best = v;
         if (best == none) return none;
         std::uint32_t seed = none;
-        for_tets_left(best, [&](std::uint32_t tet) { seed = std::min(seed, tet); });
+        for_tets_left(vertices_[best], [&](std::uint32_t tet) { seed = std::min(seed, tet); });
         return seed;
     }
 
-    /// The candidate with the largest score; of equal ones the lowest. Two plain loops, which compilers turn into SIMD.
-    std::uint32_t best_candidate() const {
-        std::int32_t best_score = 0;
-        for (const std::int32_t score : scores_) best_score = std::max(best_score, score);
-        std::uint32_t best = none;
-        for (std::size_t i = 0; i < candidates_.size(); ++i)
-            best = std::min(best, scores_[i] == best_score ? candidates_[i] : none);
-        return best;
-    }
-
-    void update_score(std::uint32_t v) {
-        if (candidate_[v] == none) return;
-        const float score = static_cast<float>(gain_[v]) * weight_[std::min<std::size_t>(left_[v], weight_.size() - 1)];
-        scores_[candidate_[v]] = std::bit_cast<std::int32_t>(score);
+    /// gain * (1 + 20 / left), in 1/256. Since gain is at most left, it is cut off only for points of over 107 tets.
+    void update_score(const Vertex& vertex) {
+        if (vertex.candidate == none) return;
+        const std::uint32_t score = vertex.gain * weight_[std::min<std::size_t>(vertex.left, weight_.size() - 1)];
+        candidates_.set_score(vertex.candidate, static_cast<std::int16_t>(std::min<std::uint32_t>(score, 0x7fff)));
     }
 
     void join(std::uint32_t v) {
-        place_[v] = static_cast<std::uint32_t>(points_.size());
+        Vertex& joining = vertices_[v];
+        joining.place = static_cast<std::uint32_t>(points_.size());
         points_.push_back(v);
-        if (candidate_[v] != none) drop_candidate(v);
-        for_tets_left(v, [&](std::uint32_t tet) {
+        if (joining.candidate != none) drop_candidate(joining);
+        for_tets_left(joining, [&](std::uint32_t tet) {
             if (++inside_[tet] == 3) {
                 for (const std::uint32_t w : corners_[tet])
-                    if (place_[w] == none) add_gain(w);
+                    if (vertices_[w].place == none) add_gain(w);
             } else if (inside_[tet] == 4) {
                 if (tets_.size() < max_cluster_tets) take(tet);
                 else full_ = true;
@@ -152,82 +234,70 @@ private:
 
     void take(std::uint32_t tet) {
         inside_[tet] = taken;
-        tets_.push_back(tet);
+        tets_.add(tet);
         for (const std::uint32_t v : corners_[tet]) {
-            --left_[v];
-            update_score(v);
+            --vertices_[v].left;
+            update_score(vertices_[v]);
         }
     }
 
     void add_gain(std::uint32_t v) {
-        if (gain_[v]++ == 0) {
-            candidate_[v] = static_cast<std::uint32_t>(candidates_.size());
-            candidates_.push_back(v);
-            scores_.push_back(0);
-        }
-        update_score(v);
+        Vertex& vertex = vertices_[v];
+        if (vertex.gain++ == 0) vertex.candidate = candidates_.add(v);
+        update_score(vertex);
     }
-    void drop_candidate(std::uint32_t v) {
-        const std::uint32_t last = candidates_.back();
-        candidates_[candidate_[v]] = last;
-        scores_[candidate_[v]] = scores_.back();
-        candidate_[last] = candidate_[v];
-        candidates_.pop_back();
-        scores_.pop_back();
-        candidate_[v] = none;
-        gain_[v] = 0;
+    void drop_candidate(Vertex& vertex) {
+        const std::uint32_t moved = candidates_.drop(vertex.candidate);
+        vertices_[moved].candidate = vertex.candidate;
+        vertex.candidate = none;
+        vertex.gain = 0;
     }
 
     void finish_cluster(BlockClusters& out) {
-        std::sort(tets_.begin(), tets_.end()); // along the curve: tets of a group are close together
-        compact_points();
-        for (const std::uint32_t tet : tets_) {
-            StoredTet stored;
-            for (std::size_t k = 0; k < 4; ++k) stored.corners[k] = static_cast<std::uint8_t>(place_[corners_[tet][k]]);
-            out.tets.push_back(stored);
-            out.order.push_back(tet);
-        }
-        const std::size_t before = out.points.size();
+        const std::size_t first = out.order.size();
+        tets_.drain([&](std::uint32_t tet) { out.order.push_back(tet); }); // along the curve: tets of a group are close together
+        const std::span<const std::uint32_t> tets(out.order.data() + first, out.order.size() - first);
+
+        // A point that joined for a tet which was not completed is not in the cluster: places go to those that tets use.
+        for (const std::uint32_t v : points_) vertices_[v].place = none;
+        for (const std::uint32_t tet : tets)
+            for (const std::uint32_t v : corners_[tet]) vertices_[v].place = 0;
+        std::uint32_t place = 0;
         for (const std::uint32_t v : points_)
-            if (place_[v] != none) out.points.push_back(numbers_.points()[v]);
-        out.clusters.push_back({static_cast<std::uint32_t>(tets_.size()), static_cast<std::uint32_t>(out.points.size() - before)});
+            if (vertices_[v].place == 0) {
+                vertices_[v].place = place++;
+                out.points.push_back(numbers_.points()[v]);
+            }
+        for (const std::uint32_t tet : tets) {
+            StoredTet stored;
+            for (std::size_t k = 0; k < 4; ++k) stored.corners[k] = static_cast<std::uint8_t>(vertices_[corners_[tet][k]].place);
+            out.tets.push_back(stored);
+        }
+        out.clusters.push_back({static_cast<std::uint32_t>(tets.size()), place});
 
         // Forget what only this cluster knew. Tets that were begun but not completed start from nothing again.
         for (const std::uint32_t v : points_) {
-            place_[v] = none;
-            for_tets_left(v, [&](std::uint32_t tet) { inside_[tet] = 0; });
+            vertices_[v].place = none;
+            for_tets_left(vertices_[v], [&](std::uint32_t tet) { inside_[tet] = 0; });
         }
-        for (const std::uint32_t v : candidates_) {
-            gain_[v] = 0;
-            candidate_[v] = none;
+        for (const std::uint32_t v : candidates_.points()) {
+            vertices_[v].gain = 0;
+            vertices_[v].candidate = none;
         }
         candidates_.clear();
-        scores_.clear();
         last_points_.swap(points_);
         points_.clear();
-        tets_.clear();
         full_ = false;
     }
 
-    /// Gives places 0, 1, 2, ... to the points that the cluster's tets use, and none to the others (a point that joined
-    /// for a tet which was not completed).
-    void compact_points() {
-        for (const std::uint32_t v : points_) place_[v] = none - 1;
-        for (const std::uint32_t tet : tets_)
-            for (const std::uint32_t v : corners_[tet]) place_[v] = 0;
-        std::uint32_t place = 0;
-        for (const std::uint32_t v : points_) place_[v] = place_[v] == 0 ? place++ : none;
-    }
-
-    /// Calls f for every tet of v that is in no cluster yet, and drops the others from v's list for good.
+    /// Calls f for every tet of the vertex that is in no cluster yet, and drops the others from its list for good.
     template <class F>
-    void for_tets_left(std::uint32_t v, F&& f) {
-        std::uint32_t* list = tets_of_.data() + first_[v];
-        std::uint32_t& count = listed_[v];
-        for (std::uint32_t i = 0; i < count;) {
+    void for_tets_left(Vertex& vertex, F&& f) {
+        std::uint32_t* const list = tets_of_.data() + vertex.first;
+        for (std::uint32_t i = 0; i < vertex.listed;) {
             const std::uint32_t tet = list[i];
             if (done(tet)) {
-                list[i] = list[--count];
+                list[i] = list[--vertex.listed];
                 continue;
             }
             f(tet);
@@ -238,18 +308,17 @@ private:
     bool done(std::size_t tet) const { return inside_[tet] == taken; }
 
     static constexpr std::uint8_t taken = 255;
+    static constexpr std::size_t score_one = 256;
 
     PointNumbers numbers_;
     std::vector<std::array<std::uint32_t, 4>> corners_;
-    std::vector<std::uint8_t> inside_;      ///< corners of each tet that are in the growing cluster; or taken
-    std::vector<std::uint32_t> left_;       ///< tets of each point that are in no cluster
-    std::vector<std::uint32_t> gain_;       ///< tets that the point would complete
-    std::vector<std::uint32_t> place_;      ///< in the growing cluster, or none
-    std::vector<std::uint32_t> candidate_;  ///< position among the candidates, or none
-    std::vector<std::uint32_t> first_, listed_, tets_of_; ///< tets of v: listed_[v] from first_[v] on
-    std::vector<std::uint32_t> candidates_, points_, last_points_, tets_;
-    std::vector<std::int32_t> scores_; ///< gain x weight of each candidate, by its bits: positive floats order like integers
-    std::array<float, 256> weight_{};
+    std::vector<std::uint8_t> inside_;     ///< corners of each tet that are in the growing cluster; or taken
+    std::vector<Vertex> vertices_;
+    std::vector<std::uint32_t> tets_of_;
+    Candidates candidates_;
+    TetSet tets_;                          ///< of the growing cluster
+    std::vector<std::uint32_t> points_, last_points_;
+    std::array<std::uint32_t, 256> weight_{};
     std::size_t next_ = 0;
     bool full_ = false;
 };
