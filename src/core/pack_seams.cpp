@@ -30,17 +30,93 @@ struct EdgeMatrix {
 struct Letter {
     std::uint64_t edge;    ///< lower end's index, higher end's PointRef
     std::uint32_t cluster; ///< the sender
-    SeamEdge local;        ///< the edge in the sender
     std::uint16_t place;   ///< among the sender's candidates
+
+    static Letter make(PointRef lower, PointRef higher, std::uint32_t cluster, std::uint16_t place) {
+        return {std::uint64_t{lower.index()} << 40 | higher.value, cluster, place};
+    }
+    std::size_t lower_index() const { return edge >> 40; }
 };
 static_assert(sizeof(Letter) == 16);
 
-/// What the sender is told: the owner and the edge in the owner; nobody when no other cluster holds the edge.
+/// What the sender is told: the owner and the edge's place among the owner's candidates; nobody when no other cluster
+/// holds the edge.
 struct Answer {
     std::uint32_t owner;
-    SeamEdge local;
+    std::uint16_t place;
 };
 constexpr std::uint32_t nobody = 0xffffffffu;
+
+/// Sorts the letters to one cluster by edge, then sender. By the lower end first, of which there are few; what is left to
+/// do for each of these is short.
+void sort_letters(std::span<Letter> letters, std::vector<Letter>& scratch) {
+    std::uint32_t next[max_cluster_points + 1] = {};
+    for (const Letter& letter : letters) ++next[letter.lower_index() + 1];
+    for (std::size_t k = 0; k < max_cluster_points; ++k) next[k + 1] += next[k];
+    scratch.resize(std::max(scratch.size(), letters.size()));
+    for (const Letter& letter : letters) scratch[next[letter.lower_index()]++] = letter;
+    std::size_t begin = 0;
+    for (std::size_t k = 0; k < max_cluster_points; ++k) { // next[k] is now where the letters of k end
+        std::sort(scratch.begin() + begin, scratch.begin() + next[k], [](const Letter& a, const Letter& b) {
+            return a.edge != b.edge ? a.edge < b.edge : a.cluster < b.cluster;
+        });
+        begin = next[k];
+    }
+    std::copy_n(scratch.begin(), letters.size(), letters.begin());
+}
+
+/// The neighbour table and the foreign seams of one cluster in the making.
+class Neighbourhood {
+public:
+    /// Seams arrive in the order of the cluster's candidates and keep it among those of one owner.
+    void add_seam(std::uint32_t owner, ForeignSeam seam) { seams_.push_back({owner, seam}); }
+    /// Points arrive by ascending owner.
+    void add_point(std::uint32_t owner) { ++entry(owner).foreign_points; }
+
+    /// Puts seams and neighbours into order.
+    void finish() {
+        for (const Seam& seam : seams_) ++entry(seam.owner).foreign_seams;
+        std::sort(table_.begin(), table_.end(), [](const Neighbour& a, const Neighbour& b) { return a.cluster < b.cluster; });
+        sorted_.resize(seams_.size());
+        std::size_t begin = 0;
+        for (const Neighbour& neighbour : table_) {
+            first_.push_back(begin);
+            begin += neighbour.foreign_seams;
+        }
+        for (const Seam& seam : seams_) sorted_[first_[position(seam.owner)]++] = seam.seam;
+    }
+    void clear() {
+        table_.clear();
+        seams_.clear();
+        first_.clear();
+    }
+    std::span<const Neighbour> table() const { return table_; }
+    std::span<const ForeignSeam> seams() const { return sorted_; }
+
+private:
+    struct Seam {
+        std::uint32_t owner;
+        ForeignSeam seam;
+    };
+
+    /// Where the owner stands in the table, or its end. Tables are short, and the same owner comes several times in a row.
+    std::size_t position(std::uint32_t owner) {
+        if (last_ < table_.size() && table_[last_].cluster == owner) return last_;
+        last_ = 0;
+        while (last_ < table_.size() && table_[last_].cluster != owner) ++last_;
+        return last_;
+    }
+    Neighbour& entry(std::uint32_t owner) {
+        if (position(owner) == table_.size()) table_.push_back({owner, 0, 0});
+        return table_[last_];
+    }
+
+    std::vector<Neighbour> table_;
+    std::vector<Seam> seams_;
+    std::vector<ForeignSeam> sorted_;
+    std::vector<std::size_t> first_;
+    std::size_t last_ = 0;
+};
 
 class SeamFinder {
 public:
@@ -52,9 +128,18 @@ public:
         exchange();
     }
     void write_links() {
-        measure();
-        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) { write_own(c); });
-        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) { write_foreign_seams(c); });
+        draft_links();
+        std::uint64_t words = 0;
+        for (ClusterHeader& header : packed_.headers) {
+            header.first_link = words;
+            words += ClusterLinks::words(header);
+        }
+        packed_.links = Buffer<std::uint32_t>(words);
+        parallel_each(links_.size(), 1, [&](std::size_t task) {
+            std::copy(links_[task].begin(), links_[task].end(), packed_.links.begin() + packed_.headers[task * clusters_a_task].first_link);
+            links_[task] = {};
+        });
+        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) { number_foreign_seams(c); });
     }
 
 private:
@@ -140,128 +225,102 @@ private:
                 const PointRef lower = ref(c, edge.lower), higher = ref(c, edge.higher);
                 const std::uint64_t slot =
                     std::atomic_ref<std::uint64_t>(next[lower.owner()]).fetch_add(1, std::memory_order_relaxed);
-                letters[slot] = {std::uint64_t{lower.index()} << 40 | higher.value, static_cast<std::uint32_t>(c), edge, place++};
+                letters[slot] = Letter::make(lower, higher, static_cast<std::uint32_t>(c), place++);
             }
         });
         // Letters arrive in any order; sorting makes it one.
         answers_ = Buffer<Answer>(candidates_.size());
-        parallel_each(n, clusters_a_task, [&](std::size_t c) {
-            Letter* const begin = letters.data() + first[c];
-            Letter* const end = letters.data() + first[c + 1];
-            std::sort(begin, end, [](const Letter& a, const Letter& b) {
-                return a.edge != b.edge ? a.edge < b.edge : a.cluster < b.cluster;
-            });
-            for (Letter* run = begin; run != end;) {
-                Letter* const after = std::find_if(run, end, [&](const Letter& l) { return l.edge != run->edge; });
-                const Answer answer = after - run > 1 ? Answer{run->cluster, run->local} : Answer{nobody, {}};
-                for (const Letter* letter = run; letter != after; ++letter)
-                    answers_[first_candidate_[letter->cluster] + letter->place] = answer;
-                run = after;
+        parallel_ranges(n, clusters_a_task, [&](std::size_t from, std::size_t to) {
+            std::vector<Letter> scratch;
+            for (std::size_t c = from; c < to; ++c) {
+                const std::span<Letter> mail(letters.data() + first[c], first[c + 1] - first[c]);
+                sort_letters(mail, scratch);
+                answer(mail);
             }
         });
     }
 
-    /// A foreign seam of a cluster: its owner, the edge there and here.
-    struct Foreign {
-        std::uint32_t owner;
-        SeamEdge there, here;
-    };
-
-    /// Calls own(edge) for own seams in stored order and foreign(Foreign) for the others.
-    template <class Own, class Other>
-    void for_seams(std::size_t c, Own&& own, Other&& foreign) const {
-        const auto edges = candidates(c);
-        for (std::size_t k = 0; k < edges.size(); ++k) {
-            const Answer& answer = answers_[first_candidate_[c] + k];
-            if (answer.owner == c) own(edges[k]);
-            else if (answer.owner != nobody) foreign(Foreign{answer.owner, answer.local, edges[k]});
+    /// Answers sorted letters: of those on one edge the first is the owner's.
+    void answer(std::span<const Letter> letters) {
+        for (std::size_t begin = 0; begin < letters.size();) {
+            std::size_t end = begin + 1;
+            while (end < letters.size() && letters[end].edge == letters[begin].edge) ++end;
+            const Answer answer = end - begin > 1 ? Answer{letters[begin].cluster, letters[begin].place} : Answer{nobody, 0};
+            for (; begin < end; ++begin) answers_[first_candidate_[letters[begin].cluster] + letters[begin].place] = answer;
         }
     }
 
-    /// The neighbour table and the foreign seams, both by neighbour.
-    void collect(std::size_t c, std::vector<Neighbour>& neighbours, std::vector<Foreign>& foreign) const {
-        neighbours.clear();
-        foreign.clear();
-        for_seams(c, [](SeamEdge) {}, [&](const Foreign& seam) { foreign.push_back(seam); });
-        std::stable_sort(foreign.begin(), foreign.end(), [](const Foreign& a, const Foreign& b) { return a.owner < b.owner; });
-        std::size_t point = 0, seam = 0;
-        const std::size_t points = packed_.headers[c].foreign_points;
-        while (point < points || seam < foreign.size()) {
-            const std::uint32_t next_point = point < points ? ref(c, point).owner() : nobody;
-            const std::uint32_t next_seam = seam < foreign.size() ? foreign[seam].owner : nobody;
-            Neighbour neighbour{std::min(next_point, next_seam), 0, 0};
-            for (; point < points && ref(c, point).owner() == neighbour.cluster; ++point) ++neighbour.foreign_points;
-            for (; seam < foreign.size() && foreign[seam].owner == neighbour.cluster; ++seam) ++neighbour.foreign_seams;
-            neighbours.push_back(neighbour);
-        }
-    }
-
-    void measure() {
-        parallel_ranges(draft_.clusters(), clusters_a_task, [&](std::size_t begin, std::size_t end) {
-            std::vector<Neighbour> neighbours;
-            std::vector<Foreign> foreign;
-            for (std::size_t c = begin; c < end; ++c) {
-                collect(c, neighbours, foreign);
-                std::uint16_t own = 0;
-                for_seams(c, [&](SeamEdge) { ++own; }, [](const Foreign&) {});
-                ClusterHeader& header = packed_.headers[c];
-                header.neighbours = static_cast<std::uint16_t>(neighbours.size());
-                header.own_seams = own;
-                header.foreign_seams = static_cast<std::uint16_t>(foreign.size());
-            }
+    /// The links of each task's clusters, one after another. In foreign seams the owner's candidate stands instead of its
+    /// own seam: which seam that becomes is known only when all owners have counted theirs.
+    void draft_links() {
+        const std::size_t n = draft_.clusters();
+        links_.resize((n + clusters_a_task - 1) / clusters_a_task);
+        parallel_each(links_.size(), 1, [&](std::size_t task) {
+            Neighbourhood neighbourhood;
+            std::vector<SeamEdge> own_seams;
+            for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c)
+                draft_links_of(c, neighbourhood, own_seams, links_[task]);
         });
-        std::uint64_t words = 0;
-        for (ClusterHeader& header : packed_.headers) {
-            header.first_link = words;
-            words += ClusterLinks::words(header);
-        }
-        packed_.links = Buffer<std::uint32_t>(words);
+        answers_.release();
     }
 
-    void write_own(std::size_t c) {
-        const ClusterHeader& header = packed_.headers[c];
-        std::vector<Neighbour> neighbours;
-        std::vector<Foreign> foreign;
-        collect(c, neighbours, foreign);
-        std::uint32_t* words = packed_.links.data() + header.first_link;
-        for (const Neighbour& neighbour : neighbours) {
-            std::memcpy(words, &neighbour, sizeof neighbour);
-            words += 2;
+    /// Afterwards the cluster's candidates hold their numbers among its own seams.
+    void draft_links_of(std::size_t c, Neighbourhood& neighbourhood, std::vector<SeamEdge>& own_seams,
+                        std::vector<std::uint32_t>& words) {
+        ClusterHeader& header = packed_.headers[c];
+        neighbourhood.clear();
+        for (std::size_t k = 0; k < header.foreign_points; ++k) neighbourhood.add_point(ref(c, k).owner());
+        std::uint16_t own = 0;
+        own_seams.clear();
+        for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k) {
+            const Answer answer = answers_[k];
+            if (answer.owner == c) {
+                own_seams.push_back(candidates_[k]);
+                candidates_[k] = std::bit_cast<SeamEdge>(own++);
+            } else if (answer.owner != nobody) {
+                neighbourhood.add_seam(answer.owner, {candidates_[k], answer.place});
+            }
         }
+        neighbourhood.finish();
+        header.neighbours = static_cast<std::uint16_t>(neighbourhood.table().size());
+        header.own_seams = own;
+        header.foreign_seams = static_cast<std::uint16_t>(neighbourhood.seams().size());
 
-        std::uint8_t points[max_cluster_points + 3] = {};
+        const std::size_t begin = words.size();
+        words.resize(begin + ClusterLinks::words(header));
+        std::uint32_t* out = words.data() + begin;
+        const auto put = [&out](const void* data, std::size_t bytes) {
+            if (bytes) std::memcpy(out, data, bytes);
+            out += words_for(bytes);
+        };
+        put(neighbourhood.table().data(), neighbourhood.table().size_bytes());
+        std::uint8_t points[max_cluster_points];
         for (std::size_t k = 0; k < header.foreign_points; ++k) points[k] = ref(c, k).index();
-        std::memcpy(words, points, 4 * words_for(header.foreign_points));
-        words += words_for(header.foreign_points);
-
-        std::vector<SeamEdge> own;
-        own.reserve(header.own_seams + 1u);
-        for_seams(c, [&](SeamEdge edge) { own.push_back(edge); }, [](const Foreign&) {});
-        if (own.size() % 2) own.push_back({});
-        std::memcpy(words, own.data(), own.size() * sizeof(SeamEdge)); // never null: room for one was reserved
+        put(points, header.foreign_points);
+        put(own_seams.data(), own_seams.size() * sizeof(SeamEdge));
+        put(neighbourhood.seams().data(), neighbourhood.seams().size_bytes());
     }
 
-    /// After every cluster's own seams are there: their places in their owners.
-    void write_foreign_seams(std::size_t c) {
+    /// Turns the owners' candidates into the owners' own seams.
+    void number_foreign_seams(std::size_t c) {
         const ClusterHeader& header = packed_.headers[c];
-        std::vector<Neighbour> neighbours;
-        std::vector<Foreign> foreign;
-        collect(c, neighbours, foreign);
-        std::uint32_t* words = packed_.links.data() + header.first_link + ClusterLinks::words(header) - header.foreign_seams;
-        for (std::size_t k = 0; k < foreign.size(); ++k) {
-            const auto own = packed_.cluster_links(foreign[k].owner).own_seams;
-            const auto at = std::lower_bound(own.begin(), own.end(), foreign[k].there) - own.begin();
-            const ForeignSeam seam{foreign[k].here, static_cast<std::uint16_t>(at)};
-            std::memcpy(words + k, &seam, sizeof seam);
-        }
+        const std::span<const Neighbour> neighbours = packed_.cluster_links(c).neighbours;
+        std::uint32_t* word = packed_.links.data() + header.first_link + ClusterLinks::words(header) - header.foreign_seams;
+        for (const Neighbour& neighbour : neighbours)
+            for (std::size_t k = 0; k < neighbour.foreign_seams; ++k, ++word) {
+                auto seam = std::bit_cast<ForeignSeam>(*word);
+                seam.index = std::bit_cast<std::uint16_t>(candidates_[first_candidate_[neighbour.cluster] + seam.index]);
+                *word = std::bit_cast<std::uint32_t>(seam);
+            }
     }
 
     Draft& draft_;
     Packed& packed_;
     Buffer<std::uint8_t> shared_; ///< by packed point: held by more than one cluster
     Buffer<std::uint64_t> first_candidate_;
-    Buffer<SeamEdge> candidates_;
+    Buffer<SeamEdge> candidates_; ///< at the end: of own seams, their numbers
     Buffer<Answer> answers_;
+    std::vector<std::vector<std::uint32_t>> links_; ///< by task
 };
 
 } // namespace
