@@ -56,7 +56,7 @@ void count_tets(benchmark::State& state, const Subject& of) {
 void sort_tets(benchmark::State& state) {
     const Subject& of = subject(state);
     const auto cells = core::CellReader::open(of.grid).value();
-    for (auto _ : state) benchmark::DoNotOptimize(core::sort_tets(of.grid, cells, core::count_tets(cells), {}).value());
+    for (auto _ : state) benchmark::DoNotOptimize(core::sort_tets(of.grid, cells, core::count_tets(cells), false, {}).value());
     count_tets(state, of);
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
 namespace isotet::core {
 
@@ -12,43 +13,54 @@ namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Numbers the points of a block 0, 1, 2, ... in the order in which they are first seen.
+/// Numbers the points of a block 0, 1, 2, ... in the order in which they are first seen. The tets of a block come by their
+/// lowest rank, so most of its points are within a short stretch of ranks, and have their numbers in a table; a hash table
+/// has those of the others.
 class PointNumbers {
 public:
-    PointNumbers() { rehash(1 << 15); }
+    explicit PointNumbers(std::uint32_t lowest) : lowest_(lowest), near_(1 << 16, none) { rehash(1 << 12); }
 
-    std::uint32_t number(std::uint64_t point) {
+    std::uint32_t number(std::uint32_t point) {
+        if (const std::uint32_t at = point - lowest_; at < near_.size()) {
+            if (near_[at] == none) near_[at] = add(point);
+            return near_[at];
+        }
         std::size_t slot = hash(point);
         for (; slots_[slot].number != none; slot = (slot + 1) & mask_)
-            if (slots_[slot].low == static_cast<std::uint32_t>(point) && points_[slots_[slot].number] == point) return slots_[slot].number;
-        const auto number = static_cast<std::uint32_t>(points_.size());
-        slots_[slot] = {static_cast<std::uint32_t>(point), number};
-        points_.push_back(point);
-        if (2 * points_.size() > slots_.size()) rehash(2 * slots_.size());
+            if (slots_[slot].point == point) return slots_[slot].number;
+        slots_[slot] = {point, add(point)};
+        const std::uint32_t number = slots_[slot].number;
+        if (2 * ++far_ > slots_.size()) rehash(2 * slots_.size());
         return number;
     }
-    const std::vector<std::uint64_t>& points() const { return points_; }
+    const std::vector<std::uint32_t>& points() const { return points_; }
 
 private:
     struct Slot {
-        std::uint32_t low; ///< of the point: tells most others apart without a look at the list
-        std::uint32_t number;
+        std::uint32_t point, number;
     };
 
-    std::size_t hash(std::uint64_t point) const { return (point * 0x9e3779b97f4a7c15u >> 32) & mask_; }
+    std::uint32_t add(std::uint32_t point) {
+        points_.push_back(point);
+        return static_cast<std::uint32_t>(points_.size() - 1);
+    }
+    std::size_t hash(std::uint32_t point) const { return (point * 0x9e3779b97f4a7c15u >> 32) & mask_; }
     void rehash(std::size_t size) {
-        slots_.assign(size, {0, none});
+        const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(size, {0, none}));
         mask_ = size - 1;
-        for (std::uint32_t i = 0; i < points_.size(); ++i) {
-            std::size_t slot = hash(points_[i]);
+        for (const Slot& taken : old) {
+            if (taken.number == none) continue;
+            std::size_t slot = hash(taken.point);
             while (slots_[slot].number != none) slot = (slot + 1) & mask_;
-            slots_[slot] = {static_cast<std::uint32_t>(points_[i]), i};
+            slots_[slot] = taken;
         }
     }
 
+    std::uint32_t lowest_;
+    std::vector<std::uint32_t> near_; ///< by rank from the lowest on: the number, or none
     std::vector<Slot> slots_;
-    std::vector<std::uint64_t> points_;
-    std::size_t mask_ = 0;
+    std::vector<std::uint32_t> points_;
+    std::size_t mask_ = 0, far_ = 0;
 };
 
 /// Points that would complete a tet, and how much each is wanted. Looking for the best one is what growth does most: the
@@ -132,9 +144,13 @@ private:
     std::size_t size_ = 0;
 };
 
+std::uint32_t lowest_rank(std::span<const RankedTet> tets) {
+    return tets.empty() ? 0 : *std::min_element(tets[0].begin(), tets[0].end());
+}
+
 class Grower {
 public:
-    explicit Grower(std::span<const Tet> tets) : corners_(tets.size()), inside_(tets.size(), 0) {
+    explicit Grower(std::span<const RankedTet> tets) : numbers_(lowest_rank(tets)), corners_(tets.size()), inside_(tets.size(), 0) {
         for (std::size_t i = 0; i < tets.size(); ++i)
             for (std::size_t k = 0; k < 4; ++k) corners_[i][k] = numbers_.number(tets[i][k]);
         vertices_.resize(numbers_.points().size());
@@ -311,7 +327,7 @@ private:
     static constexpr std::size_t score_one = 256;
 
     PointNumbers numbers_;
-    std::vector<std::array<std::uint32_t, 4>> corners_;
+    std::vector<RankedTet> corners_;
     std::vector<std::uint8_t> inside_;     ///< corners of each tet that are in the growing cluster; or taken
     std::vector<Vertex> vertices_;
     std::vector<std::uint32_t> tets_of_;
@@ -325,6 +341,6 @@ private:
 
 } // namespace
 
-BlockClusters grow_clusters(std::span<const Tet> tets) { return Grower(tets).run(); }
+BlockClusters grow_clusters(std::span<const RankedTet> tets) { return Grower(tets).run(); }
 
 } // namespace isotet::core

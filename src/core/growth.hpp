@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/cells.hpp"
 #include "core/packed.hpp"
+#include "core/tet_order.hpp"
 
 namespace isotet::core {
 
@@ -24,16 +24,16 @@ struct BlockClusters {
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> order;  ///< the block's tets, cluster by cluster
     std::vector<StoredTet> tets;       ///< in that order
-    std::vector<std::uint64_t> points; ///< user's numbers, cluster by cluster
+    std::vector<std::uint32_t> points; ///< ranks, cluster by cluster
 };
 
-/// Gathers the tets of a block into clusters of at most max_cluster_points points and max_cluster_tets tets.
+/// Gathers the tets of a block, sorted by their lowest rank, into clusters of at most max_cluster_points points and max_cluster_tets tets.
 ///
 /// A cluster starts beside the last one and takes, again and again, the point v with the largest
 /// gain(v) * (1 + 20 / left(v)): gain = tets that v completes, left = tets of v not yet in a cluster. The second factor
 /// favours points that are nearly used up: without it, leftovers become tiny clusters.
 ///
 /// Cost   O(n) for n tets, about 100 candidates looked at for each point that joins
-BlockClusters grow_clusters(std::span<const Tet> tets);
+BlockClusters grow_clusters(std::span<const RankedTet> tets);
 
 } // namespace isotet::core

@@ -40,7 +40,8 @@ private:
 };
 
 /// Turns the corners without changing the orientation until the lowest comes first and the lowest of the others second.
-inline Tet canonical(Tet t) {
+template <class Corner>
+std::array<Corner, 4> canonical(std::array<Corner, 4> t) {
     const auto swap_pairs = [&t](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
         std::swap(t[a], t[b]);
         std::swap(t[c], t[d]);
@@ -55,16 +56,6 @@ inline Tet canonical(Tet t) {
     return t;
 }
 
-/// What decides on the stored form of a tet, in three bits.
-struct TetSigns {
-    bool negative = false;      ///< its volume; exact on the user's coordinates
-    bool flat = false;          ///< its volume is zero
-    bool cell_negative = false; ///< the volume of the split cell of which it is a piece; false for a whole tetrahedron
-
-    static TetSigns from_bits(std::uint64_t bits) { return {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}; }
-    std::uint64_t bits() const { return std::uint64_t{negative} | std::uint64_t{flat} << 1 | std::uint64_t{cell_negative} << 2; }
-};
-
 /// Gives the tets of cells their stored form.
 ///
 /// A tet of negative volume (exact sign on the user's coordinates) is mirrored. A flat tet keeps the orientation of the
@@ -77,6 +68,17 @@ public:
         std::uint64_t upright = 0, negative = 0, flat = 0; ///< of tetrahedra
         std::uint64_t twisted = 0; ///< pieces of split cells whose sign is not that of their cell; flat pieces count as flat
 
+        /// Counts a tet by the sign of its volume. Returns whether its stored form is the mirrored one.
+        /// `mirrored`   what a flat one is: as most tetrahedra, or as the cell of which it is a piece
+        bool add(int sign, bool whole, bool mirrored) {
+            if (sign == 0) ++flat;
+            else if (whole) ++(sign < 0 ? negative : upright);
+            else if ((sign < 0) != mirrored) ++twisted;
+            return sign < 0 || (sign == 0 && mirrored);
+        }
+        /// Tetrahedra whose sign is not that of most, and twisted pieces.
+        std::uint64_t inverted(bool mostly_negative) const { return (mostly_negative ? upright : negative) + twisted; }
+
         void combine(const Counts& other) {
             upright += other.upright;
             negative += other.negative;
@@ -87,20 +89,10 @@ public:
 
     /// The stored form of one of a cell's tets; adds to `counts`.
     Tet stored(std::uint8_t cell_type, const CellTets& cell, unsigned piece, Counts& counts) const {
-        const int sign = points_.orientation(cell.tets[piece]);
-        TetSigns signs{sign < 0, sign == 0};
-        if (!is_whole(cell_type)) signs.cell_negative = six_volumes(points_, cell) < 0;
-        return stored(cell_type, cell.tets[piece], signs, counts);
-    }
-
-    /// The same when the signs are known: no coordinate is looked at.
-    Tet stored(std::uint8_t cell_type, Tet t, TetSigns signs, Counts& counts) const {
+        Tet t = cell.tets[piece];
         const bool whole = is_whole(cell_type);
-        const bool mirrored = whole ? mostly_negative_ : signs.cell_negative;
-        if (signs.flat) ++counts.flat;
-        else if (whole) ++(signs.negative ? counts.negative : counts.upright);
-        else if (signs.negative != mirrored) ++counts.twisted;
-        if (signs.negative || (signs.flat && mirrored)) std::swap(t[2], t[3]);
+        const bool mirrored = whole ? mostly_negative_ : six_volumes(points_, cell) < 0;
+        if (counts.add(points_.orientation(t), whole, mirrored)) std::swap(t[2], t[3]);
         return canonical(t);
     }
 
@@ -114,9 +106,7 @@ public:
     }
 
     /// Tetrahedra whose sign is not that of most, and twisted pieces.
-    std::uint64_t inverted(const Counts& counts) const {
-        return (mostly_negative_ ? counts.upright : counts.negative) + counts.twisted;
-    }
+    std::uint64_t inverted(const Counts& counts) const { return counts.inverted(mostly_negative_); }
 
 private:
     PointReader points_;

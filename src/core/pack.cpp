@@ -58,19 +58,20 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     if (auto ok = check_field(field, grid.points.tuples()); !ok) return ok.error();
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
     TetCounts counts = count_tets(*cells);
-    if (counts.tets() == 0) return nothing_to_contour(grid, *cells);
-    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets(), grid.points.tuples())); !ok) return ok.error();
+    if (counts.tets == 0) return nothing_to_contour(grid, *cells);
+    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid.points.tuples())); !ok) return ok.error();
 
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;
-    auto order = sort_tets(grid, *cells, std::move(counts), progress);
+    auto order = sort_tets(grid, *cells, std::move(counts), options.source_cells, progress);
     if (!order) return order.error();
     Draft draft;
     if (options.precision == Precision::double_) draft.packed.reals = Values<double>{};
-    if (auto ok = form_clusters(grid, *cells, *std::move(order), options, draft, progress); !ok) return ok.error();
+    if (auto ok = form_clusters(*std::move(order), cells->count(), draft, progress); !ok) return ok.error();
     number_points(grid.points.tuples(), draft);
     progress("pack", 0.7);
     if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
     draft.locals.release();
+    draft.point_of.release();
 
     auto packed = std::make_unique<Packed>(std::move(draft.packed));
     packed->storage_cache = std::make_shared<StorageCache>();

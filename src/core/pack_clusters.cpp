@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/growth.hpp"
-#include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
 
@@ -14,45 +13,35 @@ namespace isotet::core {
 
 namespace {
 
-/// Puts the block's sorted tets into the order of its clusters.
-void reorder(std::span<SortedTet> tets, const std::vector<std::uint32_t>& order) {
-    std::vector<SortedTet> sorted(tets.begin(), tets.end());
-    for (std::size_t i = 0; i < order.size(); ++i) tets[i] = sorted[order[i]];
+/// Puts the origins of a block's tets into the order of its clusters.
+void reorder(std::span<TetOrigin> origins, const std::vector<std::uint32_t>& order) {
+    const std::vector<TetOrigin> sorted(origins.begin(), origins.end());
+    for (std::size_t i = 0; i < order.size(); ++i) origins[i] = sorted[order[i]];
 }
 
 std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / group_size; }
 
 } // namespace
 
-Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder order, const PackOptions& options,
-                           Draft& draft, const Progress& progress) {
-    const Orienter orienter(grid.points, order.mostly_negative);
+Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, const Progress& progress) {
+    const bool source_cells = !order.origins.empty();
     const std::size_t count = order.tets.size();
     const std::size_t block_count = (count + tets_a_block - 1) / tets_a_block;
     std::vector<BlockClusters> blocks(block_count);
-    std::vector<Orienter::Counts> counts(block_count);
     std::atomic<std::size_t> finished{0};
     std::mutex reporting;
     parallel_each(block_count, 1, [&](std::size_t b) {
         if (progress.cancelled()) return;
-        const std::span<SortedTet> sorted(order.tets.data() + b * tets_a_block,
-                                          std::min(tets_a_block, count - b * tets_a_block));
-        std::vector<Tet> tets(sorted.size());
-        constexpr std::size_t ahead = 16;
-        for (std::size_t i = 0; i < sorted.size(); ++i) {
-            if (i + ahead < sorted.size()) cells.prefetch(sorted[i + ahead].tet().cell());
-            const TetId id = sorted[i].tet();
-            tets[i] = orienter.stored(cells.type(id.cell()), cells.tets(id.cell()).tets[id.piece()], sorted[i].signs(), counts[b]);
-        }
-        blocks[b] = grow_clusters(tets);
-        if (options.source_cells) reorder(sorted, blocks[b].order);
+        const std::size_t begin = b * tets_a_block, size = std::min(tets_a_block, count - begin);
+        blocks[b] = grow_clusters({order.tets.data() + begin, size});
+        if (source_cells) reorder({order.origins.data() + begin, size}, blocks[b].order);
         blocks[b].order = {};
         const std::size_t done = ++finished;
         if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
             progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};
-    if (!options.source_cells) order.tets.release();
+    order.tets.release();
 
     // Where each block's clusters, groups and points start.
     struct Start {
@@ -79,9 +68,9 @@ Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder o
     draft.first_local = Buffer<std::uint64_t>(total.cluster + 1);
     draft.locals = Buffer<std::uint64_t>(total.local);
     draft.first_local[total.cluster] = total.local;
-    const bool wide_cells = cells.count() > std::size_t{1} << 32;
-    if (options.source_cells && wide_cells) packed.wide_cell_ids = Buffer<std::uint64_t>(packed.tets.size());
-    else if (options.source_cells) packed.cell_ids = Buffer<std::uint32_t>(packed.tets.size());
+    const bool wide_cells = cells > std::size_t{1} << 32;
+    if (source_cells && wide_cells) packed.wide_cell_ids = Buffer<std::uint64_t>(packed.tets.size());
+    else if (source_cells) packed.cell_ids = Buffer<std::uint32_t>(packed.tets.size());
     parallel_each(block_count, 1, [&](std::size_t b) {
         BlockClusters block = std::move(blocks[b]);
         Start at = starts[b];
@@ -98,8 +87,8 @@ Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder o
                 const std::size_t from = tet + std::min<std::size_t>(i, cluster.tets - 1);
                 const std::size_t to = at.group * group_size + i;
                 packed.tets[to] = block.tets[from];
-                if (!options.source_cells) continue;
-                const std::uint64_t cell = order.tets[b * tets_a_block + from].tet().cell();
+                if (!source_cells) continue;
+                const std::uint64_t cell = order.origins[b * tets_a_block + from].cell();
                 if (wide_cells) packed.wide_cell_ids[to] = cell;
                 else packed.cell_ids[to] = static_cast<std::uint32_t>(cell);
             }
@@ -109,15 +98,14 @@ Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder o
             ++at.cluster;
         }
     });
-    Orienter::Counts sum;
-    for (const Orienter::Counts& part : counts) sum.combine(part);
+    draft.point_of = std::move(order.point_of);
     PackReport& report = packed.report;
     report.clusters = total.cluster;
     report.tets = count;
     report.repeated_tets = order.repeated;
-    report.negative_tets = sum.negative + sum.twisted;
-    report.inverted_tets = orienter.inverted(sum);
-    report.flat_tets = sum.flat;
+    report.negative_tets = order.orientation.negative + order.orientation.twisted;
+    report.inverted_tets = order.inverted;
+    report.flat_tets = order.orientation.flat;
     return {};
 }
 

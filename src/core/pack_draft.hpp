@@ -27,15 +27,17 @@ struct PointRef {
 struct Draft {
     Packed packed;
     Buffer<std::uint64_t> first_local; ///< C + 1: where each cluster's local points start
-    Buffer<std::uint64_t> locals;      ///< user's numbers first, PointRefs after number_points()
+    Buffer<std::uint64_t> locals;      ///< ranks first, PointRefs after number_points()
+    Buffer<std::uint64_t> point_of;    ///< rank -> user's point
 
     std::size_t clusters() const { return packed.headers.size(); }
     std::size_t local_count(std::size_t cluster) const { return first_local[cluster + 1] - first_local[cluster]; }
 };
 
 /// Grows clusters block by block. Fills headers (tets, first_group), tets (corners as positions among the cluster's
-/// points), first_local and locals; and cell ids if asked for.
-Result<void> form_clusters(const Grid& grid, const CellReader& cells, TetOrder order, const PackOptions& options, Draft& draft, const Progress& progress);
+/// points), first_local and locals; and cell ids when the origins are there.
+/// `cells`   how many the user's grid has
+Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, const Progress& progress);
 
 /// Gives every point its owner and packed number, and every cluster its local order. Fills headers (own and foreign
 /// points, first_point) and point ids; turns locals into PointRefs and corners of tets into local indices.

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t clusters_a_task = 64;
 
-/// The lowest-numbered cluster that holds each point; 2^32 - 1 for a point that no tet uses.
-Buffer<std::uint32_t> find_owners(std::uint64_t user_points, const Draft& draft) {
-    Buffer<std::uint32_t> owners(user_points);
-    parallel_ranges(user_points, 1 << 16, [&](std::size_t begin, std::size_t end) {
+/// The lowest-numbered cluster that holds each point, by rank.
+Buffer<std::uint32_t> find_owners(const Draft& draft) {
+    Buffer<std::uint32_t> owners(draft.point_of.size());
+    parallel_ranges(owners.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         std::fill(owners.begin() + begin, owners.begin() + end, std::numeric_limits<std::uint32_t>::max());
     });
     parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
@@ -32,10 +32,10 @@ Buffer<std::uint32_t> find_owners(std::uint64_t user_points, const Draft& draft)
 
 void number_points(std::uint64_t user_points, Draft& draft) {
     Packed& packed = draft.packed;
-    const Buffer<std::uint32_t> owners = find_owners(user_points, draft);
+    const Buffer<std::uint32_t> owners = find_owners(draft);
 
-    // Own points of a cluster ascend by the user's numbers.
-    Buffer<std::uint8_t> place(user_points);
+    // Own points of a cluster ascend by rank.
+    Buffer<std::uint8_t> place(owners.size());
     parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
         std::uint64_t own[max_cluster_points];
         std::size_t count = 0;
@@ -66,10 +66,10 @@ void number_points(std::uint64_t user_points, Draft& draft) {
         std::uint64_t* const list = draft.locals.data() + draft.first_local[c];
         ClusterHeader& header = packed.headers[c];
         for (std::size_t k = 0; k < count; ++k) {
-            const std::uint64_t user = list[k];
-            locals[k] = {PointRef::make(owners[user], place[user]), static_cast<std::uint8_t>(k)};
-            if (owners[user] != c) continue;
-            const std::uint64_t point = header.first_point + place[user];
+            const std::uint64_t rank = list[k];
+            locals[k] = {PointRef::make(owners[rank], place[rank]), static_cast<std::uint8_t>(k)};
+            if (owners[rank] != c) continue;
+            const std::uint64_t point = header.first_point + place[rank], user = draft.point_of[rank];
             if (wide) packed.wide_point_ids[point] = user;
             else packed.point_ids[point] = static_cast<std::uint32_t>(user);
         }

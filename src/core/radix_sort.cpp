@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -22,7 +23,7 @@ constexpr std::size_t parallel_limit = std::size_t{1} << 18;
 struct Digit {
     int shift;
     std::size_t mask;
-    std::size_t of(const SortedTet& item) const { return item.key >> shift & mask; }
+    std::size_t of(const Keyed& item) const { return item.key >> shift & mask; }
 };
 
 Digit digit_for(std::uint64_t differing, int bits) {
@@ -32,9 +33,9 @@ Digit digit_for(std::uint64_t differing, int bits) {
 
 /// The two places of a part: where it is now, and the other one. In the end it is to be in `home`, which is one of them.
 struct Part {
-    SortedTet* here;
-    SortedTet* there;
-    SortedTet* home;
+    Keyed* here;
+    Keyed* there;
+    Keyed* home;
     std::size_t size;
 
     Part moved(std::size_t from, std::size_t count) const { return {there + from, here + from, home + from, count}; }
@@ -46,7 +47,7 @@ void bring_home(const Part& part) {
 
 void insertion_sort(const Part& part) {
     for (std::size_t i = 1; i < part.size; ++i) {
-        const SortedTet item = part.here[i];
+        const Keyed item = part.here[i];
         std::size_t at = i;
         for (; at > 0 && part.here[at - 1].key > item.key; --at) part.here[at] = part.here[at - 1];
         part.here[at] = item;
@@ -131,7 +132,7 @@ void sort_parallel(const Part& part) {
 
 } // namespace
 
-void radix_sort(std::span<SortedTet> items, std::span<SortedTet> scratch) {
+void radix_sort(std::span<Keyed> items, std::span<Keyed> scratch) {
     if (!items.empty()) sort_parallel({items.data(), scratch.data(), items.data(), items.size()});
 }
 

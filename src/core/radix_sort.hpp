@@ -3,16 +3,20 @@
 // where they are not, since each part looks only at the bits in which its keys differ.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
-#include "core/tet_order.hpp"
-
 namespace isotet::core {
+
+/// Something by its number, on its way to its place.
+struct Keyed {
+    std::uint64_t key, number;
+};
 
 /// Sorts by key; items of equal keys keep their order. Parallel; the same for any thread count.
 ///
 /// `scratch`   as long as `items`; its content is lost
 /// Cost        O(n) moves for each digit in which keys differ, three in all for evenly spread keys
-void radix_sort(std::span<SortedTet> items, std::span<SortedTet> scratch);
+void radix_sort(std::span<Keyed> items, std::span<Keyed> scratch);
 
 } // namespace isotet::core

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <span>
+#include <utility>
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include "core/hilbert.hpp"
 #include "core/orientation.hpp"
@@ -17,7 +21,8 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t cells_a_chunk = TetCounts::cells_a_chunk;
+constexpr std::size_t cells_a_chunk = 1 << 14;
+constexpr std::size_t small_bucket = 64; ///< tets of one lowest point, nearly always fewer
 
 struct Bounds {
     Point lower, upper;
@@ -52,25 +57,18 @@ Bounds bounds_of(const PointReader& points, const Buffer<std::uint8_t>& used) {
         });
 }
 
-/// A point as steps along the axes, 2^19 a side of the cube around the grid, in three fields of 21 bits. The sum of four
-/// points fits: it is the centroid of a tet in four times as many steps, and does not depend on the order of the corners,
-/// so that repeated tets have equal keys.
-class CurveSteps {
+/// Maps points to a Hilbert curve through the cube around the grid, 2^21 steps a side, the same scale on all axes.
+class Curve {
 public:
-    explicit CurveSteps(const Bounds& bounds) : lower_(bounds.lower) {
+    explicit Curve(const Bounds& bounds) : lower_(bounds.lower) {
         double extent = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) extent = std::max(extent, bounds.upper[axis] - bounds.lower[axis]);
-        scale_ = extent > 0 ? 0x1.fffffp18 / extent : 0;
+        scale_ = extent > 0 ? 0x1.fffffp20 / extent : 0;
         if (!(scale_ < std::numeric_limits<double>::max())) scale_ = 0;
     }
-    std::uint64_t of(const Point& p) const {
-        const auto steps = [&](std::size_t axis) { return static_cast<std::uint64_t>(static_cast<std::int64_t>((p[axis] - lower_[axis]) * scale_)); };
-        return steps(0) | steps(1) << 21 | steps(2) << 42;
-    }
-    static std::uint64_t key(std::uint64_t sum) {
-        constexpr std::uint64_t field = (1 << 21) - 1;
-        return hilbert_index(static_cast<std::uint32_t>(sum & field), static_cast<std::uint32_t>(sum >> 21 & field),
-                             static_cast<std::uint32_t>(sum >> 42));
+    std::uint64_t key(const Point& p) const {
+        const auto step = [&](std::size_t axis) { return static_cast<std::uint32_t>((p[axis] - lower_[axis]) * scale_); };
+        return hilbert_index(step(0), step(1), step(2));
     }
 
 private:
@@ -78,121 +76,193 @@ private:
     double scale_;
 };
 
-/// A point with its steps beside it: in a grid without order, fetching it costs one line of memory, not two.
-struct CurvePoint {
-    std::uint64_t steps;
-    Point place;
-};
-
-Buffer<CurvePoint> curve_points(const PointReader& points, const Buffer<std::uint8_t>& used) {
-    const CurveSteps steps(bounds_of(points, used));
-    Buffer<CurvePoint> out(used.size());
-    parallel_ranges(used.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (used[i]) out[i] = {steps.of(points[i]), points[i]};
+/// The used points along the curve, each with its key; those of equal keys by number.
+Buffer<Keyed> sort_points(const PointReader& points, const Buffer<std::uint8_t>& used) {
+    constexpr std::size_t points_a_chunk = 1 << 16;
+    const std::size_t chunks = (used.size() + points_a_chunk - 1) / points_a_chunk;
+    const auto chunk_of = [&](std::size_t chunk) {
+        return std::span(used.data(), used.size()).subspan(chunk * points_a_chunk, std::min(points_a_chunk, used.size() - chunk * points_a_chunk));
+    };
+    std::vector<std::size_t> first(chunks + 1, 0);
+    parallel_each(chunks, 1, [&](std::size_t chunk) {
+        for (const std::uint8_t flag : chunk_of(chunk)) first[chunk + 1] += flag;
     });
-    return out;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) first[chunk + 1] += first[chunk];
+
+    const Curve curve(bounds_of(points, used));
+    Buffer<Keyed> sorted(first[chunks]), scratch(first[chunks]);
+    parallel_each(chunks, 1, [&](std::size_t chunk) {
+        Keyed* out = sorted.data() + first[chunk];
+        const std::size_t begin = chunk * points_a_chunk;
+        for (std::size_t i = begin; i < begin + chunk_of(chunk).size(); ++i)
+            if (used[i]) *out++ = {curve.key(points[i]), i};
+    });
+    radix_sort({sorted.data(), sorted.size()}, {scratch.data(), scratch.size()});
+    return sorted;
 }
 
-/// Turns tets into SortedTets some at a time: while one batch is gathered, its points are on their way from memory.
-class TetWriter {
-public:
-    TetWriter(const Buffer<CurvePoint>& points, SortedTet* out) : points_(points), out_(out) {}
+/// Calls f(tet, lowest rank, origin) for all tets, chunks of cells at the same time. Tets are taken some at a time: while
+/// one batch is gathered, the ranks of its points and the counters of its lowest ranks are on their way from memory.
+/// Returns false when it was cancelled.
+template <class F>
+bool for_ranked_tets(const PointReader& points, const CellReader& cells, const Buffer<std::uint32_t>& rank_of,
+                     const Buffer<std::uint64_t>& counters, const Progress& progress, const F& f) {
+    std::atomic<bool> cancelled{false};
+    parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
+        if (progress.cancelled()) cancelled = true;
+        if (cancelled) return;
+        struct Waiting {
+            Tet corners;
+            RankedTet tet;
+            std::uint32_t lowest;
+            TetOrigin origin;
+        };
+        std::array<Waiting, 32> batch;
+        std::size_t size = 0;
+        const auto flush = [&] {
+            for (Waiting& w : std::span(batch.data(), size)) {
+                for (std::size_t k = 0; k < 4; ++k) w.tet[k] = rank_of[w.corners[k]];
+                w.lowest = std::min(std::min(w.tet[0], w.tet[1]), std::min(w.tet[2], w.tet[3]));
+                __builtin_prefetch(&counters[w.lowest], 1);
+            }
+            for (const Waiting& w : std::span(batch.data(), size)) f(w.tet, w.lowest, w.origin);
+            size = 0;
+        };
+        cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
+            const bool cell_negative = !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(points, pieces) < 0;
+            for (unsigned piece = 0; piece < static_cast<unsigned>(pieces.count); ++piece) {
+                const Tet& corners = pieces.tets[piece];
+                for (const std::uint64_t corner : corners) __builtin_prefetch(&rank_of[corner]);
+                batch[size++] = {corners, {}, 0, TetOrigin::make(cell, piece, cell_negative)};
+                if (size == batch.size()) flush();
+            }
+        });
+        flush();
+    });
+    return !cancelled;
+}
 
-    void add(TetId id, const Tet& corners, bool cell_negative) {
-        for (const std::uint64_t corner : corners) __builtin_prefetch(&points_[corner]);
-        batch_[size_++] = {id, corners, cell_negative};
-        if (size_ == batch_.size()) flush();
-    }
-    void flush() {
-        for (std::size_t i = 0; i < size_; ++i) {
-            const Tet& t = batch_[i].corners;
-            const CurvePoint &a = points_[t[0]], &b = points_[t[1]], &c = points_[t[2]], &d = points_[t[3]];
-            const int sign = orientation_sign(a.place, b.place, c.place, d.place);
-            *out_++ = SortedTet::make(CurveSteps::key(a.steps + b.steps + c.steps + d.steps), batch_[i].id,
-                                      {sign < 0, sign == 0, batch_[i].cell_negative});
+std::uint64_t count_up(std::uint64_t& counter) {
+    return std::atomic_ref<std::uint64_t>(counter).fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Sorts the tets of one lowest rank, which arrive in any order, by origin.
+void sort_bucket(std::span<RankedTet> tets, std::span<TetOrigin> origins) {
+    for (std::size_t i = 1; i < tets.size(); ++i) {
+        const RankedTet tet = tets[i];
+        const TetOrigin origin = origins[i];
+        std::size_t at = i;
+        for (; at > 0 && origins[at - 1].value > origin.value; --at) {
+            tets[at] = tets[at - 1];
+            origins[at] = origins[at - 1];
         }
-        size_ = 0;
+        tets[at] = tet;
+        origins[at] = origin;
+    }
+}
+
+/// The same for a point with very many tets.
+void sort_large_bucket(std::span<RankedTet> tets, std::span<TetOrigin> origins) {
+    std::vector<std::pair<std::uint64_t, RankedTet>> all(tets.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = {origins[i].value, tets[i]};
+    tbb::parallel_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        origins[i] = {all[i].first};
+        tets[i] = all[i].second;
+    }
+}
+
+RankedTet ascending(RankedTet tet) {
+    std::sort(tet.begin(), tet.end());
+    return tet;
+}
+
+/// Calls f(position) for each tet of a bucket that has the corners of an earlier one.
+template <class F>
+void for_repeated(std::span<const RankedTet> tets, std::vector<std::pair<RankedTet, std::size_t>>& scratch, const F& f) {
+    const auto sum = [](const RankedTet& t) { return std::uint64_t{t[0]} + t[1] + t[2] + t[3]; };
+    if (tets.size() <= small_bucket) {
+        std::array<std::uint64_t, small_bucket> sums;
+        for (std::size_t i = 0; i < tets.size(); ++i) {
+            sums[i] = sum(tets[i]);
+            for (std::size_t k = 0; k < i; ++k)
+                if (sums[k] == sums[i] && ascending(tets[k]) == ascending(tets[i])) {
+                    f(i);
+                    break;
+                }
+        }
+        return;
+    }
+    scratch.clear();
+    for (std::size_t i = 0; i < tets.size(); ++i) scratch.emplace_back(ascending(tets[i]), i);
+    std::sort(scratch.begin(), scratch.end());
+    for (std::size_t i = 1; i < scratch.size(); ++i)
+        if (scratch[i].first == scratch[i - 1].first) f(scratch[i].second);
+}
+
+/// What turning the tets of some ranks finds out.
+struct Turned {
+    Orienter::Counts counts;
+    std::int64_t balance = 0;              ///< upright minus negative tetrahedra, repeated ones too
+    std::vector<std::uint64_t> repeated;   ///< positions
+    std::vector<std::uint64_t> flat;       ///< positions of flat tetrahedra: turned as most are, once that is known
+};
+
+/// Gives sorted tets their stored form.
+class Turner {
+public:
+    Turner(const Grid& grid, const CellReader& cells, TetOrder& order) : points_(grid.points), cells_(cells), order_(order) {}
+
+    /// The tets [begin, end), which have one lowest rank and are in any order.
+    void turn(std::uint64_t begin, std::uint64_t end, Turned& out) {
+        const std::span<RankedTet> tets(order_.tets.data() + begin, end - begin);
+        const std::span<TetOrigin> origins(order_.origins.data() + begin, end - begin);
+        if (tets.size() <= small_bucket) sort_bucket(tets, origins);
+        else sort_large_bucket(tets, origins);
+        repeated_.assign(tets.size(), 0);
+        for_repeated(tets, scratch_, [&](std::size_t i) { repeated_[i] = 1; });
+        for (std::size_t i = 0; i < tets.size(); ++i) turn_one(begin + i, repeated_[i] != 0, out);
     }
 
 private:
-    struct Waiting {
-        TetId id;
-        Tet corners;
-        bool cell_negative;
+    struct Corner {
+        std::uint64_t point;
+        std::uint32_t rank;
+        bool operator<(const Corner& other) const { return point < other.point; }
     };
 
-    const Buffer<CurvePoint>& points_;
-    SortedTet* out_;
-    std::array<Waiting, 32> batch_;
-    std::size_t size_ = 0;
+    void turn_one(std::uint64_t position, bool repeated, Turned& out) {
+        RankedTet& tet = order_.tets[position];
+        std::array<Corner, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = {order_.point_of[tet[k]], tet[k]};
+        const int sign = points_.orientation({corners[0].point, corners[1].point, corners[2].point, corners[3].point});
+        const bool whole = Orienter::is_whole(cells_.type(order_.origins[position].cell()));
+        if (whole) out.balance += sign;
+        if (repeated) {
+            out.repeated.push_back(position);
+            return;
+        }
+        if (whole && sign == 0) out.flat.push_back(position);
+        if (out.counts.add(sign, whole, order_.origins[position].cell_negative())) std::swap(corners[2], corners[3]);
+        corners = canonical(corners);
+        for (std::size_t k = 0; k < 4; ++k) tet[k] = corners[k].rank;
+    }
+
+    PointReader points_;
+    const CellReader& cells_;
+    TetOrder& order_;
+    std::vector<std::uint8_t> repeated_;
+    std::vector<std::pair<RankedTet, std::size_t>> scratch_;
 };
 
-/// Writes every tet with its key and its signs. Returns whether most whole tetrahedra are negative.
-bool write_tets(const Grid& grid, const CellReader& cells, const TetCounts& counts, Buffer<SortedTet>& tets, const Progress& progress) {
-    const PointReader coordinates(grid.points);
-    const Buffer<CurvePoint> points = curve_points(coordinates, counts.used);
-    std::atomic<std::int64_t> balance{0};
-    parallel_each(counts.first.size() - 1, 1, [&](std::size_t chunk) {
-        if (progress.cancelled()) return;
-        SortedTet* const out = tets.data() + counts.first[chunk];
-        TetWriter writer(points, out);
-        const std::size_t begin = chunk * cells_a_chunk, end = std::min(cells.count(), begin + cells_a_chunk);
-        cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
-            const bool cell_negative = !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(coordinates, pieces) < 0;
-            for (int piece = 0; piece < pieces.count; ++piece)
-                writer.add(TetId::make(cell, static_cast<unsigned>(piece)), pieces.tets[static_cast<std::size_t>(piece)], cell_negative);
-        });
-        writer.flush();
-        std::int64_t sum = 0;
-        for (const SortedTet* tet = out; tet != tets.data() + counts.first[chunk + 1]; ++tet)
-            if (Orienter::is_whole(cells.type(tet->tet().cell()))) sum += tet->signs().flat ? 0 : tet->signs().negative ? -1 : 1;
-        balance.fetch_add(sum, std::memory_order_relaxed);
-    });
-    return balance < 0;
-}
-
-Tet sorted_corners(const CellReader& cells, TetId id) {
-    Tet t = cells.tets(id.cell()).tets[id.piece()];
-    std::sort(t.begin(), t.end());
-    return t;
-}
-
-/// Finds repeated tets, which have equal keys and so stand in one run: positions of all but the first of each, ascending.
-std::vector<std::size_t> find_repeated(const CellReader& cells, const Buffer<SortedTet>& tets) {
-    const std::size_t n = tets.size();
-    constexpr std::size_t chunk_size = 1 << 16;
-    std::vector<std::vector<std::size_t>> found((n + chunk_size - 1) / chunk_size);
-    parallel_each(found.size(), 1, [&](std::size_t chunk) {
-        std::vector<std::pair<Tet, std::size_t>> run;
-        std::size_t begin = chunk * chunk_size;
-        const std::size_t stop = std::min(n, begin + chunk_size);
-        while (begin > 0 && begin < stop && tets[begin].key == tets[begin - 1].key) ++begin; // that run is not ours
-        while (begin < stop) {
-            std::size_t end = begin + 1;
-            while (end < n && tets[end].key == tets[begin].key) ++end;
-            if (end - begin > 1) {
-                run.clear();
-                for (std::size_t i = begin; i < end; ++i) run.emplace_back(sorted_corners(cells, tets[i].tet()), i);
-                std::sort(run.begin(), run.end());
-                for (std::size_t i = 1; i < run.size(); ++i)
-                    if (run[i].first == run[i - 1].first) found[chunk].push_back(run[i].second);
-            }
-            begin = end;
-        }
-    });
-    std::vector<std::size_t> all;
-    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-    std::sort(all.begin(), all.end());
-    return all;
-}
-
-void drop(Buffer<SortedTet>& tets, const std::vector<std::size_t>& dropped) {
-    if (dropped.empty()) return;
-    SortedTet* out = tets.data() + dropped[0];
+/// Removes the items at some positions, ascending.
+template <class T>
+void drop(Buffer<T>& items, const std::vector<std::uint64_t>& dropped) {
+    if (dropped.empty() || items.empty()) return;
+    T* out = items.data() + dropped[0];
     for (std::size_t k = 0; k < dropped.size(); ++k)
-        out = std::copy(tets.data() + dropped[k] + 1, tets.data() + (k + 1 < dropped.size() ? dropped[k + 1] : tets.size()), out);
-    tets.shrink(tets.size() - dropped.size());
+        out = std::copy(items.data() + dropped[k] + 1, items.data() + (k + 1 < dropped.size() ? dropped[k + 1] : items.size()), out);
+    items.shrink(items.size() - dropped.size());
 }
 
 struct Partial {
@@ -245,15 +315,12 @@ TetSurvey survey_tets(const Grid& grid, const CellReader& cells) {
 }
 
 TetCounts count_tets(const CellReader& cells) {
-    const std::size_t chunks = (cells.count() + cells_a_chunk - 1) / cells_a_chunk;
     TetCounts counts;
-    counts.first.assign(chunks + 1, 0);
     counts.used = Buffer<std::uint8_t>(cells.points());
     parallel_ranges(cells.points(), 1 << 18, [&](std::size_t begin, std::size_t end) { std::fill_n(counts.used.data() + begin, end - begin, 0); });
-    std::vector<std::array<std::uint64_t, 2>> without(chunks); // collapsed tets, cells left out
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
+    std::atomic<std::uint64_t> all_tets{0}, all_collapsed{0}, all_left_out{0};
+    parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
         std::uint64_t tets = 0, collapsed = 0, left_out = 0;
-        const std::size_t begin = chunk * cells_a_chunk, end = std::min(cells.count(), begin + cells_a_chunk);
         cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
             tets += static_cast<std::uint64_t>(pieces.count);
             collapsed += static_cast<std::uint64_t>(pieces.collapsed);
@@ -262,33 +329,80 @@ TetCounts count_tets(const CellReader& cells) {
                 for (const std::uint64_t corner : tet)
                     std::atomic_ref<std::uint8_t>(counts.used[corner]).store(1, std::memory_order_relaxed);
         });
-        counts.first[chunk + 1] = tets;
-        without[chunk] = {collapsed, left_out};
+        all_tets += tets;
+        all_collapsed += collapsed;
+        all_left_out += left_out;
     });
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-        counts.first[chunk + 1] += counts.first[chunk];
-        counts.collapsed += without[chunk][0];
-        counts.left_out += without[chunk][1];
-    }
+    counts.tets = all_tets;
+    counts.collapsed = all_collapsed;
+    counts.left_out = all_left_out;
     return counts;
 }
 
-Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, const Progress& progress) {
+Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, bool keep_origins, const Progress& progress) {
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "packing was cancelled"}; };
+    const PointReader points(grid.points);
     TetOrder order;
-    order.tets = Buffer<SortedTet>(counts.tets());
-    order.mostly_negative = write_tets(grid, cells, counts, order.tets, progress);
-    counts.used.release();
-    if (progress.cancelled()) return cancelled();
-    progress("pack", 0.15);
+    Buffer<std::uint32_t> rank_of(counts.used.size());
     {
-        Buffer<SortedTet> scratch(order.tets.size());
-        radix_sort({order.tets.data(), order.tets.size()}, {scratch.data(), scratch.size()});
+        const Buffer<Keyed> sorted = sort_points(points, counts.used);
+        counts.used.release();
+        constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
+        if (sorted.size() >= limit)
+            return Error{ErrorCode::invalid_data, fmt::format("the tets use {} points, but there can be {}", sorted.size(), limit - 1)};
+        order.point_of = Buffer<std::uint64_t>(sorted.size());
+        parallel_ranges(sorted.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t rank = begin; rank < end; ++rank) {
+                order.point_of[rank] = sorted[rank].number;
+                rank_of[sorted[rank].number] = static_cast<std::uint32_t>(rank);
+            }
+        });
     }
     if (progress.cancelled()) return cancelled();
-    const std::vector<std::size_t> repeated = find_repeated(cells, order.tets);
-    drop(order.tets, repeated);
+    progress("pack", 0.05);
+
+    // Tets by their lowest rank: counted, then each put where the next one goes.
+    const std::size_t ranks = order.point_of.size();
+    Buffer<std::uint64_t> next(ranks + 1);
+    parallel_ranges(next.size(), 1 << 16, [&](std::size_t begin, std::size_t end) { std::fill_n(next.data() + begin, end - begin, 0); });
+    const auto count = [&](const RankedTet&, std::uint32_t lowest, TetOrigin) { count_up(next[lowest]); };
+    if (!for_ranked_tets(points, cells, rank_of, next, progress, count)) return cancelled();
+    for (std::uint64_t rank = 0, sum = 0; rank <= ranks; ++rank) sum += std::exchange(next[rank], sum);
+    order.tets = Buffer<RankedTet>(counts.tets);
+    order.origins = Buffer<TetOrigin>(counts.tets);
+    const auto put = [&](const RankedTet& tet, std::uint32_t lowest, TetOrigin origin) {
+        const std::uint64_t at = count_up(next[lowest]);
+        order.tets[at] = tet;
+        order.origins[at] = origin;
+    };
+    if (!for_ranked_tets(points, cells, rank_of, next, progress, put)) return cancelled();
+    rank_of.release();
+    progress("pack", 0.2);
+
+    constexpr std::size_t ranks_a_chunk = 4096;
+    std::vector<Turned> turned((ranks + ranks_a_chunk - 1) / ranks_a_chunk);
+    parallel_each(turned.size(), 1, [&](std::size_t chunk) {
+        if (progress.cancelled()) return;
+        Turner turner(grid, cells, order);
+        for (std::size_t rank = chunk * ranks_a_chunk; rank < std::min(ranks, (chunk + 1) * ranks_a_chunk); ++rank)
+            turner.turn(rank ? next[rank - 1] : 0, next[rank], turned[chunk]); // next[rank] is now where its tets end
+    });
+    if (progress.cancelled()) return cancelled();
+    std::int64_t balance = 0;
+    std::vector<std::uint64_t> repeated;
+    for (const Turned& part : turned) {
+        order.orientation.combine(part.counts);
+        balance += part.balance;
+        repeated.insert(repeated.end(), part.repeated.begin(), part.repeated.end());
+    }
+    if (balance < 0) // in the canonical order, mirroring is an exchange of the last two corners
+        for (const Turned& part : turned)
+            for (const std::uint64_t position : part.flat) std::swap(order.tets[position][2], order.tets[position][3]);
+    order.inverted = order.orientation.inverted(balance < 0);
     order.repeated = repeated.size();
+    if (!keep_origins) order.origins.release();
+    drop(order.tets, repeated);
+    drop(order.origins, repeated);
     progress("pack", 0.3);
     return order;
 }

@@ -33,39 +33,44 @@ struct TetSurvey {
 /// Bounds, counts and orientation of a checked grid. Parallel, one pass over the cells.
 TetSurvey survey_tets(const Grid& grid, const CellReader& cells);
 
-/// How many tets there are, by chunks of cells, and which points they use.
+/// What one pass over the point numbers of all cells finds out.
 struct TetCounts {
-    static constexpr std::size_t cells_a_chunk = 1 << 14;
-
-    std::vector<std::uint64_t> first; ///< where each chunk's tets start, and how many there are in all
-    Buffer<std::uint8_t> used;        ///< by point: 1 when a tet has it
-    std::uint64_t collapsed = 0, left_out = 0;
-
-    std::uint64_t tets() const { return first.back(); }
+    std::uint64_t tets = 0, collapsed = 0, left_out = 0;
+    Buffer<std::uint8_t> used; ///< by point: 1 when a tet has it
 };
 
-/// Counts the tets of a checked grid. Parallel, one pass over the point numbers of the cells. One byte a point.
+/// Counts the tets of a checked grid. Parallel. One byte a point.
 TetCounts count_tets(const CellReader& cells);
 
-/// A tet on its way through sorting.
-struct SortedTet {
-    std::uint64_t key; ///< position of the centroid along the curve
-    std::uint64_t id;  ///< ascends with cell and piece
+/// A tet by the ranks of its corners: the places of its points along the curve.
+using RankedTet = std::array<std::uint32_t, 4>;
 
-    static SortedTet make(std::uint64_t key, TetId tet, TetSigns signs) { return {key, tet.value << 3 | signs.bits()}; }
-    TetId tet() const { return {id >> 3}; }
-    TetSigns signs() const { return TetSigns::from_bits(id & 7); }
+/// Where a tet comes from, in the user's order, and which way its split cell is turned. Ascends with cell and piece.
+struct TetOrigin {
+    std::uint64_t value;
+
+    static TetOrigin make(std::uint64_t cell, unsigned piece, bool cell_negative) {
+        return {cell << 4 | piece << 1 | std::uint64_t{cell_negative}};
+    }
+    std::uint64_t cell() const { return value >> 4; }
+    bool cell_negative() const { return value & 1; }
 };
 
-/// Every tet once, sorted along the curve, then by cell: 16 bytes a tet. Of tets with the same four corners the first in
-/// the user's order stays; the others are dropped and counted. Deterministic for any thread count.
+/// Every tet once, in its stored form, by its lowest rank, then by cell. Of tets with the same four corners the first in the
+/// user's order stays; the others are dropped and counted. Deterministic for any thread count.
 struct TetOrder {
-    Buffer<SortedTet> tets;
-    std::uint64_t repeated = 0;
-    bool mostly_negative = false; ///< most of the whole tetrahedra are
+    Buffer<RankedTet> tets;
+    Buffer<TetOrigin> origins;      ///< of each tet, when wanted
+    Buffer<std::uint64_t> point_of; ///< rank -> user's point
+    Orienter::Counts orientation;   ///< of the tets that stay
+    std::uint64_t inverted = 0, repeated = 0;
 };
 
-/// Cost   32 bytes a tet, or 16 a tet and 33 a point
-Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, const Progress& progress);
+/// Sorts the points along a Hilbert curve, and the tets by their lowest point. Points are gathered from the user's arrays
+/// along the curve, so that their order there matters little.
+///
+/// Cost     24 bytes a tet and 20 a point
+/// Errors   invalid_data when tets use 2^32 points or more; cancelled
+Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, bool keep_origins, const Progress& progress);
 
 } // namespace isotet::core

@@ -24,8 +24,16 @@ namespace {
 
 using core::Tet;
 
+core::RankedTet ranked(const Tet& tet) {
+    core::RankedTet out;
+    std::copy(tet.begin(), tet.end(), out.begin());
+    return out;
+}
+
 void expect_clusters(const std::vector<Tet>& tets) {
-    const core::BlockClusters block = core::grow_clusters(tets);
+    std::vector<core::RankedTet> ranks(tets.size());
+    std::transform(tets.begin(), tets.end(), ranks.begin(), ranked);
+    const core::BlockClusters block = core::grow_clusters(ranks);
     ASSERT_EQ(block.order.size(), tets.size());
     std::vector<std::uint32_t> sorted = block.order;
     std::sort(sorted.begin(), sorted.end());
@@ -199,6 +207,39 @@ TEST(PackedArrays, SayWhatTheTetsSay) {
         const Grid grid = made_grid(shape, 7, {"gyroid"});
         expect_packed_arrays(grid, point_field(grid));
     }
+}
+
+TEST(RepeatedTets, AreFoundAmongManyOfOnePoint) {
+    // Any three of eleven points around a twelfth: 165 tets, each several times and in any order of corners.
+    std::mt19937 random(5);
+    std::vector<std::array<double, 3>> points{{0, 0, 0}};
+    for (int i = 0; i < 11; ++i) {
+        const auto coordinate = [&] { return 1 + static_cast<double>(random() % 1000); };
+        points.push_back({coordinate(), coordinate(), coordinate()});
+    }
+    std::vector<Corners> tets;
+    std::map<std::set<std::uint64_t>, std::uint64_t> first;
+    while (tets.size() < 2000) {
+        std::set<std::uint64_t> corners{0};
+        while (corners.size() < 4) corners.insert(1 + random() % 11);
+        first.emplace(corners, tets.size());
+        Corners tet;
+        std::copy(corners.begin(), corners.end(), tet.begin());
+        std::shuffle(tet.begin(), tet.end(), random);
+        tets.push_back(tet);
+    }
+    PackOptions options;
+    options.source_cells = true;
+    const PackedGrid packed = pack(tet_grid(points, tets), field_of(std::vector<float>(12, 0)), options).value();
+    EXPECT_EQ(packed.report().tets, first.size());
+    EXPECT_EQ(packed.report().repeated_tets, tets.size() - first.size());
+    std::set<std::uint64_t> kept, expected;
+    const core::Packed& data = packed.data();
+    for (std::size_t c = 0; c < data.clusters(); ++c)
+        for (std::size_t i = 0; i < data.headers[c].tets; ++i)
+            kept.insert(data.user_cell(core::group_size * std::size_t{data.headers[c].first_group} + i));
+    for (const auto& [corners, cell] : first) expected.insert(cell);
+    EXPECT_EQ(kept, expected);
 }
 
 TEST(PackReport, CountsWhatIsOdd) {

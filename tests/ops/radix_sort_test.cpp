@@ -13,15 +13,15 @@
 namespace isotet::test {
 namespace {
 
-using core::SortedTet;
+using core::Keyed;
 
 void expect_sorted(std::size_t n, const std::function<std::uint64_t(std::size_t)>& key_of) {
-    std::vector<SortedTet> items(n), scratch(n);
+    std::vector<Keyed> items(n), scratch(n);
     for (std::size_t i = 0; i < n; ++i) items[i] = {key_of(i), i};
-    std::vector<SortedTet> expected = items;
-    std::stable_sort(expected.begin(), expected.end(), [](const SortedTet& a, const SortedTet& b) { return a.key < b.key; });
+    std::vector<Keyed> expected = items;
+    std::stable_sort(expected.begin(), expected.end(), [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
     core::radix_sort(items, scratch);
-    const auto same = [](const SortedTet& a, const SortedTet& b) { return a.key == b.key && a.id == b.id; };
+    const auto same = [](const Keyed& a, const Keyed& b) { return a.key == b.key && a.number == b.number; };
     EXPECT_TRUE(std::equal(items.begin(), items.end(), expected.begin(), same)) << n << " items";
 }
 
