@@ -5,6 +5,7 @@
 # The trees stand in build/test; what ctest says about all of them together comes last.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
+source "$root/scripts/lib/software_vulkan.sh"
 source "$root/scripts/lib/thread_sanitizer.sh"
 
 readonly trees=$root/build/test
@@ -47,19 +48,24 @@ build_thread() {
         -DISOTET_TEST_PREFIX=thread. -DISOTET_TEST_KINDS="$for_thread"
 }
 
+# The device that the tests of the Vulkan engine run on.
+build_mesa() {
+    software_vulkan "$trees/mesa"
+}
+
 build_fuzz() {
     CC=clang-19 CXX=clang++-19 build fuzz "$trees/fuzz" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 \
         -DISOTET_FUZZ=ON -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF -DISOTET_TESTS=OFF
 }
 
-# try_stage NAME TEST_FOLDER: builds one tree, and adds to the list of ctest whether that went well, and its tests.
+# try_stage NAME [TEST_FOLDER]: builds one tree, and adds to the list of ctest whether that went well, and its tests.
 try_stage() {
-    local name=$1 folder=$2 built=$trees/$1.built
+    local name=$1 folder=${2:-} built=$trees/$1.built
     rm -f "$built"
     if "build_$name"; then touch "$built"; fi
     {
         printf 'add_test([=[build.%s]=] "%s" "-E" "cat" "%s")\n' "$name" "$(command -v cmake)" "$built"
-        if [[ -e $built ]]; then printf 'subdirs([=[%s]=])\n' "$folder"; fi
+        if [[ -e $built && -n $folder ]]; then printf 'subdirs([=[%s]=])\n' "$folder"; fi
     } >>"$trees/CTestTestfile.cmake"
 }
 
@@ -76,6 +82,7 @@ if [[ $mode == full ]]; then
     try_stage thread thread
     try_stage fuzz fuzz/tests/fuzz
 fi
+try_stage mesa # last: it sets the folder of caches, which is not for compilers
 
 say "runs the tests"
 export ASAN_OPTIONS=allocator_may_return_null=1:detect_stack_use_after_return=1

@@ -2,8 +2,11 @@
 # The Debian packages that the project needs, and how missing ones get onto a Debian 12. Sourced, never run.
 
 readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libcli11-dev nlohmann-json3-dev
-    libvtk9-dev libpugixml-dev libhdf5-dev)
-readonly packages_to_test=(libgtest-dev)
+    libvtk9-dev libpugixml-dev libhdf5-dev glslc libvulkan-dev)
+# The second line is what the software Vulkan device of software_vulkan.sh is linked with.
+readonly packages_to_test=(libgtest-dev vulkan-validationlayers
+    libdrm2 libexpat1 libllvm15 libwayland-client0 libx11-xcb1 libxcb-dri3-0 libxcb-present0 libxcb-randr0 libxcb-shm0
+    libxcb-sync1 libxcb-xfixes0 libxcb1 libxshmfence1 libzstd1 zlib1g)
 readonly packages_to_test_fully=(clang-19 libclang-rt-19-dev xz-utils)
 
 missing_packages() {

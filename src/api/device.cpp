@@ -11,7 +11,7 @@ namespace isotet {
 
 Result<DeviceList> list_devices() {
     return core::guarded("listing the devices", []() -> Result<DeviceList> {
-        Result<vulkan::FoundDevices> found = vulkan::find_devices(vulkan::Validation::off, {});
+        Result<vulkan::FoundDevices> found = vulkan::find_devices({}, {});
         if (found) return DeviceList{std::move(found->infos), ""};
         if (found.error().code == ErrorCode::machine) return DeviceList{{}, std::move(found.error().message)};
         return found.error();

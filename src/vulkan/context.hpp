@@ -26,7 +26,7 @@ namespace isotet::vulkan {
 
 /// What tests force upon a device; the public options stay apart. Nothing here changes a byte of any result.
 struct Settings {
-    Validation validation = Validation::off;
+    Watch watch;
     bool force_staging = false;                            ///< as if the processor did not reach the device's memory
     std::uint32_t groups_an_axis = 0;                      ///< most workgroups an axis; 0: the device's own limit
     std::uint64_t staging_bytes = std::uint64_t{16} << 20; ///< of each of the two staging buffers
@@ -56,7 +56,7 @@ public:
     Memory& memory() noexcept { return *memory_; }
     Kernels& kernels() noexcept { return *kernels_; }
     Staging& staging() noexcept { return *staging_; }
-    const Instance& instance() const noexcept { return *instance_; }
+    const PipelineCache& pipeline_cache() const noexcept { return *cache_; }
 
 private:
     Context() = default;

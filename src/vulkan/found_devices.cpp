@@ -5,9 +5,9 @@
 
 namespace isotet::vulkan {
 
-Result<FoundDevices> find_devices(Validation validation, const std::function<void(Capabilities&)>& alter) {
+Result<FoundDevices> find_devices(const Watch& watch, const std::function<void(Capabilities&)>& alter) {
     FoundDevices found;
-    Result<std::unique_ptr<Instance>> instance = Instance::open(validation);
+    Result<std::unique_ptr<Instance>> instance = Instance::open(watch);
     if (!instance) return instance.error();
     found.instance = *std::move(instance);
     Result<std::vector<VkPhysicalDevice>> handles = found.instance->devices();

@@ -23,6 +23,6 @@ struct FoundDevices {
 
 /// `alter`    changes what devices say of themselves, for tests; may be empty
 /// Errors     machine when there is no loader, no driver, or either fails
-Result<FoundDevices> find_devices(Validation validation, const std::function<void(Capabilities&)>& alter);
+Result<FoundDevices> find_devices(const Watch& watch, const std::function<void(Capabilities&)>& alter);
 
 } // namespace isotet::vulkan

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -34,6 +33,12 @@ bool has_validation_layer(const LoaderFunctions& call) {
                        [](const auto& one) { return std::string_view(one.layerName) == validation_layer; });
 }
 
+VKAPI_ATTR VkBool32 VKAPI_CALL hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* complaints) {
+    static_cast<Complaints*>(complaints)->add(data->pMessage ? data->pMessage : "");
+    return VK_FALSE;
+}
+
 Error no_instance(VkResult result) {
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
         return {ErrorCode::machine, "there is a Vulkan loader on this machine, but no driver that it can use"};
@@ -42,7 +47,8 @@ Error no_instance(VkResult result) {
 
 } // namespace
 
-Result<std::unique_ptr<Instance>> Instance::open(Validation validation) {
+Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
+    const Validation validation = watch.validation;
     const Result<LoaderFunctions> found = loader();
     if (!found) return found.error();
     const LoaderFunctions& load = *found;
@@ -57,6 +63,7 @@ Result<std::unique_ptr<Instance>> Instance::open(Validation validation) {
         return Error{ErrorCode::machine, fmt::format("the layer {} is not installed", validation_layer)};
 
     std::unique_ptr<Instance> instance(new Instance);
+    instance->watch_ = watch;
     const bool naming = has_extension(load, nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     std::vector<const char*> extensions;
     if (naming) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -72,8 +79,8 @@ Result<std::unique_ptr<Instance>> Instance::open(Validation validation) {
     messages.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
     messages.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    messages.pfnUserCallback = &Instance::hear;
-    messages.pUserData = instance.get();
+    messages.pfnUserCallback = &hear;
+    messages.pUserData = watch.complaints.get();
 
     const std::array<VkValidationFeatureEnableEXT, 2> assisted = {VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
                                                                   VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
@@ -138,19 +145,6 @@ Result<std::vector<VkPhysicalDevice>> Instance::devices() const {
         found.resize(count);
         return found;
     }
-}
-
-std::vector<std::string> Instance::complaints() const {
-    const std::lock_guard lock(mutex_);
-    return complaints_;
-}
-
-VkBool32 Instance::hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
-    auto* instance = static_cast<Instance*>(self);
-    const std::lock_guard lock(instance->mutex_);
-    instance->complaints_.emplace_back(data->pMessage ? data->pMessage : "");
-    return VK_FALSE;
 }
 
 } // namespace isotet::vulkan

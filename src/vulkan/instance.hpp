@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <isotet/result.hpp>
@@ -20,10 +21,34 @@ enum class Validation : std::uint8_t {
     gpu_assisted, ///< the rules, and every address that a kernel uses; slow
 };
 
+/// What the validation layer has to say. Outlives the instance, so that it can tell of what was not given back.
+///
+/// Threads   safe from many threads
+class Complaints {
+public:
+    void add(std::string complaint) {
+        const std::lock_guard lock(mutex_);
+        all_.push_back(std::move(complaint));
+    }
+    std::vector<std::string> all() const {
+        const std::lock_guard lock(mutex_);
+        return all_;
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::vector<std::string> all_;
+};
+
+struct Watch {
+    Validation validation = Validation::off;
+    std::shared_ptr<Complaints> complaints; ///< not null, unless validation is off
+};
+
 class Instance {
 public:
     /// Errors   machine when there is no loader, no driver, or no validation layer though one is asked for
-    static Result<std::unique_ptr<Instance>> open(Validation validation = Validation::off);
+    static Result<std::unique_ptr<Instance>> open(const Watch& watch = {});
 
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -35,19 +60,13 @@ public:
     /// All devices, in the driver's order.
     Result<std::vector<VkPhysicalDevice>> devices() const;
 
-    /// Errors and warnings of the validation layer so far. Safe from many threads.
-    std::vector<std::string> complaints() const;
-
 private:
     Instance() = default;
-    static VKAPI_ATTR VkBool32 VKAPI_CALL hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-                                               const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
 
+    Watch watch_;
     VkInstance handle_ = VK_NULL_HANDLE;
     InstanceFunctions call_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-    mutable std::mutex mutex_;
-    std::vector<std::string> complaints_;
 };
 
 } // namespace isotet::vulkan

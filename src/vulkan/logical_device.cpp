@@ -116,13 +116,12 @@ Result<void> LogicalDevice::wait(VkFence done, std::chrono::milliseconds limit, 
     const auto nanoseconds = static_cast<std::uint64_t>(std::chrono::nanoseconds(limit).count());
     const VkResult waited = call_.vkWaitForFences(handle_, 1, &done, VK_TRUE, nanoseconds);
     if (waited == VK_SUCCESS) return {};
+    unanswered_ = done; // nobody knows whether the work goes on
     if (waited == VK_TIMEOUT) {
-        unanswered_ = done;
         return lose(fmt::format("the device {} did not answer within {} s while {}", device_name_,
                                 static_cast<double>(limit.count()) / 1000, what));
     }
     if (waited == VK_ERROR_DEVICE_LOST) return lose(fmt::format("the device {} was lost while {}", device_name_, what));
-    unanswered_ = done; // nobody knows whether the work goes on
     return lose(failure(fmt::format("waiting for the device {} while {}", device_name_, what), waited).message);
 }
 

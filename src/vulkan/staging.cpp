@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,13 @@ Result<void> Staging::start_copy(Lane& lane, const Buffer& from, const Buffer& t
 
 Result<void> Staging::finish(Lane& lane) { return lane.work.wait(context_.settings().wait_limit, "copying"); }
 
+Result<void> Staging::finish_all(std::array<Lane, 2>& lanes) {
+    Result<void> all;
+    for (Lane& lane : lanes)
+        if (Result<void> done = finish(lane); !done) all = std::move(done);
+    return all;
+}
+
 Result<void> Staging::upload(const Buffer& to, std::uint64_t offset, std::span<const std::byte> bytes) {
     if (Result<void> fits = require_inside(to, offset, bytes.size(), "upload"); !fits) return fits;
     if (Result<void> lives = context_.device().alive(); !lives) return lives;
@@ -52,6 +60,12 @@ Result<void> Staging::upload(const Buffer& to, std::uint64_t offset, std::span<c
         std::memcpy(to.mapped().data() + offset, bytes.data(), bytes.size());
         return {};
     }
+    const Result<void> sent = send(to, offset, bytes);
+    const Result<void> ended = finish_all(up_);
+    return sent ? ended : sent;
+}
+
+Result<void> Staging::send(const Buffer& to, std::uint64_t offset, std::span<const std::byte> bytes) {
     // While one lane's bytes travel, the other's are put in place.
     std::size_t turn = 0;
     for (std::uint64_t begin = 0; begin < bytes.size(); begin += chunk_bytes_, ++turn) {
@@ -62,8 +76,6 @@ Result<void> Staging::upload(const Buffer& to, std::uint64_t offset, std::span<c
         if (Result<void> started = start_copy(lane, lane.buffer, to, {0, offset + begin, chunk.size()}); !started)
             return started;
     }
-    for (Lane& lane : up_)
-        if (Result<void> done = finish(lane); !done) return done;
     return {};
 }
 
@@ -75,6 +87,12 @@ Result<void> Staging::download(const Buffer& from, std::uint64_t offset, std::sp
         std::memcpy(bytes.data(), from.mapped().data() + offset, bytes.size());
         return {};
     }
+    const Result<void> fetched = fetch(from, offset, bytes);
+    const Result<void> ended = finish_all(down_);
+    return fetched ? ended : fetched;
+}
+
+Result<void> Staging::fetch(const Buffer& from, std::uint64_t offset, std::span<std::byte> bytes) {
     const std::uint64_t chunks = (bytes.size() + chunk_bytes_ - 1) / chunk_bytes_;
     const auto chunk_at = [&](std::uint64_t i) {
         return bytes.subspan(i * chunk_bytes_, std::min<std::uint64_t>(chunk_bytes_, bytes.size() - i * chunk_bytes_));

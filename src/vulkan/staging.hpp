@@ -19,7 +19,8 @@ class Context;
 /// Copies directly where the processor reaches the buffer, else through two staging buffers in turn, on the queue that only
 /// copies where there is one.
 ///
-/// Threads   one call at a time
+/// Guarantees   nothing is under way when a call returns, be it with an error
+/// Threads      one call at a time
 class Staging {
 public:
     Staging(Context& context, std::uint64_t chunk_bytes);
@@ -46,6 +47,9 @@ private:
     Result<void> prepare(Lane& lane, Where where, std::uint64_t bytes);
     Result<void> start_copy(Lane& lane, const Buffer& from, const Buffer& to, const VkBufferCopy& region);
     Result<void> finish(Lane& lane);
+    Result<void> finish_all(std::array<Lane, 2>& lanes);
+    Result<void> send(const Buffer& to, std::uint64_t offset, std::span<const std::byte> bytes);
+    Result<void> fetch(const Buffer& from, std::uint64_t offset, std::span<std::byte> bytes);
 
     Context& context_;
     std::uint64_t chunk_bytes_;

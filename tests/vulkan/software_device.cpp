@@ -7,7 +7,7 @@ namespace isotet::test {
 
 vulkan::Settings watched() {
     vulkan::Settings settings;
-    settings.validation = vulkan::Validation::on;
+    settings.watch = {vulkan::Validation::on, std::make_shared<vulkan::Complaints>()};
     settings.wait_limit = std::chrono::seconds(30);
     settings.cache_folder = std::filesystem::path();
     return settings;
@@ -22,15 +22,17 @@ std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings,
 }
 
 void OnDevice::reopen(const vulkan::Settings& settings, std::uint64_t memory_limit) {
-    if (context_) TearDown();
-    context_.reset();
+    close();
     context_ = open_software(settings, memory_limit);
+    EXPECT_EQ(context_->notices(), std::vector<std::string>());
 }
 
-void OnDevice::TearDown() {
+void OnDevice::close() {
     if (!context_) return;
-    for (const std::string& complaint : context_->instance().complaints()) ADD_FAILURE() << complaint;
-    EXPECT_EQ(context_->notices(), std::vector<std::string>());
+    const std::shared_ptr<vulkan::Complaints> complaints = context_->settings().watch.complaints;
+    ASSERT_EQ(context_.use_count(), 1);
+    context_.reset();
+    for (const std::string& complaint : complaints->all()) ADD_FAILURE() << complaint;
 }
 
 vulkan::Buffer OnDevice::take(std::uint64_t bytes, vulkan::Where where) {

@@ -21,16 +21,18 @@ vulkan::Settings watched();
 /// Opens the software device; a failure of the test, with the reason, when there is none that can be trusted.
 std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings = watched(), std::uint64_t memory_limit = 0);
 
-/// A test with a device, which fails when the validation layer has something to say.
+/// A test with a device, which fails when the validation layer has something to say, be it that something was not given back.
 class OnDevice : public testing::Test {
 protected:
     void SetUp() override { reopen(watched()); }
-    void TearDown() override;
+    void TearDown() override { close(); }
 
-    /// Another device with other settings.
+    /// The device with other settings; buffers of the old one must be gone.
     void reopen(const vulkan::Settings& settings, std::uint64_t memory_limit = 0);
+    void close();
 
     vulkan::Context& context() { return *context_; }
+    const std::shared_ptr<vulkan::Context>& shared_context() { return context_; }
 
     vulkan::Buffer take(std::uint64_t bytes, vulkan::Where where = vulkan::Where::device);
     vulkan::Buffer upload(std::span<const std::uint32_t> words);

@@ -19,7 +19,7 @@ const float component_floor = 9.094947017729282379150390625e-13;    ///< 2^-40, 
 #endif
 
 /// They are nearer to the exact ones than so many units; the self-test notices when they are not.
-const uint most_corrections = 8u;
+const uint most_corrections = 16u;
 
 /// Not-a-number by its bits: comparisons may be compiled away.
 bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }

@@ -1,0 +1,111 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Compiled pipelines are kept between runs, and no state of their file does any harm.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "vtk_readers/temporary_folder.hpp"
+#include "vulkan/pipeline_cache.hpp"
+#include "vulkan/software_device.hpp"
+
+namespace isotet::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t head_bytes = 24;
+
+class CompiledPipelines : public testing::Test {
+protected:
+    /// Opens and closes a device; the bytes that were read from the cache's file.
+    std::size_t open() {
+        vulkan::Settings settings = watched();
+        settings.cache_folder = folder();
+        const auto context = open_software(settings);
+        EXPECT_EQ(context->notices(), std::vector<std::string>());
+        return context->pipeline_cache().bytes_read();
+    }
+
+    fs::path folder() const { return temporary_.file("cache/isotet"); }
+
+    fs::path file() const {
+        const fs::directory_iterator files(folder());
+        EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "one file, and nothing beside it";
+        return fs::directory_iterator(folder())->path();
+    }
+
+    std::string content() const {
+        std::ifstream in(file(), std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    void replace(const std::string& bytes) const {
+        const fs::path path = file();
+        std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+    }
+
+    TemporaryFolder temporary_;
+};
+
+TEST_F(CompiledPipelines, AreReadByTheNextDevice) {
+    EXPECT_EQ(open(), 0u);
+    const std::size_t size = fs::file_size(file());
+    EXPECT_GT(size, head_bytes);
+    EXPECT_EQ(open(), size - head_bytes);
+}
+
+TEST_F(CompiledPipelines, AreNotReadFromABrokenFile) {
+    open();
+    const std::string whole = content();
+    for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{24}, whole.size() / 2, whole.size() - 1}) {
+        replace(whole.substr(0, length));
+        EXPECT_EQ(open(), 0u) << "cut to " << length;
+        EXPECT_EQ(content().size(), whole.size()) << "written anew";
+    }
+    for (const std::size_t place : {std::size_t{0}, std::size_t{9}, std::size_t{16}, std::size_t{24}, whole.size() - 1}) {
+        std::string broken = whole;
+        broken[place] = static_cast<char>(broken[place] ^ 0x10);
+        replace(broken);
+        EXPECT_EQ(open(), 0u) << "byte " << place;
+    }
+    replace(whole + "x");
+    EXPECT_EQ(open(), 0u);
+    replace(whole);
+    EXPECT_EQ(open(), whole.size() - head_bytes);
+}
+
+TEST_F(CompiledPipelines, DoWithoutAFolder) {
+    fs::create_directories(folder().parent_path());
+    std::ofstream(folder()) << "a file where the folder should be";
+    EXPECT_EQ(open(), 0u);
+    EXPECT_TRUE(fs::is_regular_file(folder()));
+}
+
+TEST_F(CompiledPipelines, DoWithoutAFileOfThatName) {
+    open();
+    const fs::path path = file();
+    fs::remove(path);
+    fs::create_directories(path / "in the way");
+    EXPECT_EQ(open(), 0u);
+    EXPECT_EQ(file(), path);
+}
+
+TEST(PipelineCacheFolder, FollowsTheXdgSpecification) {
+    const auto folder_with = [](const char* cache, const char* home) {
+        cache ? setenv("XDG_CACHE_HOME", cache, 1) : unsetenv("XDG_CACHE_HOME");
+        home ? setenv("HOME", home, 1) : unsetenv("HOME");
+        return vulkan::pipeline_cache_folder().string();
+    };
+    EXPECT_EQ(folder_with("/some/cache", "/home/me"), "/some/cache/isotet");
+    EXPECT_EQ(folder_with(nullptr, "/home/me"), "/home/me/.cache/isotet");
+    EXPECT_EQ(folder_with("", "/home/me"), "/home/me/.cache/isotet");
+    EXPECT_EQ(folder_with("relative", "/home/me"), "/home/me/.cache/isotet");
+    EXPECT_EQ(folder_with(nullptr, nullptr), "");
+}
+
+} // namespace
+} // namespace isotet::test
