@@ -1,0 +1,146 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isotet/device.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+namespace vulkan {
+class GridOnDevice;
+class SurfaceBuffers;
+}
+
+struct DeviceGridOptions {
+    std::uint64_t page_bytes = std::uint64_t{32} << 20; ///< of a page: what is moved at once where not all of the grid fits
+    /// Device memory that uploading leaves free for surfaces where not all of the grid fits; nothing: an eighth of what is
+    /// free.
+    std::optional<std::uint64_t> surface_bytes;
+};
+
+/// Device memory that a packed grid takes.
+struct DeviceGridNeeds {
+    std::uint64_t resident_bytes = 0;     ///< always there: ranges, counts and masks of all clusters
+    std::uint64_t page_bytes = 0;         ///< all pages; fewer will do
+    std::uint64_t largest_page_bytes = 0; ///< one page is the least
+    std::size_t pages = 0;
+
+    std::uint64_t all() const noexcept { return resident_bytes + page_bytes; }
+    std::uint64_t least() const noexcept { return resident_bytes + largest_page_bytes; }
+};
+
+/// How long a pass took on the device: "select", "count", "scan", "emit" and so on.
+struct DevicePass {
+    std::string name;
+    double seconds = 0;
+};
+
+/// What a call cost.
+struct DeviceWork {
+    std::vector<DevicePass> passes;    ///< in order; empty where the device has no timestamps
+    double device_seconds = 0;         ///< from the beginning of the first pass to the end of the last, waits between aside
+    double waited_seconds = 0;         ///< for the device, as seen from here
+    std::uint64_t uploaded_bytes = 0;  ///< over the bus
+    std::uint64_t downloaded_bytes = 0;
+    std::uint64_t page_loads = 0;      ///< pages that had to be uploaded
+    std::uint32_t submissions = 0;     ///< one, unless arrays had to grow or pages to come
+};
+
+/// A surface in a device's memory, ready to be drawn. Moving is cheap; it keeps the device open.
+///
+/// `vertices`, `triangle_count`   fewer than 2^32
+class DeviceSurface {
+public:
+    DeviceSurface();
+    DeviceSurface(DeviceSurface&&) noexcept;
+    DeviceSurface& operator=(DeviceSurface&&) noexcept;
+    ~DeviceSurface();
+
+    double isovalue() const noexcept;
+    std::uint64_t vertices() const noexcept;
+    std::uint64_t triangle_count() const noexcept;
+    std::uint64_t device_bytes() const noexcept; ///< taken, with the room that is kept for the next surface
+
+    /// The buffers, for drawing; src/vulkan/engine/surface_buffers.hpp says what stands where. Null before any extraction.
+    const vulkan::SurfaceBuffers* buffers() const noexcept;
+
+private:
+    friend class DeviceGrid;
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// A packed grid on a device: uploaded once, then each new isovalue is answered there, and only what is asked for comes back.
+///
+/// The grid lies on the device in pages. Where not all of them fit, those that an isovalue needs are loaded, and the least
+/// recently used ones go: slower, the same surfaces.
+///
+/// Guarantees   surfaces are the same bytes as those of extract() on the same packed grid, unless the device has a notice
+/// Threads      one call at a time on one device
+/// Method       marching tetrahedra over clusters in compute shaders; docs/inside/gpu.md
+class DeviceGrid {
+public:
+    /// What upload() will need, told before anything is taken.
+    /// Cost   a pass over the links of the packed grid
+    static DeviceGridNeeds needs(const PackedGrid& packed, const DeviceGridOptions& options = {});
+
+    /// Uploads a packed grid.
+    ///
+    /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages that did
+    ///            not fit, for the user's numbers of points and cells, and for ties
+    /// Cost       about 11 bytes a tet over the bus
+    /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more; out_of_memory,
+    ///            before anything is uploaded, when needs().least() is more than is free; machine; cancelled
+    static Result<DeviceGrid> upload(const Device& device, const PackedGrid& packed, const DeviceGridOptions& options = {},
+                                     const Progress& progress = {});
+
+    DeviceGrid(DeviceGrid&&) noexcept;
+    DeviceGrid& operator=(DeviceGrid&&) noexcept;
+    ~DeviceGrid();
+
+    std::uint64_t device_bytes() const noexcept; ///< resident arrays and the pages that are there
+    bool complete() const noexcept;              ///< all pages are there
+
+    /// Extracts the surface of an isovalue; it stays on the device. `options` as for extract(), `engine` aside.
+    ///
+    /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes. Where pages must be loaded: these,
+    ///          up to twice
+    /// Errors   as extract(); invalid_argument when the surface has 2^32 vertices or triangles or more; out_of_memory of the
+    ///          device; machine
+    Result<DeviceSurface> extract(double isovalue, const ExtractOptions& options = {}, const Progress& progress = {});
+
+    /// The same, into a surface that was extracted before: its memory is used again where it is large enough.
+    Result<void> extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options = {}, const Progress& progress = {});
+
+    /// The surfaces of several isovalues, in their order, in one submission where everything fits.
+    Result<std::vector<DeviceSurface>> extract(std::span<const double> isovalues, const ExtractOptions& options = {},
+                                               const Progress& progress = {});
+
+    /// A surface of this grid, on the processor, with all that was asked for when it was extracted. The packed grid must
+    /// still have the field that it had then.
+    ///
+    /// Cost     the arrays over the bus; carried fields are interpolated here
+    Result<Extraction> download(const DeviceSurface& surface, const Progress& progress = {});
+
+    /// What the last call of extract() or download() cost.
+    const DeviceWork& work() const noexcept;
+
+private:
+    struct Data;
+    explicit DeviceGrid(std::unique_ptr<Data> data);
+    Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
+                              const Progress& progress);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet

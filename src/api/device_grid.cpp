@@ -1,0 +1,169 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/device_grid.hpp>
+
+#include <utility>
+
+#include "api/finish.hpp"
+#include "api/fits.hpp"
+#include "api/ties.hpp"
+#include "core/field_storage.hpp"
+#include "core/guard.hpp"
+#include "core/parallel.hpp"
+#include "core/storage.hpp"
+#include "vulkan/engine/grid_on_device.hpp"
+
+namespace isotet {
+
+struct DeviceSurface::Data {
+    std::shared_ptr<vulkan::Context> context; ///< before the buffers, so that it goes after them
+    vulkan::SurfaceBuffers buffers;
+    double isovalue = 0;
+    float stored = 0;
+    ExtractOptions options;
+
+    Result<Extraction> download(const core::Packed& packed) const;
+};
+
+struct DeviceGrid::Data {
+    std::unique_ptr<vulkan::GridOnDevice> grid;
+    DeviceWork work;
+};
+
+DeviceSurface::DeviceSurface() = default;
+DeviceSurface::DeviceSurface(DeviceSurface&&) noexcept = default;
+DeviceSurface& DeviceSurface::operator=(DeviceSurface&&) noexcept = default;
+DeviceSurface::~DeviceSurface() = default;
+
+double DeviceSurface::isovalue() const noexcept { return data_ ? data_->isovalue : 0; }
+std::uint64_t DeviceSurface::vertices() const noexcept { return data_ ? data_->buffers.vertices() : 0; }
+std::uint64_t DeviceSurface::triangle_count() const noexcept { return data_ ? data_->buffers.triangle_count() : 0; }
+std::uint64_t DeviceSurface::device_bytes() const noexcept { return data_ ? data_->buffers.bytes() : 0; }
+const vulkan::SurfaceBuffers* DeviceSurface::buffers() const noexcept { return data_ ? &data_->buffers : nullptr; }
+
+DeviceGrid::DeviceGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+DeviceGrid::DeviceGrid(DeviceGrid&&) noexcept = default;
+DeviceGrid& DeviceGrid::operator=(DeviceGrid&&) noexcept = default;
+DeviceGrid::~DeviceGrid() = default;
+
+namespace {
+
+vulkan::SurfaceParts parts_of(const ExtractOptions& options) {
+    return {options.normals, options.edge_ends || !options.point_fields.empty(),
+            options.source_cells || !options.cell_fields.empty()};
+}
+
+DeviceWork work_of(vulkan::WorkDone&& done) {
+    DeviceWork work;
+    for (vulkan::Timing& pass : done.timings.passes) work.passes.push_back({std::move(pass.pass), pass.seconds});
+    work.device_seconds = done.timings.device_seconds;
+    work.waited_seconds = done.timings.waited_seconds;
+    work.uploaded_bytes = done.uploaded;
+    work.downloaded_bytes = done.downloaded;
+    work.page_loads = done.page_loads;
+    work.submissions = done.submissions;
+    return work;
+}
+
+} // namespace
+
+DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOptions& options) {
+    if (!packed.data().single()) return {};
+    const vulkan::GridNeeds needs = vulkan::GridOnDevice::needs(packed.data(), options.page_bytes);
+    return {needs.resident, needs.pages, needs.largest_page, needs.page_count};
+}
+
+Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& packed, const DeviceGridOptions& options,
+                                      const Progress& progress) {
+    return core::guarded("uploading the packed grid", [&]() -> Result<DeviceGrid> {
+        vulkan::GridOptions grid_options;
+        grid_options.page_bytes = options.page_bytes;
+        grid_options.reserve = options.surface_bytes.value_or(device.memory_free() / 8);
+        auto grid = vulkan::GridOnDevice::upload(device.context(), packed.data(), grid_options, progress);
+        if (!grid) return std::move(grid).error();
+        return DeviceGrid(std::make_unique<Data>(Data{*std::move(grid), {}}));
+    });
+}
+
+/// Geometry and normals as the device made them; fields as after any engine.
+Result<Extraction> DeviceSurface::Data::download(const core::Packed& packed) const {
+    if (auto ok = api::check_fit(options, packed); !ok) return ok.error();
+    auto raw = buffers.download(*context, packed);
+    if (!raw) return std::move(raw).error();
+    ExtractOptions without_normals = options;
+    without_normals.normals = Normals::none;
+    std::vector<core::Storage> storages;
+    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
+    Extraction out;
+    out.surface = api::finish<float>(packed.origin, without_normals, storages, *raw);
+    out.surface.normals_kind = options.normals;
+    out.surface.normals = raw->normals;
+    api::report_ties(packed, isovalue, stored, raw->tied_points, out.report);
+    out.report.selected_clusters = raw->selected_clusters;
+    out.report.surface_bytes = api::bytes_of(out.surface);
+    return out;
+}
+
+std::uint64_t DeviceGrid::device_bytes() const noexcept { return data_->grid->device_bytes(); }
+bool DeviceGrid::complete() const noexcept { return data_->grid->complete(); }
+const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }
+
+Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double> isovalues, const ExtractOptions& options,
+                                                       const Progress& progress) {
+    std::vector<DeviceSurface> surfaces(isovalues.size());
+    if (auto ok = extract_into(isovalues, surfaces, options, progress); !ok) return ok.error();
+    return surfaces;
+}
+
+Result<DeviceSurface> DeviceGrid::extract(double isovalue, const ExtractOptions& options, const Progress& progress) {
+    DeviceSurface surface;
+    if (auto ok = extract(isovalue, surface, options, progress); !ok) return ok.error();
+    return surface;
+}
+
+Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options, const Progress& progress) {
+    return extract_into(std::span(&isovalue, 1), std::span(&surface, 1), options, progress);
+}
+
+Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
+                                      const ExtractOptions& options, const Progress& progress) {
+    return core::guarded("extraction", [&]() -> Result<void> {
+        vulkan::GridOnDevice& grid = *data_->grid;
+        const core::Packed& packed = grid.packed();
+        if (auto ok = api::check_isovalues(isovalues); !ok) return ok;
+        if (auto ok = api::check_fit(options, packed); !ok) return ok;
+        std::vector<vulkan::Task> tasks;
+        for (std::size_t i = 0; i < isovalues.size(); ++i) {
+            auto& data = surfaces[i].data_;
+            if (!data || data->context != grid.shared_context()) data = std::make_unique<DeviceSurface::Data>();
+            data->context = grid.shared_context();
+            data->isovalue = isovalues[i];
+            data->stored = core::store_isovalue<float>(isovalues[i], packed.storage);
+            data->options = options;
+            if (auto ok = data->buffers.prepare(grid.context(), parts_of(options)); !ok) return ok;
+            tasks.push_back({data->stored, options.ties, data->buffers});
+        }
+        auto done = grid.extract(tasks, progress);
+        if (!done) return done.error();
+        data_->work = work_of(*std::move(done));
+        progress("extract", 1);
+        return {};
+    });
+}
+
+Result<Extraction> DeviceGrid::download(const DeviceSurface& surface, const Progress& progress) {
+    return core::guarded("downloading the surface", [&]() -> Result<Extraction> {
+        if (!surface.data_) return Error{ErrorCode::invalid_argument, "the surface to download was never extracted"};
+        const DeviceSurface::Data& data = *surface.data_;
+        const core::Packed& packed = data_->grid->packed();
+        vulkan::Staging& staging = data.context->staging();
+        const std::uint64_t down = staging.downloaded();
+        Result<Extraction> result = Error{};
+        core::with_threads(data.options.threads, [&] { result = data.download(packed); });
+        data_->work = {};
+        data_->work.downloaded_bytes = staging.downloaded() - down;
+        progress("download", 1);
+        return result;
+    });
+}
+
+} // namespace isotet

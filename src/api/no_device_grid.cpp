@@ -1,0 +1,49 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What stands for device_grid.cpp in a build without Vulkan: there is no device to upload to, so nothing else can be called.
+#include <isotet/device_grid.hpp>
+
+namespace isotet {
+
+struct DeviceSurface::Data {};
+struct DeviceGrid::Data {
+    DeviceWork work;
+};
+
+namespace {
+
+Error built_without() { return {ErrorCode::machine, "isotet was built without Vulkan (ISOTET_VULKAN=OFF)"}; }
+
+} // namespace
+
+DeviceSurface::DeviceSurface() = default;
+DeviceSurface::DeviceSurface(DeviceSurface&&) noexcept = default;
+DeviceSurface& DeviceSurface::operator=(DeviceSurface&&) noexcept = default;
+DeviceSurface::~DeviceSurface() = default;
+
+double DeviceSurface::isovalue() const noexcept { return 0; }
+std::uint64_t DeviceSurface::vertices() const noexcept { return 0; }
+std::uint64_t DeviceSurface::triangle_count() const noexcept { return 0; }
+std::uint64_t DeviceSurface::device_bytes() const noexcept { return 0; }
+const vulkan::SurfaceBuffers* DeviceSurface::buffers() const noexcept { return nullptr; }
+
+DeviceGrid::DeviceGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+DeviceGrid::DeviceGrid(DeviceGrid&&) noexcept = default;
+DeviceGrid& DeviceGrid::operator=(DeviceGrid&&) noexcept = default;
+DeviceGrid::~DeviceGrid() = default;
+
+DeviceGridNeeds DeviceGrid::needs(const PackedGrid&, const DeviceGridOptions&) { return {}; }
+Result<DeviceGrid> DeviceGrid::upload(const Device&, const PackedGrid&, const DeviceGridOptions&, const Progress&) {
+    return built_without();
+}
+std::uint64_t DeviceGrid::device_bytes() const noexcept { return 0; }
+bool DeviceGrid::complete() const noexcept { return false; }
+const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }
+
+Result<DeviceSurface> DeviceGrid::extract(double, const ExtractOptions&, const Progress&) { return built_without(); }
+Result<void> DeviceGrid::extract(double, DeviceSurface&, const ExtractOptions&, const Progress&) { return built_without(); }
+Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double>, const ExtractOptions&, const Progress&) {
+    return built_without();
+}
+Result<Extraction> DeviceGrid::download(const DeviceSurface&, const Progress&) { return built_without(); }
+
+} // namespace isotet

@@ -1,0 +1,80 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Which pages of a packed grid are on the device. All of them where there is room; else the least recently used one goes
+// when another is wanted.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+#include "core/packed.hpp"
+#include "vulkan/context.hpp"
+#include "vulkan/engine/page_plan.hpp"
+#include "vulkan/engine/resident.hpp"
+
+namespace isotet::vulkan {
+
+class PageCache {
+public:
+    /// `packed` and `resident` are borrowed; nothing is loaded yet.
+    PageCache(Context& context, const core::Packed& packed, std::vector<PlannedPage> plan, Resident& resident);
+
+    const std::vector<PlannedPage>& plan() const noexcept { return plan_; }
+    bool is_loaded(std::uint32_t page) const noexcept { return static_cast<bool>(pages_[page].buffer); }
+    const Buffer& buffer(std::uint32_t page) const noexcept { return pages_[page].buffer; }
+    const layout::Page& entry(std::uint32_t page) const noexcept { return entries_[page]; }
+    std::uint64_t loaded_bytes() const;
+    bool complete() const; ///< all are there
+    std::uint64_t loads() const noexcept { return loads_; } ///< so far
+
+    /// Pages whose range of values holds a stored isovalue, ascending.
+    std::vector<std::uint32_t> hit_by(float isovalue) const;
+
+    /// Whether all these pages are there; they count as used now.
+    bool touch(std::span<const std::uint32_t> pages);
+
+    /// Loads pages, one at least, until all are there or only `reserve` bytes of the device's memory are free.
+    Result<void> load_all(std::uint64_t reserve, const Progress& progress);
+
+    /// Has as many of the `wanted` pages on the device together as fit, and gives them, in Page::batch, a number of their
+    /// own (batch()); those that are there already first. Pages that are not wanted make room.
+    ///
+    /// Returns  the pages that are there: some, unless none is wanted; the caller asks again for the others
+    /// Errors   out_of_memory when there is not room for a single one; machine; cancelled
+    Result<std::vector<std::uint32_t>> load(std::span<const std::uint32_t> wanted, const Progress& progress);
+    std::uint32_t batch() const noexcept { return batch_; }
+
+    /// Takes the least recently used page off the device; false when none is there.
+    Result<bool> release_one();
+
+    /// After the field or the points of the packed grid changed.
+    void find_ranges();
+    Result<void> release_all();
+
+private:
+    struct Loaded {
+        Buffer buffer;
+        std::uint64_t last_use = 0;
+    };
+
+    Result<void> load_page(std::uint32_t page);
+    Result<void> fit_page(std::uint32_t page, std::uint64_t keep_since);
+    std::uint32_t oldest(std::uint64_t before) const;
+    void release(std::uint32_t page);
+    Result<void> upload_table();
+
+    Context& context_;
+    const core::Packed& packed_;
+    Resident& resident_;
+    std::vector<PlannedPage> plan_;
+    std::vector<Loaded> pages_;
+    std::vector<layout::Page> entries_;
+    std::vector<core::Range<float>> ranges_;
+    std::uint64_t use_ = 0, loads_ = 0;
+    std::uint32_t batch_ = 0;
+};
+
+} // namespace isotet::vulkan

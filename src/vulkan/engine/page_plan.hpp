@@ -1,0 +1,49 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Cutting a packed grid into pages: whole clusters, and a halo of the points that these borrow from other pages, so that a
+// page can be worked on without any other. kernels/shared/layout.h draws one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/buffer.hpp"
+#include "core/packed.hpp"
+#include "vulkan/engine/layout.hpp"
+
+namespace isotet::vulkan {
+
+struct PlannedPage {
+    std::uint32_t first_cluster = 0, clusters = 0;
+    std::uint64_t first_link = 0;        ///< of the packed grid
+    std::uint32_t link_words = 0;        ///< of the packed grid; on the device there is one more a neighbour
+    std::uint32_t neighbours = 0;
+    std::uint32_t groups = 0;
+    core::Buffer<std::uint32_t> halo;    ///< packed points, ascending
+    layout::Page layout{};               ///< all but `data` and `batch`
+    std::uint32_t words = 0;             ///< all of it
+
+    std::uint64_t bytes() const { return std::uint64_t{4} * words; }
+    std::uint32_t end_cluster() const { return first_cluster + clusters; }
+    std::uint32_t points() const { return layout.own_points + static_cast<std::uint32_t>(halo.size()); }
+};
+
+/// Pages of about `page_bytes`, each of one cluster at least, halos beside.
+///
+/// `packed`     single precision, fewer than 2^32 points
+/// Cost         O(C + foreign points); parallel
+std::vector<PlannedPage> plan_pages(const core::Packed& packed, std::uint64_t page_bytes);
+
+/// Where the clusters of a page lie in it and what they have; `first_mask` is left to the caller.
+/// `out`   page.clusters
+void place_clusters(const core::Packed& packed, const PlannedPage& page, std::uint32_t page_number, layout::Cluster* out);
+
+/// What the device holds of a page, as it stands there. Parallel.
+/// `clusters`  of this page, from place_clusters()
+/// `out`       page.words words
+void fill_page(const core::Packed& packed, const PlannedPage& page, const layout::Cluster* clusters, std::uint32_t* out);
+
+/// The same for parts that depend on the field only: values (and gradients), of own points and halo.
+void fill_values(const core::Packed& packed, const PlannedPage& page, float* out);
+void fill_gradients(const core::Packed& packed, const PlannedPage& page, std::uint32_t* out);
+
+} // namespace isotet::vulkan

@@ -1,0 +1,120 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/engine/passes.hpp"
+
+#include <cstddef>
+
+#include "engine_shaders.hpp"
+
+namespace isotet::vulkan {
+
+namespace {
+
+using layout::Lists;
+using layout::Output;
+
+layout::ExtractPush push_of(const Resident& resident, const Task& task, std::uint32_t batch) {
+    return {address_of(resident.tables), address_of(task.surface.head), task.isovalue, task.ties == Ties::merge ? 1u : 0u, batch};
+}
+
+constexpr std::uint64_t arguments_in(std::size_t list) { return list + offsetof(layout::ListHead, groups_x); }
+
+} // namespace
+
+Result<const Kernel*> Passes::emit_kernel(Context& context, std::uint32_t edge_room) const {
+    const std::uint32_t constants[] = {edge_room, parts_.ends, parts_.normals == Normals::gradient, parts_.sources};
+    return context.kernels().get(engine::emit, constants);
+}
+
+Result<Passes> Passes::make(Context& context, const Resident& resident, const SurfaceParts& parts) {
+    Passes passes(resident, parts);
+    Result<void> done;
+    const auto keep = [&](const Kernel*& kernel, Result<const Kernel*> made) {
+        if (made) kernel = *made;
+        else if (done) done = std::move(made).error();
+    };
+    keep(passes.select_, context.kernels().get(engine::select));
+    keep(passes.count_, context.kernels().get(engine::count));
+    keep(passes.scan_, context.kernels().get(engine::scan));
+    keep(passes.emit_few_, passes.emit_kernel(context, layout::few_edges));
+    if (parts.normals == Normals::face) keep(passes.face_normals_, context.kernels().get(engine::face_normals));
+    if (parts.normals == Normals::gradient) {
+        keep(passes.lowest_triangles_, context.kernels().get(engine::lowest_triangles));
+        keep(passes.missing_normals_, context.kernels().get(engine::missing_normals));
+    }
+    if (!done) return done.error();
+    return passes;
+}
+
+Result<void> Passes::make_emit_many(Context& context) {
+    auto kernel = emit_kernel(context, layout::most_edges);
+    if (!kernel) return std::move(kernel).error();
+    emit_many_ = *kernel;
+    return {};
+}
+
+void Passes::begin(Recorder& recorder, const Task& task) const {
+    const Output head = task.surface.empty_head();
+    recorder.write(task.surface.head, 0, std::as_bytes(std::span(&head, 1)));
+    recorder.fill(resident_.lists, 0, sizeof(Lists), 0);
+}
+
+void Passes::begin_again(Recorder& recorder, const Task& task) const {
+    const Output head = task.surface.empty_head();
+    constexpr std::size_t fixed = offsetof(Output, vertex_capacity);
+    recorder.write(task.surface.head, fixed, std::as_bytes(std::span(&head, 1)).subspan(fixed));
+    recorder.fill(resident_.lists, offsetof(Lists, few_edges), sizeof(Lists) - offsetof(Lists, few_edges), 0);
+}
+
+void Passes::select(Recorder& recorder, const Task& task) const {
+    const Resident& r = resident_;
+    recorder.dispatch(*select_, push_of(r, task, 0), r.sizes().segments,
+                      {reads(r.tables), reads(r.clusters), reads(r.ranges), writes(r.masks), writes(r.counts), writes(r.sums),
+                       writes(r.selected), writes(r.lists), writes(task.surface.head)});
+}
+
+void Passes::count(Recorder& recorder, const Task& task, std::uint32_t batch) const {
+    const Resident& r = resident_;
+    recorder.dispatch_indirect(*count_, push_of(r, task, batch), r.lists, arguments_in(offsetof(Lists, selected)),
+                               {reads(r.tables), reads(r.pages), reads(r.clusters), reads(r.ranges), reads(r.no_data),
+                                reads(r.selected), reads(r.lists), writes(r.masks), writes(r.counts), writes(r.sums),
+                                writes(task.surface.head)});
+}
+
+void Passes::scan(Recorder& recorder, const Task& task) const {
+    const Resident& r = resident_;
+    recorder.dispatch(*scan_, push_of(r, task, 0), r.sizes().segments,
+                      {reads(r.tables), reads(r.counts), reads(r.sums), writes(r.starts), writes(r.emitted), writes(r.lists),
+                       writes(task.surface.head)});
+}
+
+void Passes::emit(Recorder& recorder, const Task& task, std::uint32_t batch) const {
+    const Resident& r = resident_;
+    const SurfaceBuffers& s = task.surface;
+    std::vector<Use> uses{reads(r.tables), reads(r.pages), reads(r.clusters), reads(r.ranges), reads(r.masks), reads(r.starts),
+                          reads(r.emitted), reads(r.lists), writes(s.head)};
+    for (const Buffer* array : {&s.positions, &s.triangles, &s.normals, &s.lowest, &s.ends, &s.weights, &s.sources})
+        if (*array) uses.push_back(writes(*array));
+    const layout::ExtractPush push = push_of(r, task, batch);
+    recorder.dispatch_indirect(*emit_few_, push, r.lists, arguments_in(offsetof(Lists, few_edges)), uses);
+    if (!emit_many_) return;
+    recorder.label("emit, many edges");
+    recorder.dispatch_indirect(*emit_many_, push, r.lists, arguments_in(offsetof(Lists, many_edges)), uses);
+    recorder.label("");
+}
+
+void Passes::normals(Recorder& recorder, const Task& task) const {
+    const SurfaceBuffers& s = task.surface;
+    if (!s.normals) return;
+    const layout::SurfacePush push{address_of(s.head)};
+    const std::uint64_t of_vertices = offsetof(Output, vertex_groups_x), of_triangles = offsetof(Output, triangle_groups_x);
+    if (face_normals_)
+        recorder.dispatch_indirect(*face_normals_, push, s.head, of_triangles,
+                                   {reads(s.head), reads(s.positions), reads(s.triangles), writes(s.normals)});
+    if (!missing_normals_) return;
+    recorder.dispatch_indirect(*lowest_triangles_, push, s.head, of_triangles,
+                               {reads(s.head), reads(s.triangles), reads(s.normals), writes(s.lowest)});
+    recorder.dispatch_indirect(*missing_normals_, push, s.head, of_vertices,
+                               {reads(s.head), reads(s.positions), reads(s.triangles), reads(s.lowest), writes(s.normals)});
+}
+
+} // namespace isotet::vulkan

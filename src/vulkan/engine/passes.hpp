@@ -1,0 +1,60 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The passes of an extraction, for a recorder: which kernel, how many workgroups, what each reads and writes.
+// docs/inside/gpu.md draws them.
+#pragma once
+
+#include <cstdint>
+
+#include <isotet/extract.hpp>
+#include <isotet/result.hpp>
+
+#include "vulkan/context.hpp"
+#include "vulkan/engine/resident.hpp"
+#include "vulkan/engine/surface_buffers.hpp"
+#include "vulkan/recorder.hpp"
+
+namespace isotet::vulkan {
+
+/// What is extracted, and into what.
+struct Task {
+    float isovalue; ///< stored form
+    Ties ties;
+    SurfaceBuffers& surface;
+};
+
+class Passes {
+public:
+    /// Makes the kernels that surfaces with these parts need. `resident` is borrowed.
+    static Result<Passes> make(Context& context, const Resident& resident, const SurfaceParts& parts);
+
+    /// Makes the kernel for clusters with many crossed edges, which takes much shared memory and is hardly ever needed.
+    Result<void> make_emit_many(Context& context);
+    bool has_emit_many() const noexcept { return emit_many_; }
+
+    /// Empties the head of the surface.
+    void begin(Recorder& recorder, const Task& task) const;
+
+    /// Tells the head of the surface about new arrays; what it says about the surface stays.
+    void begin_again(Recorder& recorder, const Task& task) const;
+
+    void select(Recorder& recorder, const Task& task) const;
+    /// `batch`   pages with this number only; 0: all
+    void count(Recorder& recorder, const Task& task, std::uint32_t batch = 0) const;
+    void scan(Recorder& recorder, const Task& task) const;
+    /// Leaves clusters with many crossed edges out without make_emit_many().
+    void emit(Recorder& recorder, const Task& task, std::uint32_t batch = 0) const;
+
+    /// Normals that need the whole surface; nothing where the parts have none.
+    void normals(Recorder& recorder, const Task& task) const;
+
+private:
+    Passes(const Resident& resident, const SurfaceParts& parts) : resident_(resident), parts_(parts) {}
+    Result<const Kernel*> emit_kernel(Context& context, std::uint32_t edge_room) const;
+
+    const Resident& resident_;
+    SurfaceParts parts_;
+    const Kernel *select_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *emit_few_ = nullptr, *emit_many_ = nullptr;
+    const Kernel *face_normals_ = nullptr, *lowest_triangles_ = nullptr, *missing_normals_ = nullptr;
+};
+
+} // namespace isotet::vulkan

@@ -1,0 +1,123 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vulkan/engine/resident.hpp"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/parallel.hpp"
+
+namespace isotet::vulkan {
+
+namespace {
+
+std::uint64_t pieces(std::uint64_t n, std::uint64_t size) { return (n + size - 1) / size; }
+
+std::uint64_t mask_words_of(const core::ClusterHeader& h) { return layout::tied_words + pieces(h.own_seams, 32); }
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& array) {
+    return std::as_bytes(std::span(array.data(), array.size()));
+}
+
+} // namespace
+
+ResidentSizes::ResidentSizes(const core::Packed& packed, std::size_t page_count)
+    : clusters(packed.clusters()), segments(pieces(clusters, layout::segment_clusters)),
+      blocks(pieces(segments, layout::block_segments)), pages(page_count) {
+    for (const core::ClusterHeader& h : packed.headers) mask_words += mask_words_of(h);
+}
+
+std::uint64_t ResidentSizes::bytes() const {
+    return sizeof(layout::Tables) + sizeof(layout::Lists) + pages * sizeof(layout::Page) +
+           clusters * (sizeof(layout::Cluster) + sizeof(layout::Range) + sizeof(layout::Count) + sizeof(layout::Start) + 8) +
+           4 * pieces(clusters, 32) + 4 * mask_words + (segments + blocks) * sizeof(layout::Count);
+}
+
+Result<void> Resident::take(Context& context) {
+    struct Wanted {
+        Buffer& buffer;
+        std::uint64_t bytes;
+        const char* name;
+    };
+    const std::uint64_t c = sizes_.clusters;
+    for (const Wanted& wanted : {Wanted{tables, sizeof(layout::Tables), "tables"},
+                                 {pages, sizes_.pages * sizeof(layout::Page), "page table"},
+                                 {clusters, c * sizeof(layout::Cluster), "clusters"},
+                                 {ranges, c * sizeof(layout::Range), "ranges"},
+                                 {no_data, 4 * pieces(c, 32), "clusters without data"},
+                                 {masks, 4 * sizes_.mask_words, "masks"},
+                                 {counts, c * sizeof(layout::Count), "counts"},
+                                 {sums, (sizes_.segments + sizes_.blocks) * sizeof(layout::Count), "sums of counts"},
+                                 {starts, c * sizeof(layout::Start), "starts"},
+                                 {selected, 4 * c, "selected clusters"},
+                                 {emitted, 4 * c, "clusters to emit"},
+                                 {lists, sizeof(layout::Lists), "lists of clusters"}}) {
+        auto buffer = context.memory().take(wanted.bytes, Where::device, wanted.name);
+        if (!buffer) return std::move(buffer).error();
+        wanted.buffer = *std::move(buffer);
+    }
+    return {};
+}
+
+Result<void> Resident::upload_clusters(Context& context, const core::Packed& packed, const std::vector<PlannedPage>& plan) {
+    std::vector<layout::Cluster> records(packed.clusters());
+    core::parallel_each(plan.size(), 1, [&](std::size_t i) {
+        place_clusters(packed, plan[i], static_cast<std::uint32_t>(i), records.data() + plan[i].first_cluster);
+    });
+    std::uint64_t mask = 0;
+    for (std::size_t c = 0; c < records.size(); ++c) {
+        records[c].first_mask = static_cast<std::uint32_t>(mask);
+        mask += mask_words_of(packed.headers[c]);
+    }
+    return context.staging().upload(clusters, 0, bytes_of(records));
+}
+
+Result<void> Resident::upload_tables(Context& context, const core::Packed& packed) {
+    layout::Tables t{};
+    t.pages = address_of(pages);
+    t.clusters = address_of(clusters);
+    t.ranges = address_of(ranges);
+    t.no_data = address_of(no_data);
+    t.masks = address_of(masks);
+    t.counts = address_of(counts);
+    t.segments = address_of(sums);
+    t.blocks = address_of(sums, sizes_.segments * sizeof(layout::Count));
+    t.starts = address_of(starts);
+    t.selected = address_of(selected);
+    t.emitted = address_of(emitted);
+    t.lists = address_of(lists);
+    t.cluster_count = static_cast<std::uint32_t>(sizes_.clusters);
+    t.groups_an_axis = context.groups_an_axis();
+    t.any_no_data = packed.field_report.no_data > 0;
+    return context.staging().upload(tables, 0, std::as_bytes(std::span(&t, 1)));
+}
+
+Result<void> Resident::upload_ranges(Context& context, const core::Packed& packed) {
+    std::vector<std::uint32_t> bits(pieces(packed.clusters(), 32));
+    for (std::size_t c = 0; c < packed.clusters(); ++c) bits[c / 32] |= std::uint32_t{packed.has_no_data[c]} << c % 32;
+    if (auto ok = context.staging().upload(no_data, 0, bytes_of(bits)); !ok) return ok;
+    static_assert(sizeof(core::Range<float>) == sizeof(layout::Range));
+    if (auto ok = context.staging().upload(ranges, 0, bytes_of(packed.as<float>().ranges)); !ok) return ok;
+    return upload_tables(context, packed);
+}
+
+Result<void> Resident::upload_pages(Context& context, std::span<const layout::Page> entries) {
+    return context.staging().upload(pages, 0, std::as_bytes(entries));
+}
+
+Result<Resident> Resident::upload(Context& context, const core::Packed& packed, const std::vector<PlannedPage>& plan) {
+    Resident resident;
+    resident.sizes_ = ResidentSizes(packed, plan.size());
+    constexpr std::uint64_t limit = std::numeric_limits<std::uint32_t>::max();
+    if (resident.sizes_.mask_words > limit)
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("the masks of the packed grid have {} words, but the vulkan engine can number {}",
+                                 resident.sizes_.mask_words, limit)};
+    if (auto ok = resident.take(context); !ok) return ok.error();
+    if (auto ok = resident.upload_clusters(context, packed, plan); !ok) return ok.error();
+    if (auto ok = resident.upload_ranges(context, packed); !ok) return ok.error();
+    return resident;
+}
+
+} // namespace isotet::vulkan

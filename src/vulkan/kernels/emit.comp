@@ -1,0 +1,272 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Writes the vertices and triangles of each listed cluster straight to their place in the surface. A workgroup a cluster.
+// A vertex on an edge has as its number the crossed edges before it in a matrix of bits, one on a seam the bits before it in
+// its owner's mask: no edge is stored, nothing is searched for. Twin: cpu/emit.cpp.
+//
+// Vertices of a cluster: tied own points, own seams in stored order, inner edges by (lower, higher). Its triangles: by tet,
+// then by case table.
+#version 460
+#include "shared/arithmetic.glsl"
+#include "shared/groups.glsl"
+#include "shared/lists.glsl"
+#include "shared/cut.glsl"
+
+layout(constant_id = 0) const uint edge_room = 1024; ///< few_edges or most_edges: which of the two lists is worked through
+layout(constant_id = 1) const bool with_ends = false;
+layout(constant_id = 2) const bool with_normals = false;
+layout(constant_id = 3) const bool with_sources = false;
+
+layout(push_constant, scalar) uniform Push {
+    ExtractPush push;
+};
+
+shared uint points[max_cluster_points]; ///< page-local numbers of local points
+shared float values[max_cluster_points];
+shared uint tied_numbers[max_cluster_points]; ///< of the vertices at tied points
+shared uint edge_count;
+shared uint edge_ranks[matrix_words];         ///< crossed edges before each word of the matrix
+shared uint edge_numbers[edge_room];          ///< by rank: the vertex on the edge; before that, lower + 256 * higher
+shared uint seam_bits[edge_room / 32u];       ///< by rank: the edge is a seam
+shared uint seam_ranks[edge_room / 32u];
+shared uint one_triangle[max_cluster_groups]; ///< by place in hit_group, a bit a tet: gives at least one
+shared uint two_triangles[max_cluster_groups];
+shared uint first_triangle[max_cluster_groups];
+
+Tables tables;
+Start start;
+Output surface;
+Floats position_out, normal_out, weight_out;
+Words triangle_out, lowest_out, end_out, source_out;
+
+void open_output(uint number) {
+    start = Starts(tables.starts).at[number];
+    position_out = Floats(advance(surface.positions, start.vertex, 12u));
+    triangle_out = Words(advance(surface.triangles, start.triangle, 12u));
+    if (with_normals) {
+        normal_out = Floats(advance(surface.normals, start.vertex, 12u));
+        lowest_out = Words(advance(surface.lowest, start.vertex, 4u));
+    }
+    if (with_ends) {
+        end_out = Words(advance(surface.ends, start.vertex, 8u));
+        weight_out = Floats(advance(surface.weights, start.vertex, 4u));
+    }
+    if (with_sources) source_out = Words(advance(surface.sources, start.triangle, 4u));
+}
+
+/// Bits before `bit` in a mask that begins at word `first`.
+uint bits_before(uint first, uint bit) {
+    uint count = bitCount(Words(tables.masks).at[first + bit / 32u] & (1u << bit % 32u) - 1u);
+    for (uint word = 0u; word < bit / 32u; ++word) count += bitCount(Words(tables.masks).at[first + word]);
+    return count;
+}
+
+void write_normal(uint vertex, uint below, uint above_end, float t) {
+    const vec3 normal = vertex_normal(page_words.at[page.gradients + below], page_words.at[page.gradients + above_end], t);
+    for (uint axis = 0u; axis < 3u; ++axis) normal_out.at[3u * vertex + axis] = normal[axis];
+    if (normal != vec3(0.0)) return;
+    lowest_out.at[vertex] = 0xffffffffu;
+    OutputAt(push.surface).surface.missing_normals = 1u;
+}
+
+/// Writes the vertex between two local points. `vertex` counts this cluster's own.
+void write_vertex(uint vertex, uint below, uint above_end, float t) {
+    const vec3 a = position_of(points[below]), b = position_of(points[above_end]);
+    for (uint axis = 0u; axis < 3u; ++axis) position_out.at[3u * vertex + axis] = interpolate(a[axis], b[axis], t);
+    if (with_ends) {
+        end_out.at[2u * vertex] = packed_point(points[below]);
+        end_out.at[2u * vertex + 1u] = packed_point(points[above_end]);
+        weight_out.at[vertex] = t;
+    }
+    if (with_normals) write_normal(vertex, points[below], points[above_end], t);
+}
+
+void load_points() {
+    const uint self = gl_LocalInvocationIndex;
+    if (self >= local_points()) return;
+    points[self] = page_point(self);
+    values[self] = value_of(points[self]);
+    classify(self, values[self], push.isovalue, push.merge != 0u);
+}
+
+void cut_tets(bool special) {
+    const uint self = gl_LocalInvocationIndex;
+    const uint hits = bitCount(hit_groups);
+    for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
+        const uint lane = self % group_size;
+        const uint tet = hit_group[place] * group_size + lane;
+        if (tet >= tet_count) continue;
+        const CutTet cut = cut_tet(tet, special);
+        if (cut.triangles == 0u) continue;
+        add_edges(cut);
+        atomicOr(one_triangle[place], 1u << lane);
+        if (cut.triangles == 2u) atomicOr(two_triangles[place], 1u << lane);
+    }
+}
+
+/// Ranks of crossed edges, and the first triangle of each group.
+void rank_edges() {
+    const uint self = gl_LocalInvocationIndex;
+    uint edges = 0u;
+    for (uint i = 0u; i < 4u; ++i) edges += bitCount(matrix[4u * self + i]);
+    uint triangles = 0u;
+    if (self < max_cluster_groups) triangles = bitCount(one_triangle[self]) + bitCount(two_triangles[self]);
+    const uvec2 before = sum_before(uvec2(edges, triangles));
+    if (self < max_cluster_groups) first_triangle[self] = before.y;
+    uint rank = before.x;
+    for (uint i = 0u; i < 4u; ++i) {
+        edge_ranks[4u * self + i] = rank;
+        for (uint bits = matrix[4u * self + i]; bits != 0u; bits &= bits - 1u)
+            edge_numbers[rank++] = self + (32u * i + findLSB(bits) << 8);
+    }
+    if (self == workgroup_size - 1u) edge_count = rank;
+}
+
+uint rank_of(uvec2 edge) {
+    const uint word = matrix_word(edge);
+    return edge_ranks[word] + bitCount(matrix[word] & (1u << edge.y % 32u) - 1u);
+}
+
+void set_seam_number(uvec2 edge, uint number) {
+    const uint rank = rank_of(edge);
+    edge_numbers[rank] = number;
+    atomicOr(seam_bits[rank / 32u], 1u << rank % 32u);
+}
+
+bool is_masked(uint bit) { return (Words(tables.masks).at[cluster.first_mask + bit / 32u] >> bit % 32u & 1u) != 0u; }
+
+/// Numbers of the tied points that foreign clusters own, and of this cluster's own.
+void number_tied() {
+    const uint self = gl_LocalInvocationIndex;
+    if (self >= local_points() || !is_in(tied, self)) return;
+    if (self >= foreign_points) {
+        tied_numbers[self] = start.vertex + bits_before(cluster.first_mask, self - foreign_points);
+        return;
+    }
+    const Neighbour neighbour = neighbour_of(self, 0u);
+    tied_numbers[self] = Starts(tables.starts).at[neighbour.cluster].vertex +
+                         bits_before(Clusters(tables.clusters).at[neighbour.cluster].first_mask,
+                                     place_in_owner(tables, neighbour, self));
+}
+
+uint own_seam_number(uint k) { return start.seam_vertex + bits_before(cluster.first_mask + tied_words, k); }
+
+void number_seams() {
+    for (uint k = gl_LocalInvocationIndex; k < own_seams; k += workgroup_size) {
+        const uvec2 edge = own_seam(k);
+        if (is_crossed(edge)) set_seam_number(edge, own_seam_number(k));
+    }
+    for (uint k = gl_LocalInvocationIndex; k < foreign_seams; k += workgroup_size) {
+        const uvec3 seam = foreign_seam(k);
+        if (!is_crossed(seam.xy)) continue;
+        const uint owner = neighbour_of(k, 16u).cluster;
+        set_seam_number(seam.xy, Starts(tables.starts).at[owner].seam_vertex +
+                                     bits_before(Clusters(tables.clusters).at[owner].first_mask + tied_words, seam.z));
+    }
+}
+
+void rank_seams() {
+    const uint self = gl_LocalInvocationIndex;
+    if (self >= edge_room / 32u) return;
+    uint rank = 0u;
+    for (uint word = 0u; word < self; ++word) rank += bitCount(seam_bits[word]);
+    seam_ranks[self] = rank;
+}
+
+/// Writes all own vertices: of inner edges, whose numbers are found here, by rank; of own seams that the mask has, though
+/// perhaps only others cross them; of tied own points that the mask has.
+void write_vertices(bool special) {
+    const uint first_inner = own_seam_number(own_seams);
+    const uint edges = edge_count, items = edges + own_seams + (special ? own_points : 0u);
+    for (uint item = gl_LocalInvocationIndex; item < items; item += workgroup_size) {
+        uint number;
+        uvec2 ends; // local points
+        if (item < edges) {
+            const uint bits = seam_bits[item / 32u], bit = 1u << item % 32u;
+            if ((bits & bit) != 0u) continue;
+            number = first_inner + item - (seam_ranks[item / 32u] + bitCount(bits & bit - 1u));
+            ends = uvec2(edge_numbers[item] & 0xffu, edge_numbers[item] >> 8);
+            edge_numbers[item] = number;
+        } else if (item < edges + own_seams) {
+            const uint k = item - edges;
+            if (!is_masked(32u * tied_words + k)) continue;
+            number = own_seam_number(k);
+            ends = own_seam(k);
+        } else {
+            const uint place = item - edges - own_seams;
+            if (!is_masked(place)) continue;
+            ends = uvec2(foreign_points + place);
+            number = tied_numbers[ends.x];
+        }
+        float t = 0.0;
+        if (ends.x != ends.y) {
+            if (is_in(above, ends.x)) ends = ends.yx;
+            t = edge_weight(push.isovalue, values[ends.x], values[ends.y]);
+        }
+        write_vertex(number - start.vertex, ends.x, ends.y, t);
+    }
+}
+
+uint number_of(CutTet cut, uint k) {
+    const uvec2 ends = polygon_edge(cut, k);
+    if ((cut.tied >> ends.x & 1u) != 0u) return tied_numbers[cut.corners[ends.x]];
+    return edge_numbers[rank_of(ascending(cut.corners[ends.x], cut.corners[ends.y]))];
+}
+
+void write_triangles(bool special) {
+    const uint self = gl_LocalInvocationIndex;
+    const uint hits = bitCount(hit_groups);
+    for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
+        const uint lane = self % group_size, before = (1u << lane) - 1u;
+        const uint one = one_triangle[place];
+        if ((one >> lane & 1u) == 0u) continue;
+        const uint tet = hit_group[place] * group_size + lane;
+        const CutTet cut = cut_tet(tet, special);
+        uint numbers[4];
+        for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(cut, k);
+        uint at = first_triangle[place] + bitCount(one & before) + bitCount(two_triangles[place] & before);
+        const uint triangles = tet_cases[cut.above] >> 16;
+        for (uint t = 0u; t < triangles; ++t) {
+            const uint a = numbers[0], b = numbers[1u + t], c = numbers[2u + t];
+            if (a == b || b == c || c == a) continue; // only with tied corners
+            triangle_out.at[3u * at] = a;
+            triangle_out.at[3u * at + 1u] = b;
+            triangle_out.at[3u * at + 2u] = c;
+            if (with_sources) source_out.at[at] = group_size * (page.first_group + cluster.first_group) + tet;
+            ++at;
+        }
+    }
+}
+
+void main() {
+    tables = TablesAt(push.tables).tables;
+    surface = OutputAt(push.surface).surface;
+    const uint self = gl_LocalInvocationIndex;
+    const uint place = group_index();
+    const bool many = edge_room > few_edges;
+    if (surface.overflow != 0u || place >= list_head(tables, many ? many_edges_list : few_edges_list).head.count) return;
+    const uint number = Words(tables.emitted).at[many ? tables.cluster_count - 1u - place : place];
+    open_cluster(tables, number);
+    if (push.batch != 0u && page.batch != push.batch) return;
+    open_output(number);
+
+    clear_cut();
+    for (uint word = self; word < edge_room / 32u; word += workgroup_size) seam_bits[word] = 0u;
+    if (self < max_cluster_groups) one_triangle[self] = two_triangles[self] = 0u;
+    barrier();
+    load_points();
+    barrier();
+    const bool special = any_in(tied) || any_in(no_data);
+    find_hit_groups(push.isovalue, Ranges(tables.ranges).at[number]);
+    cut_tets(special);
+    barrier();
+    rank_edges();
+    barrier();
+    if (special) number_tied();
+    number_seams();
+    barrier();
+    rank_seams();
+    barrier();
+    write_vertices(special);
+    barrier();
+    write_triangles(special);
+}

@@ -1,0 +1,104 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// One cluster of a packed grid, by one workgroup: its parts, and its local points wherever they lie.
+#ifndef ISOTET_CLUSTER_GLSL
+#define ISOTET_CLUSTER_GLSL
+
+#include "shared/memory.glsl"
+
+// The cluster at hand; the same in all invocations.
+Cluster cluster;
+Page page;
+Words page_words;
+uint own_points, foreign_points, tet_count, neighbour_count, own_seams, foreign_seams;
+uint foreign_points_at, own_seams_at, foreign_seams_at; ///< words of the page
+
+void open_cluster(Tables tables, uint number) {
+    cluster = Clusters(tables.clusters).at[number];
+    page = Pages(tables.pages).at[cluster.page];
+    page_words = Words(page.data);
+    own_points = cluster.points & 0xffffu;
+    foreign_points = cluster.points >> 16;
+    tet_count = cluster.tets & 0xffffu;
+    neighbour_count = cluster.tets >> 16;
+    own_seams = cluster.seams & 0xffffu;
+    foreign_seams = cluster.seams >> 16;
+    foreign_points_at = page.links + cluster.first_link + 3u * neighbour_count;
+    own_seams_at = foreign_points_at + (foreign_points + 3u) / 4u;
+    foreign_seams_at = own_seams_at + (own_seams + 1u) / 2u;
+}
+
+uint local_points() { return foreign_points + own_points; }
+
+Neighbour neighbour_at(uint place) {
+    const uint at = page.links + cluster.first_link + 3u * place;
+    return Neighbour(page_words.at[at], page_words.at[at + 1u], page_words.at[at + 2u]);
+}
+
+/// The neighbour that owns foreign point or seam `k`: the last one whose part begins at or before it. `shift` is 0 for
+/// points, 16 for seams.
+Neighbour neighbour_of(uint k, uint shift) {
+    const uint begins_at = page.links + cluster.first_link + 2u;
+    uint first = 0u, end = neighbour_count;
+    while (end - first > 1u) {
+        const uint middle = (first + end) / 2u;
+        const uint begin = page_words.at[begins_at + 3u * middle] >> shift & 0xffffu;
+        if (begin <= k) first = middle;
+        else end = middle;
+    }
+    return neighbour_at(first);
+}
+
+/// Foreign point `k`: its place among the points that its neighbour has in this page.
+uint foreign_place(uint k) { return page_words.at[foreign_points_at + k / 4u] >> 8u * (k % 4u) & 0xffu; }
+
+/// The page-local number of local point `k`.
+uint page_point(uint k) {
+    if (k >= foreign_points) return cluster.first_point + k - foreign_points;
+    return neighbour_of(k, 0u).first_point + foreign_place(k);
+}
+
+float value_of(uint point) { return uintBitsToFloat(page_words.at[page.values + point]); }
+
+vec3 position_of(uint point) {
+    const uint at = page.positions + 3u * point;
+    return vec3(uintBitsToFloat(page_words.at[at]), uintBitsToFloat(page_words.at[at + 1u]),
+                uintBitsToFloat(page_words.at[at + 2u]));
+}
+
+/// The number of a page-local point among all points of the packed grid.
+uint packed_point(uint point) {
+    return point < page.own_points ? page.first_point + point : page_words.at[page.halo + point - page.own_points];
+}
+
+/// Place of foreign point `k` among the own points of its owner.
+uint place_in_owner(Tables tables, Neighbour neighbour, uint k) {
+    const uint point = neighbour.first_point + foreign_place(k);
+    if (point < page.own_points) return foreign_place(k);
+    const Cluster owner = Clusters(tables.clusters).at[neighbour.cluster];
+    return packed_point(point) - Pages(tables.pages).at[owner.page].first_point - owner.first_point;
+}
+
+uvec4 corners_of_tet(uint tet) {
+    const uint word = page_words.at[page.tets + group_size * cluster.first_group + tet];
+    return uvec4(word & 0xffu, word >> 8 & 0xffu, word >> 16 & 0xffu, word >> 24);
+}
+
+/// Range of a group in steps of the cluster's: lower + 256 * upper.
+uint range_of_group(uint group) {
+    const uint at = cluster.first_group + group;
+    return page_words.at[page.group_ranges + at / 2u] >> 16u * (at % 2u) & 0xffffu;
+}
+
+/// (lower, higher) local index of own seam `k`.
+uvec2 own_seam(uint k) {
+    const uint pair = page_words.at[own_seams_at + k / 2u] >> 16u * (k % 2u);
+    return uvec2(pair & 0xffu, pair >> 8 & 0xffu);
+}
+
+/// (lower, higher, index among the owner's own seams) of foreign seam `k`.
+uvec3 foreign_seam(uint k) {
+    const uint word = page_words.at[foreign_seams_at + k];
+    return uvec3(word & 0xffu, word >> 8 & 0xffu, word >> 16);
+}
+
+#endif

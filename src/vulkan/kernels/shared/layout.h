@@ -1,0 +1,180 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Every struct that both the processor and the kernels know, once for both. All members are 4 bytes wide, so that C++ and
+// GLSL's scalar layout place them alike; engine/layout.hpp checks the sizes, tests/gpu_engine asks a device for each place.
+//
+// On the device a packed grid lies in two kinds of memory. Resident, by cluster: Page, Cluster, Range, masks, counts,
+// starts. In pages, which may come and go: points, values, tets, group ranges, links, each array of a page beginning at a
+// word that Page tells. A page holds whole clusters, and copies of the points that these borrow from other pages: its halo.
+//
+//   page-local points   0 ......... own_points ......... own_points + halo
+//                       own points of its clusters       halo, in packed order
+//
+//   links of a cluster  neighbours      a Neighbour each, ascending
+//                       foreign points  1 byte each: place behind Neighbour::first_point
+//                       own seams       2 bytes each (lower, higher local index)
+//                       foreign seams   1 word each: lower + 256 * higher + 65536 * index among the owner's own seams
+#ifndef ISOTET_LAYOUT_H
+#define ISOTET_LAYOUT_H
+
+#ifdef __cplusplus
+#include <cstdint>
+namespace isotet::vulkan::layout {
+using uint = std::uint32_t;
+struct Address { ///< on the device; halves, so that no kernel needs 64-bit integers
+    uint low, high;
+};
+#define ISOTET_CONSTANT constexpr uint
+#else
+#extension GL_EXT_scalar_block_layout : require
+#define Address uvec2
+#define ISOTET_CONSTANT const uint
+#endif
+
+ISOTET_CONSTANT group_size = 32u;            ///< tets
+ISOTET_CONSTANT max_cluster_points = 128u;   ///< and invocations of a workgroup: one a point
+ISOTET_CONSTANT max_cluster_groups = 32u;    ///< of tets
+ISOTET_CONSTANT max_cluster_seams = 6144u;   ///< edges of the most tets there can be
+ISOTET_CONSTANT matrix_words = 512u;         ///< a bit for every pair of local points
+ISOTET_CONSTANT tied_words = 4u;             ///< of a cluster's masks, before those of its own seams
+ISOTET_CONSTANT segment_clusters = 128u;     ///< a workgroup of select and scan
+ISOTET_CONSTANT block_segments = 128u;
+ISOTET_CONSTANT few_edges = 1024u;           ///< crossed edges of a cluster that the smaller emit kernel has room for
+ISOTET_CONSTANT most_edges = 4096u;          ///< crossed edges that a cluster can have: 64 points below, 64 above
+
+/// Marching tetrahedra by which corners are above (core/case_table.hpp): four crossed edges, each corner above + 4 * corner
+/// below, in 4 bits; then the number of triangles. engine/layout.hpp checks them against the table.
+#define ISOTET_TET_CASES                                                        \
+    0x00000u, 0x188c4u, 0x1dd91u, 0x2cd98u, 0x166e2u, 0x26ec4u, 0x2de21u, 0x1ddecu, \
+    0x1bb73u, 0x28b74u, 0x23b91u, 0x1bb98u, 0x26732u, 0x16674u, 0x13321u, 0x00000u
+
+/// A page of the packed grid; (0, 0) as `data` when it is not on the device.
+struct Page {
+    Address data;
+    uint values;       ///< words from `data`: one a point
+    uint positions;    ///< 3 a point
+    uint gradients;    ///< one a point, where the grid was packed with them
+    uint halo;         ///< one a halo point: its packed number
+    uint tets;         ///< one a tet, groups padded
+    uint group_ranges; ///< 16 bits a group
+    uint links;
+    uint own_points;
+    uint first_point;  ///< packed number of own point 0
+    uint first_group;  ///< number of group 0 in the whole grid
+    uint batch;        ///< the pass over pages that it takes part in
+};
+
+struct Cluster {
+    uint page;
+    uint first_point;  ///< of its own points, in the page
+    uint first_group;  ///< in the page
+    uint first_link;   ///< in the page's links
+    uint first_mask;   ///< in the masks: tied_words, then one bit an own seam
+    uint points;       ///< own + 65536 * foreign
+    uint tets;         ///< tets + 65536 * neighbours
+    uint seams;        ///< own + 65536 * foreign
+};
+
+/// What core::Neighbour says, with sums in place of counts: nothing has to be added up to find a part.
+struct Neighbour {
+    uint cluster;
+    uint first_point;  ///< page-local: of its own points, or of its part of the halo
+    uint begin;        ///< its first foreign point + 65536 * its first foreign seam
+};
+
+/// Smallest and largest value of a cluster; has_no_data is 1 where a point has none.
+struct Range {
+    float lower, upper;
+};
+
+/// What clusters give so far: all parts are added to, by any workgroup in any order.
+struct Count {
+    uint vertices;     ///< + 65536 * those at tied points (of a cluster; segments and blocks count vertices only)
+    uint triangles;    ///< + many_edges_flag (of a cluster)
+};
+ISOTET_CONSTANT many_edges_flag = 0x80000000u;
+
+/// Where the output of a cluster begins.
+struct Start {
+    uint vertex;       ///< first one at a tied point
+    uint seam_vertex;  ///< first one on an own seam
+    uint triangle;
+};
+
+/// A list of clusters that grows by an atomic add; `groups` are the arguments of a dispatch with a workgroup for each.
+struct ListHead {
+    uint count;
+    uint groups_x, groups_y, groups_z;
+};
+
+/// Addresses and sizes of everything resident.
+struct Tables {
+    Address pages;
+    Address clusters;
+    Address ranges;
+    Address no_data;    ///< a bit a cluster: it holds a point without data
+    Address masks;
+    Address counts;     ///< Count a cluster
+    Address segments;   ///< Count a segment
+    Address blocks;     ///< Count a block
+    Address starts;
+    Address selected;   ///< list of clusters
+    Address emitted;    ///< list of those with output: few edges from the front, many edges from the back
+    Address lists;      ///< Lists
+    uint cluster_count;
+    uint groups_an_axis;
+    uint any_no_data;   ///< some point has none
+};
+
+struct Lists {
+    ListHead selected;
+    ListHead few_edges;
+    ListHead many_edges;
+};
+
+/// VkDrawIndexedIndirectCommand.
+struct DrawArguments {
+    uint index_count, instance_count, first_index, vertex_offset, first_instance;
+};
+
+/// A surface on the device: what there is, and where. The processor writes capacities and addresses, kernels the rest.
+struct Output {
+    uint vertices_low, vertices_high;
+    uint triangles_low, triangles_high;
+    uint overflow;         ///< 1: does not fit; nothing has been emitted
+    uint selected_clusters;
+    uint tied_points;      ///< own points of selected clusters with the isovalue as their value
+    uint missing_normals;  ///< 1: some gradient normal is zero
+    uint many_edges;       ///< 1: some cluster has more crossed edges than few_edges
+    DrawArguments draw;
+    uint vertex_groups_x, vertex_groups_y, vertex_groups_z;       ///< dispatch with an invocation a vertex
+    uint triangle_groups_x, triangle_groups_y, triangle_groups_z; ///< a triangle
+    uint vertex_capacity, triangle_capacity;
+    Address positions;     ///< float x 3 a vertex
+    Address triangles;     ///< uint x 3 a triangle
+    Address normals;       ///< float x 3 a vertex or a triangle
+    Address lowest;        ///< uint a vertex: lowest triangle at vertices without a gradient normal
+    Address ends;          ///< uint x 2 a vertex: packed points
+    Address weights;       ///< float a vertex
+    Address sources;       ///< uint a triangle: number of the stored tet
+};
+
+/// Push constants of the four steps.
+struct ExtractPush {
+    Address tables;
+    Address surface;       ///< Output
+    float isovalue;
+    uint merge;            ///< 1: Ties::merge
+    uint batch;            ///< 0: all pages; else count and emit leave clusters of pages of other batches alone
+};
+
+/// Push constants of kernels that work on a finished surface.
+struct SurfacePush {
+    Address surface;       ///< Output
+};
+
+#ifdef __cplusplus
+} // namespace isotet::vulkan::layout
+#endif
+#undef ISOTET_CONSTANT
+
+#endif
