@@ -169,9 +169,9 @@ SelfTestAnswer self_test_answer(const SelfTestCase& given) {
 Result<std::string> self_test(Context& context) {
     const std::vector<SelfTestCase> cases = self_test_cases();
     std::vector<SelfTestAnswer> answers(cases.size());
-    Result<Buffer> given = context.memory().take(std::span(cases).size_bytes(), Where::device, "cases of the self-test");
+    Result<Buffer> given = context.memory().take(std::span(cases).size_bytes(), Where::upload, "cases of the self-test");
     if (!given) return given.error();
-    Result<Buffer> taken = context.memory().take(std::span(answers).size_bytes(), Where::device, "answers of the self-test");
+    Result<Buffer> taken = context.memory().take(std::span(answers).size_bytes(), Where::download, "answers of the self-test");
     if (!taken) return taken.error();
     const Result<const Kernel*> kernel = context.kernels().get(shaders::self_test);
     if (!kernel) return kernel.error();

@@ -17,10 +17,11 @@ constexpr std::uint64_t limit_32 = std::uint64_t{1} << 32;
 
 GridNeeds needs_of(const core::Packed& packed, const std::vector<PlannedPage>& plan) {
     GridNeeds needs;
-    needs.resident = ResidentSizes(packed, plan.size()).bytes();
+    needs.resident = ResidentSizes(packed, plan.size()).cost();
     for (const PlannedPage& page : plan) {
-        needs.pages += page.bytes();
-        needs.largest_page = std::max(needs.largest_page, page.bytes());
+        const std::uint64_t cost = Memory::cost(page.bytes());
+        needs.pages += cost;
+        needs.largest_page = std::max(needs.largest_page, cost);
     }
     needs.page_count = plan.size();
     return needs;

@@ -60,7 +60,7 @@ public:
 
     Context& context() const noexcept { return *context_; }
     const std::shared_ptr<Context>& shared_context() const noexcept { return context_; }
-    std::uint64_t device_bytes() const { return resident_.sizes().bytes() + cache_->loaded_bytes(); }
+    std::uint64_t device_bytes() const { return resident_.sizes().cost() + cache_->loaded_bytes(); }
     bool complete() const { return cache_->complete(); }
     const core::Packed& packed() const noexcept { return packed_; }
     const PageCache& pages() const noexcept { return *cache_; }

@@ -55,7 +55,7 @@ bool PageCache::touch(std::span<const std::uint32_t> pages) {
 
 std::uint64_t PageCache::loaded_bytes() const {
     std::uint64_t bytes = 0;
-    for (const Loaded& page : pages_) bytes += page.buffer.size();
+    for (const Loaded& page : pages_) bytes += page.buffer ? Memory::cost(page.buffer.size()) : 0;
     return bytes;
 }
 
@@ -101,7 +101,7 @@ Result<void> PageCache::fit_page(std::uint32_t page, std::uint64_t keep_since) {
 Result<void> PageCache::load_all(std::uint64_t reserve, const Progress& progress) {
     for (std::uint32_t i = 0; i < plan_.size(); ++i) {
         if (progress.cancelled()) return cancelled();
-        if (i > 0 && context_.memory().free() < plan_[i].bytes() + reserve) break;
+        if (i > 0 && context_.memory().free() < Memory::cost(plan_[i].bytes()) + reserve) break;
         if (auto ok = load_page(i); !ok) {
             if (ok.error().code != ErrorCode::out_of_memory || i == 0) return ok;
             break;

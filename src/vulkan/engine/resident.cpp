@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "vulkan/engine/resident.hpp"
 
+#include <array>
 #include <limits>
 
 #include <fmt/format.h>
@@ -15,6 +16,29 @@ std::uint64_t pieces(std::uint64_t n, std::uint64_t size) { return (n + size - 1
 
 std::uint64_t mask_words_of(const core::ClusterHeader& h) { return layout::tied_words + pieces(h.own_seams, 32); }
 
+/// A resident array: where it is kept, and how large it is.
+struct Array {
+    Buffer Resident::*buffer;
+    const char* name;
+    std::uint64_t bytes;
+};
+
+std::array<Array, 12> arrays(const ResidentSizes& sizes) {
+    const std::uint64_t c = sizes.clusters;
+    return {{{&Resident::tables, "tables", sizeof(layout::Tables)},
+             {&Resident::pages, "page table", sizes.pages * sizeof(layout::Page)},
+             {&Resident::clusters, "clusters", c * sizeof(layout::Cluster)},
+             {&Resident::ranges, "ranges", c * sizeof(layout::Range)},
+             {&Resident::no_data, "clusters without data", 4 * pieces(c, 32)},
+             {&Resident::masks, "masks", 4 * sizes.mask_words},
+             {&Resident::counts, "counts", c * sizeof(layout::Count)},
+             {&Resident::sums, "sums of counts", (sizes.segments + sizes.blocks) * sizeof(layout::Count)},
+             {&Resident::starts, "starts", c * sizeof(layout::Start)},
+             {&Resident::selected, "selected clusters", 4 * c},
+             {&Resident::emitted, "clusters to emit", 4 * c},
+             {&Resident::lists, "lists of clusters", sizeof(layout::Lists)}}};
+}
+
 template <class T>
 std::span<const std::byte> bytes_of(const T& array) {
     return std::as_bytes(std::span(array.data(), array.size()));
@@ -28,34 +52,17 @@ ResidentSizes::ResidentSizes(const core::Packed& packed, std::size_t page_count)
     for (const core::ClusterHeader& h : packed.headers) mask_words += mask_words_of(h);
 }
 
-std::uint64_t ResidentSizes::bytes() const {
-    return sizeof(layout::Tables) + sizeof(layout::Lists) + pages * sizeof(layout::Page) +
-           clusters * (sizeof(layout::Cluster) + sizeof(layout::Range) + sizeof(layout::Count) + sizeof(layout::Start) + 8) +
-           4 * pieces(clusters, 32) + 4 * mask_words + (segments + blocks) * sizeof(layout::Count);
+std::uint64_t ResidentSizes::cost() const {
+    std::uint64_t sum = 0;
+    for (const Array& array : arrays(*this)) sum += Memory::cost(array.bytes);
+    return sum;
 }
 
 Result<void> Resident::take(Context& context) {
-    struct Wanted {
-        Buffer& buffer;
-        std::uint64_t bytes;
-        const char* name;
-    };
-    const std::uint64_t c = sizes_.clusters;
-    for (const Wanted& wanted : {Wanted{tables, sizeof(layout::Tables), "tables"},
-                                 {pages, sizes_.pages * sizeof(layout::Page), "page table"},
-                                 {clusters, c * sizeof(layout::Cluster), "clusters"},
-                                 {ranges, c * sizeof(layout::Range), "ranges"},
-                                 {no_data, 4 * pieces(c, 32), "clusters without data"},
-                                 {masks, 4 * sizes_.mask_words, "masks"},
-                                 {counts, c * sizeof(layout::Count), "counts"},
-                                 {sums, (sizes_.segments + sizes_.blocks) * sizeof(layout::Count), "sums of counts"},
-                                 {starts, c * sizeof(layout::Start), "starts"},
-                                 {selected, 4 * c, "selected clusters"},
-                                 {emitted, 4 * c, "clusters to emit"},
-                                 {lists, sizeof(layout::Lists), "lists of clusters"}}) {
-        auto buffer = context.memory().take(wanted.bytes, Where::device, wanted.name);
+    for (const Array& array : arrays(sizes_)) {
+        auto buffer = context.memory().take(array.bytes, Where::device, array.name);
         if (!buffer) return std::move(buffer).error();
-        wanted.buffer = *std::move(buffer);
+        this->*array.buffer = *std::move(buffer);
     }
     return {};
 }
@@ -109,11 +116,12 @@ Result<void> Resident::upload_pages(Context& context, std::span<const layout::Pa
 Result<Resident> Resident::upload(Context& context, const core::Packed& packed, const std::vector<PlannedPage>& plan) {
     Resident resident;
     resident.sizes_ = ResidentSizes(packed, plan.size());
-    constexpr std::uint64_t limit = std::numeric_limits<std::uint32_t>::max();
+    // Kernels take the numbers of words and clusters as signed.
+    constexpr std::uint64_t limit = std::numeric_limits<std::int32_t>::max();
     if (resident.sizes_.mask_words > limit)
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("the masks of the packed grid have {} words, but the vulkan engine can number {}",
-                                 resident.sizes_.mask_words, limit)};
+                     fmt::format("the packed grid has {} clusters with masks of {} words, but the vulkan engine can number {} words",
+                                 resident.sizes_.clusters, resident.sizes_.mask_words, limit)};
     if (auto ok = resident.take(context); !ok) return ok.error();
     if (auto ok = resident.upload_clusters(context, packed, plan); !ok) return ok.error();
     if (auto ok = resident.upload_ranges(context, packed); !ok) return ok.error();

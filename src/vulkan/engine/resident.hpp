@@ -20,7 +20,7 @@ struct ResidentSizes {
 
     ResidentSizes() = default;
     ResidentSizes(const core::Packed& packed, std::size_t page_count);
-    std::uint64_t bytes() const; ///< on the device
+    std::uint64_t cost() const; ///< bytes of device memory
 };
 
 class Resident {
