@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/block.hpp"
 #include "core/field_storage.hpp"
 #include "core/guard.hpp"
 #include "core/memory.hpp"
@@ -64,14 +65,17 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;
     auto order = sort_tets(grid, *cells, std::move(counts), options.source_cells, progress);
     if (!order) return order.error();
+    drop_kept_blocks(); // each stage needs other sizes than the last
     Draft draft;
     if (options.precision == Precision::double_) draft.packed.reals = Values<double>{};
     if (auto ok = form_clusters(*std::move(order), cells->count(), draft, progress); !ok) return ok.error();
+    drop_kept_blocks();
     number_points(grid.points.tuples(), draft);
     progress("pack", 0.7);
     if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
     draft.locals.release();
     draft.point_of.release();
+    drop_kept_blocks();
 
     auto packed = std::make_unique<Packed>(std::move(draft.packed));
     packed->storage_cache = std::make_shared<StorageCache>();
