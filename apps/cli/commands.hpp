@@ -18,6 +18,7 @@ Result<ExitCode> run_extract(const ExtractCommand& command);
 Result<ExitCode> run_check(const CheckCommand& command);
 Result<ExitCode> run_make(const MakeCommand& command);
 Result<ExitCode> run_formats(const FormatsCommand& command);
+Result<ExitCode> run_devices(const DevicesCommand& command);
 Result<ExitCode> run_docs(const DocsCommand& command, const CLI::App& program);
 
 /// What --version prints.

@@ -2,6 +2,7 @@
 #include "number_format.hpp"
 
 #include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,5 +48,24 @@ std::optional<Number> parse(std::string_view text) noexcept {
 std::optional<double> parse_number(std::string_view text) noexcept { return parse<double>(text); }
 
 std::optional<std::uint64_t> parse_count(std::string_view text) noexcept { return parse<std::uint64_t>(text); }
+
+std::optional<std::uint64_t> parse_bytes(std::string_view text) noexcept {
+    const auto lower_end = [&] { return text.empty() ? '\0' : static_cast<char>(text.back() | 0x20); };
+    double unit = 1;
+    if (lower_end() == 'b') {
+        text.remove_suffix(1);
+        for (const auto& [letter, bytes] : {std::pair{'k', 1e3}, {'m', 1e6}, {'g', 1e9}, {'t', 1e12}}) {
+            if (lower_end() != letter) continue;
+            unit = bytes;
+            text.remove_suffix(1);
+            break;
+        }
+        while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    }
+    if (unit == 1) return parse_count(text);
+    const std::optional<double> number = parse_number(text);
+    if (!number || !(*number >= 0) || !(*number * unit < 0x1p63)) return std::nullopt;
+    return static_cast<std::uint64_t>(*number * unit + 0.5);
+}
 
 } // namespace isotet::cli

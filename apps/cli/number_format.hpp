@@ -24,6 +24,9 @@ std::string bytes_text(std::uint64_t bytes);
 /// "0.034 s".
 std::string seconds_text(double seconds);
 
+/// "2GB", "1.5 GB", "512mb", "1000": decimal units, as bytes_text() writes them; nothing if it is none or does not fit.
+std::optional<std::uint64_t> parse_bytes(std::string_view text) noexcept;
+
 /// The whole of `text` as a number, the point as its decimal sign; nothing if it is not one or does not fit.
 std::optional<double> parse_number(std::string_view text) noexcept;
 std::optional<std::uint64_t> parse_count(std::string_view text) noexcept;

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "option_tree.hpp"
 
+#include "device_choice.hpp"
 #include "option_values.hpp"
 
 namespace isotet::cli {
@@ -78,6 +79,15 @@ Examples:
 )";
 
 constexpr const char* formats_details = R"(--format takes the names in the first column.
+)";
+
+constexpr const char* devices_details = R"(
+A device can be used when it has Vulkan 1.2 and what the engine needs; of one that cannot, the reason is told. Software
+devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the CPU.
+
+With --device that device is opened, and its arithmetic is compared with the processor's, bit by bit: in a few thousand
+cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every command
+that uses the device says so.
 )";
 
 void add_common(CLI::App& app, CommonOptions& common) {
@@ -226,6 +236,14 @@ CLI::App& add_formats(CLI::App& program, FormatsCommand& formats) {
     return app;
 }
 
+CLI::App& add_devices(CLI::App& program, DevicesCommand& devices) {
+    CLI::App& app = *program.add_subcommand("devices", "List the graphics cards and other Vulkan devices");
+    add_device(app, devices.device);
+    add_common(app, devices.common);
+    app.footer(devices_details);
+    return app;
+}
+
 CLI::App& add_docs(CLI::App& program, DocsCommand& docs) {
     CLI::App& app = *program.add_subcommand("docs", "Print the man page, the bash completion or docs/command-line.md");
     app.add_option("KIND", docs.kind)->required()->type_name("man|completion|markdown");
@@ -242,7 +260,8 @@ std::unique_ptr<CLI::App> make_option_tree(CommandLine& line) {
     program->require_subcommand(0, 1);
     for (CLI::App* command :
          {&add_info(*program, line.info), &add_extract(*program, line.extract), &add_check(*program, line.check),
-          &add_make(*program, line.make), &add_formats(*program, line.formats), &add_docs(*program, line.docs)}) {
+          &add_make(*program, line.make), &add_formats(*program, line.formats),
+          &add_devices(*program, line.devices), &add_docs(*program, line.docs)}) {
         command->callback([&line, command] { line.command = command->get_name(); });
     }
     return program;

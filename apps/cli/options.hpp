@@ -84,6 +84,17 @@ struct FormatsCommand {
     CommonOptions common;
 };
 
+/// Which Vulkan device, and how much of its memory.
+struct DeviceChoice {
+    std::string name;                    ///< as DeviceOptions::choice; "none": no device
+    std::optional<std::uint64_t> memory; ///< bytes at most
+};
+
+struct DevicesCommand {
+    CommonOptions common;
+    DeviceChoice device; ///< `name` is empty without --device
+};
+
 /// The hidden command `docs`: man, completion or markdown.
 struct DocsCommand {
     std::string kind;
@@ -91,13 +102,14 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "check", "make", "formats" or "docs"
+    std::string command; ///< "info", "extract", "check", "make", "formats", "devices" or "docs"
     bool version = false;
     InfoCommand info;
     ExtractCommand extract;
     CheckCommand check;
     MakeCommand make;
     FormatsCommand formats;
+    DevicesCommand devices;
     DocsCommand docs;
 };
 

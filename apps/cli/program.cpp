@@ -38,7 +38,7 @@ Result<void> complete_bare_file(std::vector<std::string>& words, const CLI::App&
     if (looks_like_command(words[1])) {
         return Error{
             ErrorCode::invalid_argument,
-            fmt::format("'{}' is neither a command nor a file; commands are info, extract, check, make and formats",
+            fmt::format("'{}' is neither a command nor a file; commands are info, extract, check, make, formats and devices",
                         words[1])};
     }
     words.insert(words.begin() + 1, "info");
@@ -61,6 +61,7 @@ Result<ExitCode> run_command(const CommandLine& line, const CLI::App& program) {
     if (line.command == "check") return run_check(line.check);
     if (line.command == "make") return run_make(line.make);
     if (line.command == "formats") return run_formats(line.formats);
+    if (line.command == "devices") return run_devices(line.devices);
     if (line.command == "docs") return run_docs(line.docs, program);
     if (line.version) return say(version_text());
     return Error{ErrorCode::invalid_argument, "no command and no file was given; isotet --help lists the commands"};

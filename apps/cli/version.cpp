@@ -30,6 +30,7 @@ std::string version_text() {
     table.row({"compiler", fmt::format("{}, {} build{}", compiler, ISOTET_BUILD_TYPE,
                                        *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
     table.row({"files through VTK", *ISOTET_VTK_VERSION ? "on, VTK " ISOTET_VTK_VERSION : "off (-DISOTET_IO=OFF)"});
+    table.row({"Vulkan", ISOTET_VULKAN ? "on, opened at run time" : "off (-DISOTET_VULKAN=OFF)"});
     table.row({"libraries",
                fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}", ISOTET_TBB_VERSION,
                            FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,

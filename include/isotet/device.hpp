@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <isotet/result.hpp>
@@ -45,8 +47,9 @@ struct DeviceInfo {
 
 /// What there is on this machine.
 struct DeviceList {
-    std::vector<DeviceInfo> devices; ///< in the driver's order, unusable ones too
-    std::string unavailable;         ///< why there is no Vulkan at all, a sentence; empty: there is
+    std::vector<DeviceInfo> devices;  ///< in the driver's order, unusable ones too
+    std::optional<std::size_t> best;  ///< the one that Device::open() takes without a choice, if there is one
+    std::string unavailable;          ///< why there is no Vulkan at all, a sentence; empty: there is
 };
 
 /// Looks for Vulkan devices. Opens the Vulkan loader (libvulkan.so.1) at run time: without it, or without a driver,

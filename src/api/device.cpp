@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/guard.hpp"
+#include "vulkan/choice.hpp"
 #include "vulkan/context.hpp"
 #include "vulkan/found_devices.hpp"
 
@@ -12,9 +13,15 @@ namespace isotet {
 Result<DeviceList> list_devices() {
     return core::guarded("listing the devices", []() -> Result<DeviceList> {
         Result<vulkan::FoundDevices> found = vulkan::find_devices({}, {});
-        if (found) return DeviceList{std::move(found->infos), ""};
-        if (found.error().code == ErrorCode::machine) return DeviceList{{}, std::move(found.error().message)};
-        return found.error();
+        DeviceList list;
+        if (found) {
+            if (const Result<std::size_t> best = vulkan::choose(found->infos, "")) list.best = *best;
+            list.devices = std::move(found->infos);
+            return list;
+        }
+        if (found.error().code != ErrorCode::machine) return found.error();
+        list.unavailable = found.error().message;
+        return list;
     });
 }
 

@@ -10,7 +10,7 @@ constexpr const char* built_without = "isotet was built without Vulkan (ISOTET_V
 
 } // namespace
 
-Result<DeviceList> list_devices() { return DeviceList{{}, built_without}; }
+Result<DeviceList> list_devices() { return DeviceList{{}, {}, built_without}; }
 
 Result<Device> Device::open(const DeviceOptions&) { return Error{ErrorCode::machine, built_without}; }
 

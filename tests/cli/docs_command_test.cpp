@@ -14,7 +14,7 @@ TEST_F(Program, MarkdownIsWhatDocsCommandLineHolds) {
 
 TEST_F(Program, ManPageNamesEveryOptionOfTheHelp) {
     const std::string man = isotet({"docs", "man"}).out;
-    for (const char* command : {"info", "extract", "check", "make", "formats"}) {
+    for (const char* command : {"info", "extract", "check", "make", "formats", "devices"}) {
         const std::string help = isotet({command, "--help"}).out;
         for (std::size_t at = 0; (at = help.find(" --", at)) != std::string::npos; ++at) {
             const std::string option = help.substr(at + 3, help.find_first_of(" \n.,;:)", at + 3) - at - 3);

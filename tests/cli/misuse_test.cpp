@@ -65,6 +65,7 @@ const Misuse misuses[] = {
     {{"check", "a.vtp", "-f", "p"}, "--grid"},
     {{"info", "make:kuhn:2", "more"}, "more"},
     {{"formats", "--quiet", "--verbose"}, "excludes"},
+    {{"devices", "--device", ""}, "--device got ''"},
     {{"docs", "poem"}, "poem"},
 };
 

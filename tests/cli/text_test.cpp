@@ -58,6 +58,18 @@ TEST(Grouped, PutsCommasBetweenThousands) {
     EXPECT_EQ(grouped(18446744073709551615U), "18,446,744,073,709,551,615");
 }
 
+TEST(ParseBytes, TakesDecimalUnits) {
+    EXPECT_EQ(parse_bytes("1000"), 1000u);
+    EXPECT_EQ(parse_bytes("1000B"), 1000u);
+    EXPECT_EQ(parse_bytes("2GB"), 2'000'000'000u);
+    EXPECT_EQ(parse_bytes("1.5 kb"), 1500u);
+    EXPECT_EQ(parse_bytes("0.25MB"), 250'000u);
+    EXPECT_EQ(parse_bytes("3 TB"), 3'000'000'000'000u);
+    EXPECT_EQ(parse_bytes("18446744073709551615"), 18446744073709551615u);
+    for (const char* text : {"", "B", "GB", "-1", "-1GB", "1.5", "2G", "2GiB", "1 PB", "99999999TB", "nanMB", "infMB"})
+        EXPECT_FALSE(parse_bytes(text)) << text;
+}
+
 TEST(BytesText, ChangesUnitsAtAThousand) {
     EXPECT_EQ(bytes_text(999), "999 B");
     EXPECT_EQ(bytes_text(1000), "1.0 kB");

@@ -1,0 +1,45 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "device_choice.hpp"
+
+#include <fmt/format.h>
+
+#include "number_format.hpp"
+#include "option_values.hpp"
+
+namespace isotet::cli {
+
+CLI::Option* add_device(CLI::App& app, DeviceChoice& choice) {
+    return app
+        .add_option_function<std::string>(
+            "--device",
+            [&choice](const std::string& name) {
+                if (name.empty()) throw wrong_value("--device", name, "a device of isotet devices, software or none");
+                choice.name = name;
+            },
+            "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
+            "graphics card")
+        ->type_name("DEVICE");
+}
+
+CLI::Option* add_device_memory(CLI::App& app, DeviceChoice& choice) {
+    return app
+        .add_option_function<std::string>(
+            "--device-memory",
+            [&choice](const std::string& text) {
+                choice.memory = parse_bytes(text);
+                if (!choice.memory || *choice.memory == 0) throw wrong_value("--device-memory", text, "bytes, such as 2GB");
+            },
+            "Memory of the device to take at most, such as 2GB; without it what is free")
+        ->type_name("BYTES");
+}
+
+Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console) {
+    if (choice.name == "none") return std::optional<Device>();
+    Result<Device> device = Device::open({choice.name, choice.memory.value_or(0)});
+    if (!device) return device.error();
+    console.notes(device->notices());
+    console.detail(fmt::format("device {}: {}, {}", device->info().index, device->info().name, device->info().driver));
+    return std::optional<Device>(*std::move(device));
+}
+
+} // namespace isotet::cli

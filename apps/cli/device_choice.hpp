@@ -1,0 +1,23 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// --device and --device-memory, the same in every command that can use a graphics card.
+#pragma once
+
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include <isotet/device.hpp>
+#include <isotet/result.hpp>
+
+#include "console.hpp"
+#include "options.hpp"
+
+namespace isotet::cli {
+
+CLI::Option* add_device(CLI::App& app, DeviceChoice& choice);
+CLI::Option* add_device_memory(CLI::App& app, DeviceChoice& choice);
+
+/// Opens the device that was chosen, and notes what the user should know of it. Nothing for --device none.
+Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console);
+
+} // namespace isotet::cli
