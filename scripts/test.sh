@@ -44,7 +44,7 @@ build_address() {
 build_thread() {
     thread_sanitizer_tbb "$trees/tbb" || return
     build thread "$trees/thread" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 -DISOTET_SANITIZE=thread \
-        -DCMAKE_PREFIX_PATH="$trees/tbb/installed" -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF \
+        -DCMAKE_PREFIX_PATH="$trees/tbb/installed" -DISOTET_IO=OFF -DISOTET_VULKAN=OFF -DISOTET_PROGRAM=OFF \
         -DISOTET_TEST_PREFIX=thread. -DISOTET_TEST_KINDS="$for_thread"
 }
 
@@ -55,7 +55,7 @@ build_mesa() {
 
 build_fuzz() {
     CC=clang-19 CXX=clang++-19 build fuzz "$trees/fuzz" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 \
-        -DISOTET_FUZZ=ON -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF -DISOTET_TESTS=OFF
+        -DISOTET_FUZZ=ON -DISOTET_IO=OFF -DISOTET_VULKAN=OFF -DISOTET_PROGRAM=OFF -DISOTET_TESTS=OFF
 }
 
 # try_stage NAME [TEST_FOLDER]: builds one tree, and adds to the list of ctest whether that went well, and its tests.

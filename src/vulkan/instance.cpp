@@ -39,10 +39,11 @@ VKAPI_ATTR VkBool32 VKAPI_CALL hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDe
     return VK_FALSE;
 }
 
+/// Always the machine's fault: loaders speak of memory, too, when a driver's description is broken.
 Error no_instance(VkResult result) {
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
         return {ErrorCode::machine, "there is a Vulkan loader on this machine, but no driver that it can use"};
-    return failure("starting Vulkan", result);
+    return {ErrorCode::machine, failure("starting Vulkan", result).message};
 }
 
 } // namespace

@@ -49,6 +49,24 @@ TEST(DevicesCommand, SaysThatThereIsNoDriver) {
     EXPECT_TRUE(is_one_error(chosen, "no driver that it can use"));
 }
 
+TEST_F(Program, IsNotStoppedByABrokenDescriptionOfADriver) {
+    put_content(path("broken.json"), "{ \"file_format_version\": ");
+    const RunResult run = isotet({"devices"}, {.environment = {{"VK_DRIVER_FILES", path("broken.json")}, {"VK_ICD_FILENAMES", path("broken.json")}}});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(run.err.starts_with("isotet: note: ") && run.err.ends_with("; isotet works on the CPU\n")) << run.err;
+}
+
+TEST(DevicesCommand, FindsExactArithmeticAtAnySubgroupSize) {
+    for (const auto& [bits, size] : {std::pair{"128", 4}, {"256", 8}, {"512", 16}}) {
+        const RunResult run = isotet({"devices", "--device", "software", "--json", "-"}, {.environment = {{"LP_NATIVE_VECTOR_WIDTH", bits}}});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const auto report = nlohmann::json::parse(run.out);
+        EXPECT_EQ(report["devices"][0]["subgroup_size"], size);
+        EXPECT_EQ(report["exact"], true) << size;
+    }
+}
+
 /// A machine without Vulkan: a library of the loader's name that is none comes first.
 class WithoutVulkan : public Program {
 protected:
