@@ -131,7 +131,9 @@ Result<void> LogicalDevice::alive() const {
 }
 
 bool LogicalDevice::hung() const {
-    if (unanswered_ && !left_behind_) left_behind_ = call_.vkGetFenceStatus(handle_, unanswered_) == VK_NOT_READY;
+    if (!unanswered_ || left_behind_) return left_behind_;
+    left_behind_ = call_.vkGetFenceStatus(handle_, unanswered_) == VK_NOT_READY;
+    if (!left_behind_) unanswered_ = VK_NULL_HANDLE; // its owner destroys it now: it must not be asked again
     return left_behind_;
 }
 

@@ -79,7 +79,7 @@ private:
     Queue compute_, transfer_;
     std::string device_name_;
     std::string lost_;                    ///< why; empty while it works
-    VkFence unanswered_ = VK_NULL_HANDLE; ///< of the work that did not end in time
+    mutable VkFence unanswered_ = VK_NULL_HANDLE; ///< of the work that did not end in time
     mutable bool left_behind_ = false;    ///< something was not destroyed because of it
 };
 

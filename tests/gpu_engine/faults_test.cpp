@@ -1,0 +1,104 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Calls that fail while a grid is uploaded, extracted from and downloaded: an error, or the right bytes; nothing is left
+// over, and the packed grid is as it was.
+#include <algorithm>
+
+#include "gpu_engine/engines.hpp"
+#include "support/small_grid.hpp"
+#include "vulkan/failing_calls.hpp"
+
+namespace isotet::test {
+namespace {
+
+class EngineFaults : public Engines {
+protected:
+    void SetUp() override {
+        const Grid grid = made_grid("kuhn", 6, {"gyroid"});
+        packed = pack(grid, point_field(grid)).value();
+        right = bytes_of(isotet::extract(packed, 0.2).value().surface);
+    }
+
+    /// Everything once, in small pages, with all that grows growing.
+    Result<std::string> work_through(CallPlan& plan) {
+        vulkan::Settings settings = watched();
+        settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
+        auto context = vulkan::Context::open({"software", 0}, settings);
+        if (!context) return context.error();
+        auto result = extract_on(Device(*context));
+        for (const std::string& complaint : settings.watch.complaints->all()) ADD_FAILURE() << complaint;
+        return result;
+    }
+
+    Result<std::string> extract_on(const Device& opened) {
+        auto grid = DeviceGrid::upload(opened, packed, {.page_bytes = 10'000, .surface_bytes = {}});
+        if (!grid) return grid.error();
+        auto surface = grid->extract(0.2);
+        if (!surface) return surface.error();
+        auto extraction = grid->download(*surface);
+        if (!extraction) return extraction.error();
+        return bytes_of(extraction->surface);
+    }
+
+    PackedGrid packed;
+    std::string right;
+};
+
+TEST_F(EngineFaults, AnyCallThatFailsIsAnErrorOrDoneWithout) {
+    CallPlan all;
+    ASSERT_EQ(work_through(all).value(), right);
+    ASSERT_GT(all.calls.size(), 40u);
+    std::size_t errors = 0;
+    for (const VkResult with : {VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_DEVICE_LOST})
+        for (std::size_t i = 0; i < all.calls.size(); ++i) {
+            // The first and the last call of every function; of a lost device, the first.
+            const std::string& name = all.calls[i];
+            const auto before = std::count(all.calls.begin(), all.calls.begin() + static_cast<std::ptrdiff_t>(i), name);
+            const auto total = std::count(all.calls.begin(), all.calls.end(), name);
+            if (before > 0 && (before + 1 < total || with == VK_ERROR_DEVICE_LOST)) continue;
+            CallPlan plan{.fail_at = static_cast<int>(i) + 1, .with = with, .only = {}, .calls = {}};
+            const auto result = work_through(plan);
+            if (result) {
+                EXPECT_EQ(*result, right) << name;
+                continue;
+            }
+            ++errors;
+            const ErrorCode code = result.error().code;
+            EXPECT_TRUE(code == ErrorCode::machine || code == ErrorCode::out_of_memory) << name << ": " << result.error().message;
+            EXPECT_GT(result.error().message.size(), 20u) << name;
+        }
+    EXPECT_GT(errors, 20u);
+    EXPECT_EQ(bytes_of(isotet::extract(packed, 0.2).value().surface), right) << "the packed grid is as it was";
+}
+
+TEST_F(EngineFaults, ALostDeviceIsAnErrorFromThenOn) {
+    CallPlan plan;
+    vulkan::Settings settings = watched();
+    settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
+    auto context = vulkan::Context::open({"software", 0}, settings).value();
+    DeviceGrid grid = DeviceGrid::upload(Device(context), packed).value();
+    DeviceSurface surface = grid.extract(0.2).value();
+    plan = {.fail_at = 1, .with = VK_ERROR_DEVICE_LOST, .only = "vkQueueSubmit", .calls = {}};
+    for (int again = 0; again < 2; ++again) {
+        const auto lost = grid.extract(0.2, surface);
+        ASSERT_FALSE(lost);
+        EXPECT_EQ(lost.error().code, ErrorCode::machine);
+        EXPECT_NE(lost.error().message.find("lost"), std::string::npos) << lost.error().message;
+    }
+}
+
+TEST_F(EngineFaults, CancellingIsNotAFailure) {
+    reopen(watched());
+    std::atomic<bool> cancel{true};
+    Progress progress;
+    progress.cancel = &cancel;
+    const auto upload = DeviceGrid::upload(device(), packed, {}, progress);
+    ASSERT_FALSE(upload);
+    EXPECT_EQ(upload.error().code, ErrorCode::cancelled);
+    DeviceGrid grid = DeviceGrid::upload(device(), packed).value();
+    EXPECT_EQ(grid.extract(0.2, {}, progress).error().code, ErrorCode::cancelled);
+    cancel = false;
+    EXPECT_EQ(bytes_of(grid.download(grid.extract(0.2, {}, progress).value()).value().surface), right);
+}
+
+} // namespace
+} // namespace isotet::test
