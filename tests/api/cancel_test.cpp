@@ -7,6 +7,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
+#include <isotet/extract_once.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/small_grid.hpp"
@@ -42,6 +43,13 @@ public:
                  options.engine = Engine::reference;
                  return code_of(extract(packed_, 0.1, options, p));
              }},
+            {"extract_once", [this](const Progress& p) { return code_of(extract_once(grid_, point_field(grid_), isovalues_, {}, p)); }},
+            {"extract_once by reference",
+             [this](const Progress& p) {
+                 OnceOptions options;
+                 options.extract.engine = Engine::reference;
+                 return code_of(extract_once(grid_, point_field(grid_), isovalues_, options, p));
+             }},
             {"check", [this](const Progress& p) { return code_of(check(surface_, {}, p)); }},
             {"make_grid",
              [](const Progress& p) {
@@ -54,6 +62,7 @@ public:
 
 private:
     Grid grid_ = made_grid("mixed", 12, {"gyroid"});
+    std::vector<double> isovalues_{0.1, 0.3};
     PackedGrid packed_ = pack(grid_, point_field(grid_)).value();
     Surface surface_;
 };

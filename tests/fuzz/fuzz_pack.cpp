@@ -9,6 +9,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
+#include <isotet/extract_once.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/surface_bytes.hpp"
@@ -89,6 +90,29 @@ void extract_and_check(const Grid& grid, const PointField& field, const PackedGr
     expect(report && report->sound);
 }
 
+/// From the arrays alone: both engines give the same bytes, as many vertices as the packed grid, and the same refusal.
+void expect_same_once(const Grid& grid, const PointField& field, const Result<PackedGrid>& packed, double isovalue, Precision precision,
+                      Ties ties) {
+    OnceOptions options;
+    options.precision = precision;
+    options.extract.ties = ties;
+    options.extract.edge_ends = true;
+    options.extract.normals = Normals::gradient;
+    options.extract.threads = 1;
+    const auto once = extract_once(grid, field, std::span(&isovalue, 1), options);
+    options.extract.engine = Engine::reference;
+    const auto reference = extract_once(grid, field, std::span(&isovalue, 1), options);
+    expect(bool(once) == bool(packed) && bool(reference) == bool(packed));
+    if (!packed) {
+        expect(once.error().message == packed.error().message && reference.error().message == packed.error().message);
+        return;
+    }
+    const Extraction &a = once->surfaces[0], &b = reference->surfaces[0];
+    expect(test::bytes_of(a.surface) == test::bytes_of(b.surface));
+    const auto clusters = extract(*packed, isovalue, {.ties = ties, .threads = 1});
+    expect(clusters && clusters->surface.vertices() == a.surface.vertices() && clusters->report.tied_points == a.report.tied_points);
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -100,6 +124,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto report = survey(grid, {.faces = true, .threads = 1});
     const auto packed = pack(grid, field, {.precision = precision, .gradients = true, .threads = 1});
     expect(bool(report) == bool(packed));
+    if (std::isfinite(isovalue))
+        for (const Ties ties : {Ties::merge, Ties::keep}) expect_same_once(grid, field, packed, isovalue, precision, ties);
     if (!packed) {
         expect(packed.error().code == ErrorCode::invalid_data && !packed.error().message.empty());
         return 0;

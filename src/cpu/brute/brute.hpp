@@ -1,0 +1,19 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The CPU engine's `brute`: one pass over all cells, edges welded range by range of point numbers, in parallel.
+#pragma once
+
+#include "ops/brute.hpp"
+
+namespace isotet::cpu {
+
+/// Guarantees   the same bytes for any thread count
+/// Cost         one pass over points and cells for each isovalue; two more, and another extraction, where the points that
+///              decide on the storage (the ends of the range, say) turn out to be used by no tet
+/// Errors       invalid_data for a broken grid; out_of_memory before memory is taken; cancelled
+template <class Real>
+Result<ops::BruteResult> brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress);
+
+/// From this many points on, or so many edges found by cut tets, point numbers of welding have 64 bits. Tests lower it.
+inline std::uint64_t brute_wide_from = std::uint64_t{1} << 31;
+
+} // namespace isotet::cpu
