@@ -112,7 +112,9 @@ Result<Buffer> Memory::take(std::uint64_t bytes, Where where, std::string_view n
 
     Buffer buffer;
     buffer.size_ = bytes;
-    if (Result<void> made = make_buffer(buffer, cost(bytes), name); !made) return made.error();
+    // Not rounded up any further, so that the validation layer sees kernels that leave the buffer.
+    if (Result<void> made = make_buffer(buffer, round_up(std::max<std::uint64_t>(bytes, 1), 4) + slack, name); !made)
+        return made.error();
     Pool& pool = pool_of(where);
     if (Result<void> placed = place(buffer, pool); !placed) {
         device_.call().vkDestroyBuffer(device_.handle(), buffer.handle_, nullptr);
