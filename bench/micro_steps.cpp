@@ -70,18 +70,19 @@ void select(benchmark::State& state) {
     const Subject& of = subject(state);
     const core::Packed& packed = of.packed.data();
     const float stored = core::store_isovalue<float>(isovalue, packed.storage);
-    for (auto _ : state) benchmark::DoNotOptimize(cpu::select(packed, stored));
+    for (auto _ : state) benchmark::DoNotOptimize(cpu::select(packed, std::span(&stored, 1)).value());
     count_tets(state, of);
 }
 
 void select_and_count(benchmark::State& state) {
     const Subject& of = subject(state);
     const core::Packed& packed = of.packed.data();
-    const ops::Request<float> request{{core::store_isovalue<float>(isovalue, packed.storage)}};
+    const float stored = core::store_isovalue<float>(isovalue, packed.storage);
+    const cpu::Wanted<float> wanted{std::span(&stored, 1)};
     for (auto _ : state) {
-        const cpu::Selection selection = cpu::select(packed, request.isovalues.front());
-        cpu::Masks masks(packed, selection);
-        benchmark::DoNotOptimize(cpu::count(packed, request, selection, masks, {}));
+        const cpu::Selection selection = cpu::select(packed, wanted.isovalues).value();
+        cpu::Masks masks(selection);
+        benchmark::DoNotOptimize(cpu::count(packed, wanted, selection, masks, cpu::Keep::records, {}));
     }
     count_tets(state, of);
 }
@@ -92,11 +93,38 @@ void extract_all(benchmark::State& state) {
     count_tets(state, of);
 }
 
+/// Eight isovalues; the second argument is how far apart they are, in thousandths.
+std::vector<double> eight_isovalues(benchmark::State& state) {
+    std::vector<double> isovalues;
+    for (int i = 0; i < 8; ++i) isovalues.push_back(isovalue + 1e-3 * i * static_cast<double>(state.range(1)));
+    return isovalues;
+}
+
+void extract_eight_separately(benchmark::State& state) {
+    const Subject& of = subject(state);
+    const std::vector<double> isovalues = eight_isovalues(state);
+    for (auto _ : state) {
+        std::vector<Extraction> all;
+        for (const double one : isovalues) all.push_back(extract(of.packed, one).value());
+        benchmark::DoNotOptimize(all);
+    }
+    count_tets(state, of);
+}
+
+void extract_eight_in_one_pass(benchmark::State& state) {
+    const Subject& of = subject(state);
+    const std::vector<double> isovalues = eight_isovalues(state);
+    for (auto _ : state) benchmark::DoNotOptimize(extract(of.packed, isovalues).value());
+    count_tets(state, of);
+}
+
 BENCHMARK(sort_tets)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(pack_all)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(select)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond)->UseRealTime();
 BENCHMARK(select_and_count)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond)->UseRealTime();
 BENCHMARK(extract_all)->DenseRange(0, 2)->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(extract_eight_separately)->ArgsProduct({{0, 1, 2}, {1, 100}})->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK(extract_eight_in_one_pass)->ArgsProduct({{0, 1, 2}, {1, 100}})->Unit(benchmark::kMicrosecond)->UseRealTime();
 
 } // namespace
 

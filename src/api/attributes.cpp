@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <vector>
 
 #include "core/arithmetic.hpp"
 #include "core/parallel.hpp"
@@ -73,39 +74,53 @@ Array face_normals(const ops::RawSurface& raw) {
     return std::move(normals).to_array(3);
 }
 
+namespace {
+
+/// Vertices whose normal is zero, ascending.
+core::Buffer<std::uint64_t> zero_normals(std::span<const float> normals) {
+    const std::size_t vertices = normals.size() / 3, tasks = (vertices + grain - 1) / grain;
+    const auto for_zeros = [&](std::size_t task, auto&& f) {
+        for (std::size_t v = task * grain; v < std::min(vertices, (task + 1) * grain); ++v)
+            if (normals[3 * v] == 0 && normals[3 * v + 1] == 0 && normals[3 * v + 2] == 0) f(v);
+    };
+    std::vector<std::size_t> first(tasks + 1);
+    core::parallel_each(tasks, 1, [&](std::size_t task) { for_zeros(task, [&](std::size_t) { ++first[task + 1]; }); });
+    for (std::size_t task = 0; task < tasks; ++task) first[task + 1] += first[task];
+    core::Buffer<std::uint64_t> zeros(first[tasks]);
+    if (first[tasks] == 0) return zeros;
+    core::parallel_each(tasks, 1, [&](std::size_t task) {
+        std::size_t next = first[task];
+        for_zeros(task, [&](std::size_t v) { zeros[next++] = v; });
+    });
+    return zeros;
+}
+
+} // namespace
+
 template <class Real>
 Array fill_normals(const ops::RawSurface& raw) {
-    const auto given = raw.normals.as<float>();
-    const std::size_t vertices = raw.normals.tuples();
-    const auto is_zero = [&](std::size_t v) { return given[3 * v] == 0 && given[3 * v + 1] == 0 && given[3 * v + 2] == 0; };
-    std::atomic<bool> any{false};
-    core::parallel_ranges(vertices, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v)
-            if (is_zero(v)) return any.store(true, std::memory_order_relaxed);
-    });
-    if (!any) return raw.normals;
-
-    core::Buffer<float> normals(3 * vertices);
-    std::copy(given.begin(), given.end(), normals.begin());
-    core::Buffer<std::uint64_t> lowest(vertices); // triangle
+    const core::Buffer<std::uint64_t> zeros = zero_normals(raw.normals.as<float>());
+    if (zeros.empty()) return raw.normals;
+    core::Buffer<std::uint64_t> lowest(zeros.size()); // triangle
     std::fill(lowest.begin(), lowest.end(), std::numeric_limits<std::uint64_t>::max());
     const Real* positions = raw.positions.as<Real>().data();
+    // The engine has just made this array and nobody else has seen it: it is finished where it lies.
+    float* const normals = const_cast<float*>(raw.normals.as<float>().data());
     with_indices(raw.triangles, [&](auto triangles) {
         core::parallel_each(triangles.size(), grain, [&](std::size_t corner) {
-            const std::size_t v = triangles[corner];
-            if (!is_zero(v)) return;
-            std::atomic_ref<std::uint64_t> slot(lowest[v]);
+            const std::uint64_t* const zero = std::lower_bound(zeros.begin(), zeros.end(), std::uint64_t{triangles[corner]});
+            if (zero == zeros.end() || *zero != triangles[corner]) return;
+            std::atomic_ref<std::uint64_t> slot(lowest[static_cast<std::size_t>(zero - zeros.begin())]);
             std::uint64_t seen = slot.load(std::memory_order_relaxed);
             const std::uint64_t triangle = corner / 3;
             while (triangle < seen && !slot.compare_exchange_weak(seen, triangle, std::memory_order_relaxed)) {}
         });
-        core::parallel_each(vertices, grain, [&](std::size_t v) {
-            if (!is_zero(v)) return;
-            const auto n = normal_of(positions, triangles.data() + 3 * lowest[v]);
-            for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * v + axis] = static_cast<float>(n[axis]);
+        core::parallel_each(zeros.size(), grain, [&](std::size_t i) {
+            const auto n = normal_of(positions, triangles.data() + 3 * lowest[i]);
+            for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * zeros[i] + axis] = static_cast<float>(n[axis]);
         });
     });
-    return std::move(normals).to_array(3);
+    return raw.normals;
 }
 
 template SurfaceField interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&);

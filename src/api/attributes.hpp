@@ -17,11 +17,15 @@ SurfaceField interpolate_field(const Field& field, const core::Storage& storage,
 /// A cell field of the user's grid at the triangles, in its own type.
 SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw);
 
+constexpr std::size_t fill_normals_bytes = 16;
+
 /// One normal a triangle.
 template <class Real>
 Array face_normals(const ops::RawSurface& raw);
 
-/// Replaces gradient normals that are zero by the face normal of the lowest-numbered triangle at the vertex.
+/// Replaces gradient normals that are zero by the face normal of the lowest-numbered triangle at the vertex: in the array
+/// itself, which nobody but the engine and the caller may have seen.
+/// Cost   at most fill_normals_bytes a vertex, of memory; nothing where no normal is zero
 template <class Real>
 Array fill_normals(const ops::RawSurface& raw);
 

@@ -22,17 +22,23 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     ops::Request<Real> request;
     for (const double isovalue : isovalues) request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
     request.ties = options.ties;
-    request.ends = options.edge_ends || !options.point_fields.empty();
+    const bool reference = options.engine == Engine::reference;
+    std::vector<core::Storage> storages;
+    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
+    if (!reference)
+        for (std::size_t i = 0; i < storages.size(); ++i) request.fields.push_back({options.point_fields[i].values, storages[i]});
+    request.ends = options.edge_ends || (reference && !options.point_fields.empty());
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
+    const api::MoreBytes more = api::more_bytes(options);
+    request.more_vertex_bytes = more.vertex;
+    request.more_triangle_bytes = more.triangle;
 
-    auto raw = options.engine == Engine::reference ? reference::extract(packed, request, progress)
-                                                   : cpu::extract(packed, request, progress);
+    auto raw = reference ? reference::extract(packed, request, progress) : cpu::extract(packed, request, progress);
     if (!raw) return std::move(raw).error();
     progress("extract", 0.8);
 
-    std::vector<core::Storage> storages;
-    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
+    std::uint64_t transient = raw->transient_bytes;
     std::vector<Extraction> out(isovalues.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
         ops::RawSurface& surface = raw->surfaces[i];
@@ -41,10 +47,12 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
         api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report);
         report.selected_clusters = surface.selected_clusters;
         report.surface_bytes = api::bytes_of(out[i].surface);
-        report.transient_bytes = raw->transient_bytes;
         report.predicted_bytes = raw->predicted_bytes;
+        if (!options.edge_ends) transient += surface.ends.bytes() + surface.weights.bytes();
+        if (!options.source_cells) transient += surface.source_cells.bytes();
         surface = {}; // parts that only attributes needed go as soon as they can
     }
+    for (Extraction& extraction : out) extraction.report.transient_bytes = transient;
     progress("extract", 1);
     return out;
 }

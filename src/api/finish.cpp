@@ -29,8 +29,11 @@ Surface finish(const std::array<double, 3>& origin, const ExtractOptions& option
     surface.normals_kind = options.normals;
     if (options.normals == Normals::gradient) surface.normals = fill_normals<Real>(raw);
     else if (options.normals == Normals::face) surface.normals = face_normals<Real>(raw);
-    for (std::size_t i = 0; i < options.point_fields.size(); ++i)
-        surface.point_fields.push_back(interpolate_field<Real>(options.point_fields[i], storages[i], raw));
+    for (std::size_t i = 0; i < options.point_fields.size(); ++i) {
+        const Field& field = options.point_fields[i];
+        if (raw.fields.empty()) surface.point_fields.push_back(interpolate_field<Real>(field, storages[i], raw));
+        else surface.point_fields.push_back({field.name, raw.fields[i], storages[i].offset, storages[i].scale});
+    }
     for (const Field& field : options.cell_fields) surface.cell_fields.push_back(copy_cell_field(field, raw));
     if (options.edge_ends) {
         surface.edge_ends = raw.ends;
@@ -44,6 +47,14 @@ template Surface finish<float>(const std::array<double, 3>&, const ExtractOption
                                const ops::RawSurface&);
 template Surface finish<double>(const std::array<double, 3>&, const ExtractOptions&, std::span<const core::Storage>,
                                 const ops::RawSurface&);
+
+MoreBytes more_bytes(const ExtractOptions& options) {
+    MoreBytes more;
+    if (options.normals == Normals::gradient) more.vertex += fill_normals_bytes;
+    if (options.normals == Normals::face) more.triangle += 3 * sizeof(float);
+    for (const Field& field : options.cell_fields) more.triangle += field.values.components() * size_of(field.values.type());
+    return more;
+}
 
 std::uint64_t bytes_of(const Surface& surface) {
     std::uint64_t bytes = 0;

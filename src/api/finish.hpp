@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -20,6 +21,12 @@ Result<void> check_isovalues(std::span<const double> isovalues);
 template <class Real>
 Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options, std::span<const core::Storage> storages,
                const ops::RawSurface& raw);
+
+/// Bytes that finish() adds to each vertex and triangle of the surface of an engine that interpolates point fields itself.
+struct MoreBytes {
+    std::size_t vertex = 0, triangle = 0;
+};
+MoreBytes more_bytes(const ExtractOptions& options);
 
 /// All arrays of a surface.
 std::uint64_t bytes_of(const Surface& surface);

@@ -41,15 +41,20 @@ std::size_t most_to_keep() {
 
 bool is_large(std::size_t bytes) { return own_mappings && bytes >= large_block; }
 
-/// Maps whole pages that begin at a huge page. What is left over behind the last huge page stays in small ones, so that
-/// no more memory is used than was asked for.
+std::byte* map_pages(std::size_t bytes) {
+    void* const data = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (data == MAP_FAILED) throw std::bad_alloc();
+    return static_cast<std::byte*>(data);
+}
+
+/// Maps whole pages, from a huge page's size on beginning at one. What is left over behind the last huge page stays in
+/// small ones, so that no more memory is used than was asked for.
 Block map_block(std::size_t bytes) {
     const std::size_t size = (bytes + page_size() - 1) / page_size() * page_size();
     if (size < bytes || size + huge_page < size) throw std::bad_alloc();
-    void* const all = mmap(nullptr, size + huge_page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (all == MAP_FAILED) throw std::bad_alloc();
-    auto* const begin = static_cast<std::byte*>(all);
-    const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(all) % huge_page) % huge_page;
+    if (size < huge_page) return {map_pages(size), size};
+    std::byte* const begin = map_pages(size + huge_page);
+    const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
     if (before) munmap(begin, before);
     if (before < huge_page) munmap(begin + before + size, huge_page - before);
     madvise(begin + before, size, MADV_HUGEPAGE); // a wish: without huge pages everything works, slower

@@ -14,7 +14,7 @@ struct Block {
     std::size_t bytes = 0;
 };
 
-/// Guarantees   not cleared; aligned to a huge page from large_block on
+/// Guarantees   not cleared; aligned for every type, to a huge page when it holds one
 /// Errors       throws std::bad_alloc
 /// Threads      safe from many threads
 Block take_block(std::size_t bytes);
@@ -25,7 +25,8 @@ void give_back(Block block) noexcept;
 /// Gives what is kept to the system; returns how many bytes that were.
 std::size_t drop_kept_blocks() noexcept;
 
-/// Smaller blocks come from the ordinary heap.
-constexpr std::size_t large_block = std::size_t{4} << 20;
+/// Smaller blocks come from the ordinary heap. (The heap gives a megabyte that becomes free at its end back to the system,
+/// and every small surface would touch its pages anew.)
+constexpr std::size_t large_block = std::size_t{256} << 10;
 
 } // namespace isotet::core

@@ -38,6 +38,8 @@ void with_threads(int threads, const std::function<void()>& work) {
     arena.execute(work);
 }
 
+int threads_here() { return tbb::this_task_arena::max_concurrency(); }
+
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
     if (count <= grain) {
         if (count) body(0, count);

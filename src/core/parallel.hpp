@@ -11,6 +11,9 @@ namespace isotet::core {
 /// algorithms called inside use that many, even more than there are cores.
 void with_threads(int threads, const std::function<void()>& work);
 
+/// How many threads parallel algorithms use where this is called.
+int threads_here();
+
 /// Calls body(begin, end) for pieces of [0, count) of about `grain`, in parallel, in any order.
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 

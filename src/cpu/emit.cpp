@@ -1,219 +1,271 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
 #include <memory>
+#include <utility>
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include "core/arithmetic.hpp"
+#include "core/local_values.hpp"
 #include "core/parallel.hpp"
-#include "cpu/cut_cluster.hpp"
+#include "cpu/field_writer.hpp"
+#include "cpu/level.hpp"
+#include "cpu/prefetch.hpp"
 #include "cpu/steps.hpp"
+#include "cpu/vertex_normals.hpp"
 
 namespace isotet::cpu {
 
 namespace {
 
-/// One thread's memory: the cut cluster, and the number of the vertex on each of its crossed edges. That table is never
-/// cleared: only entries that were written for this cluster are read.
-template <class Real, class Index>
-struct Scratch {
-    CutCluster<Real> cut;
-    std::array<Real, 3 * max_cluster_points> positions;
-    std::array<std::uint64_t, max_cluster_points> packed_points;
-    std::array<Index, max_cluster_points> tied_numbers;
-    std::array<Index, max_cluster_points * max_cluster_points> edge_numbers; ///< [lower][higher]
+constexpr std::size_t max_points = core::max_cluster_points;
+constexpr std::size_t max_edges = max_points * (max_points - 1) / 2;
+
+/// Packed points of the local points of a cluster.
+struct LocalPoints {
+    std::size_t cluster = std::numeric_limits<std::size_t>::max();
+    std::array<std::uint64_t, max_points> packed;
+
+    void find(const Packed& grid, std::size_t of) {
+        if (cluster == of) return;
+        core::local_points(grid, of, packed.data());
+        cluster = of;
+    }
 };
 
-template <class Real, class Index>
+/// One thread's memory.
+template <class Real>
+struct Scratch {
+    std::array<LocalPoints, 2> found;
+    LocalPoints* points = &found[0]; ///< of the cluster at hand
+    LocalPoints* next = &found[1];   ///< of the one after it
+    std::array<EndPair, max_points + max_edges> ends; ///< of vertices that only masks know
+    std::array<Real, max_points + max_edges> weights;
+    std::array<std::uint64_t, max_points + max_edges> numbers; ///< of vertices by local number
+};
+
+/// Own vertices of a cluster, in order: their edges, and where on them they lie.
+template <class Real>
+struct OwnVertices {
+    const EndPair* ends;
+    const Real* weights;
+    std::size_t count;
+};
+
+template <class Real>
 class Emitter {
 public:
-    Emitter(const Packed& packed, const Request<Real>& request, const Selection& selection, const Masks& masks,
-            const Counted& counted, const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles)
-        : packed_(packed), request_(request), selection_(selection), masks_(masks), counted_(counted), starts_(starts),
-          target_(target), triangles_(triangles) {}
+    Emitter(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
+            const Counted<Real>& counted, std::span<const Target<Real>> targets)
+        : packed_(packed), reals_(packed.as<Real>()), wanted_(wanted), selection_(selection), masks_(masks), counted_(counted),
+          targets_(targets) {}
 
-    void emit_cluster(std::size_t place, Scratch<Real, Index>& s) const {
-        const Start start = starts_[place];
-        const bool has_vertices = starts_[place + 1].vertex != start.vertex;
-        if (!has_vertices && starts_[place + 1].triangle == start.triangle) return;
-        const std::size_t cluster = selection_.clusters[place];
-        if constexpr (sizeof(Real) == sizeof(float))
-            if (const Record* record = counted_.records[place]) return copy_record(cluster, *record, start, s);
-        s.cut.cut(packed_, cluster, request_.isovalues.front(), request_.ties);
-        if (has_vertices) {
-            core::load_positions(packed_, cluster, s.positions.data());
-            if (target_.ends || target_.normals) core::local_points(packed_, cluster, s.packed_points.data());
+    void emit_places(std::size_t begin, std::size_t end, Scratch<Real>& s) const {
+        for (std::size_t place = begin; place < end; ++place) {
+            const std::size_t cluster = selection_.clusters[place];
+            if (s.points->cluster != cluster) {
+                std::swap(s.points, s.next);
+                s.points->find(packed_, cluster);
+                ask_ahead(place, s);
+            }
+            emit_place(place, s);
         }
-        number_foreign(cluster, s);
-        emit_vertices(cluster, place, s);
-        emit_triangles(cluster, start.triangle, s);
     }
 
 private:
-    /// The number of the vertex on a seam edge, given its owner.
-    Index seam_number(std::size_t owner, std::size_t seam) const {
-        return static_cast<Index>(starts_[owner].vertex + core::count_bits(masks_.tied(owner), Masks::tied_words) +
-                                  core::rank_of_bit(masks_.seams(owner), seam));
-    }
-
-    /// A plain cluster: everything but the numbers is in the record.
-    void copy_record(std::size_t cluster, const Record& record, Start start, Scratch<Real, Index>& s) const {
-        std::copy_n(record.positions(), 3 * std::size_t{record.own}, target_.positions + 3 * start.vertex);
-        Index* const numbers = s.edge_numbers.data(); // local number -> number; there are fewer than entries
-        for (std::size_t i = 0; i < record.own; ++i) numbers[i] = static_cast<Index>(start.vertex + i);
-        const ForeignVertex* foreign = record.foreign_vertices();
-        for (std::size_t i = 0; i < record.foreign; ++i) numbers[record.own + i] = seam_number(foreign[i].owner, foreign[i].seam);
-        const std::uint16_t* corners = record.corners();
-        Index* const out = triangles_ + 3 * start.triangle;
-        for (std::size_t i = 0; i < 3 * std::size_t{record.triangles}; ++i) out[i] = numbers[corners[i]];
-
-        if (record.ends_at) {
-            core::local_points(packed_, cluster, s.packed_points.data());
-            for (std::size_t i = 0; i < record.own; ++i)
-                emit_ends(s, start.vertex + i, record.ends()[i].below, record.ends()[i].above, record.weights()[i]);
+    /// Asks for what the clusters to come will read, while this one is worked on.
+    void ask_ahead(std::size_t place, Scratch<Real>& s) const {
+        const PlacesAhead ahead(selection_, place);
+        if (ahead.has(2)) {
+            prefetch(&packed_.headers[selection_.clusters[ahead[2]]]);
+            prefetch(counted_.records[ahead[2]]);
         }
-        if (record.tets_at)
-            for (std::size_t t = 0; t < record.triangles; ++t) emit_source(cluster, start.triangle + t, record.tets()[t]);
-    }
-
-    /// Numbers of vertices that other clusters emit; their edges leave the matrix.
-    void number_foreign(std::size_t cluster, Scratch<Real, Index>& s) const {
-        const core::ClusterLinks links = packed_.cluster_links(cluster);
-        const bool has_tied = s.cut.has_tied();
-        std::size_t local = 0, seam = 0;
-        for (const core::Neighbour& neighbour : links.neighbours) {
-            const std::size_t points_end = local + neighbour.foreign_points, seams_end = seam + neighbour.foreign_seams;
-            for (; has_tied && local < points_end; ++local) {
-                if (!core::test_bit(s.cut.used_tied.data(), local)) continue;
-                const std::size_t owner = selection_.place[neighbour.cluster];
-                s.tied_numbers[local] = static_cast<Index>(starts_[owner].vertex +
-                                                           core::rank_of_bit(masks_.tied(owner), links.foreign_points[local]));
-            }
-            for (; seam < seams_end; ++seam) {
-                const core::ForeignSeam& foreign = links.foreign_seams[seam];
-                if (!s.cut.edges.test(foreign.edge)) continue;
-                s.cut.edges.remove(foreign.edge);
-                const std::size_t owner = selection_.place[neighbour.cluster];
-                number(s, foreign.edge) = seam_number(owner, foreign.index);
+        if (ahead.has(1)) {
+            const core::ClusterHeader& h = packed_.headers[selection_.clusters[ahead[1]]];
+            const std::size_t words = 2u * h.neighbours + core::words_for(h.foreign_points);
+            prefetch_bytes(packed_.links.data() + h.first_link, 4 * words);
+            const Record<Real>* const record = counted_.records[ahead[1]];
+            prefetch_bytes(record, record->bytes());
+        }
+        if (!ahead.has(0)) return;
+        const std::uint32_t cluster = selection_.clusters[ahead[0]];
+        s.next->find(packed_, cluster);
+        for (std::size_t next = ahead[0]; next < selection_.size() && selection_.clusters[next] == cluster; ++next) {
+            const Record<Real>& record = *counted_.records[next];
+            for (std::size_t i = 0; i < record.listed; ++i) {
+                prefetch(&reals_.positions[3 * s.next->packed[record.ends()[i].below]]);
+                prefetch(&reals_.positions[3 * s.next->packed[record.ends()[i].above]]);
             }
         }
     }
 
-    void emit_vertices(std::size_t cluster, std::size_t place, Scratch<Real, Index>& s) const {
-        const core::ClusterHeader& h = packed_.headers[cluster];
-        std::uint64_t next = starts_[place].vertex;
+    void emit_place(std::size_t place, Scratch<Real>& s) const {
+        const Record<Real>& record = *counted_.records[place];
+        const Target<Real>& target = targets_[selection_.isovalues[place]];
+        const Start start = counted_.starts[place];
+        std::uint64_t vertex = start.vertex;
+        if (!record.lists_seams) {
+            const OwnVertices<Real> masked = find_masked(place, s);
+            write_vertices(masked, vertex, target, s);
+            vertex += masked.count;
+        }
+        write_vertices({record.ends(), record.weights(), record.listed}, vertex, target, s);
+
+        for (std::size_t i = 0; i < record.listed; ++i) s.numbers[i] = vertex + i;
+        const SharedVertex* const shared = record.shared_vertices();
+        for (std::size_t i = 0; i < record.shared; ++i)
+            s.numbers[record.listed + i] = counted_.starts[shared[i].owner].vertex + masks_.rank(shared[i]);
+        if (target.triangles) write_triangles(record, target.triangles + 3 * start.triangle, s);
+        else write_triangles(record, target.wide_triangles + 3 * start.triangle, s);
+        if (record.has_tets) write_sources(record, s.points->cluster, target.source_cells + start.triangle);
+    }
+
+    /// Vertices of a cluster that is not plain: at tied points and on seam edges. Others may be who uses them.
+    OwnVertices<Real> find_masked(std::size_t place, Scratch<Real>& s) const {
+        const core::ClusterHeader& h = packed_.headers[s.points->cluster];
+        const Real isovalue = wanted_.isovalues[selection_.isovalues[place]];
+        std::size_t count = 0;
         core::for_bits(masks_.tied(place), Masks::tied_words, [&](std::size_t own) {
-            const std::size_t local = h.foreign_points + own;
-            s.tied_numbers[local] = static_cast<Index>(next);
-            emit_vertex(s, next++, local, local, Real(0));
+            const auto local = static_cast<std::uint8_t>(h.foreign_points + own);
+            s.ends[count] = {local, local};
+            s.weights[count++] = 0;
         });
-        const auto own_seams = packed_.cluster_links(cluster).own_seams;
+        const auto own_seams = packed_.cluster_links(s.points->cluster).own_seams;
         core::for_bits(masks_.seams(place), masks_.seam_words(place), [&](std::size_t k) {
-            const core::SeamEdge edge = own_seams[k];
-            s.cut.edges.remove(edge);
-            number(s, edge) = static_cast<Index>(next);
-            emit_on_edge(s, next++, edge.lower, edge.higher);
+            std::uint8_t below = own_seams[k].lower, above = own_seams[k].higher;
+            const auto value = [&](std::uint8_t local) { return reals_.values[s.points->packed[local]]; };
+            if (value(below) >= isovalue) std::swap(below, above);
+            s.ends[count] = {below, above};
+            s.weights[count++] = core::edge_weight(isovalue, value(below), value(above));
         });
-        s.cut.edges.for_edges([&](std::size_t lower, std::size_t higher) {
-            s.edge_numbers[lower * max_cluster_points + higher] = static_cast<Index>(next);
-            emit_on_edge(s, next++, lower, higher);
-        });
+        return {s.ends.data(), s.weights.data(), count};
     }
 
-    void emit_on_edge(const Scratch<Real, Index>& s, std::uint64_t vertex, std::size_t a, std::size_t b) const {
-        if (s.cut.is_above(a)) std::swap(a, b);
-        emit_vertex(s, vertex, a, b, core::edge_weight(request_.isovalues.front(), s.cut.values[a], s.cut.values[b]));
-    }
-
-    void emit_vertex(const Scratch<Real, Index>& s, std::uint64_t vertex, std::size_t below, std::size_t above, Real t) const {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            target_.positions[3 * vertex + axis] =
-                core::interpolate(s.positions[3 * below + axis], s.positions[3 * above + axis], t);
-        emit_ends(s, vertex, below, above, t);
-    }
-
-    /// What else depends on the ends of a vertex.
-    void emit_ends(const Scratch<Real, Index>& s, std::uint64_t vertex, std::size_t below, std::size_t above, Real t) const {
-        if (target_.ends) {
-            target_.ends[2 * vertex] = static_cast<std::int64_t>(packed_.user_point(s.packed_points[below]));
-            target_.ends[2 * vertex + 1] = static_cast<std::int64_t>(packed_.user_point(s.packed_points[above]));
-            target_.weights[vertex] = t;
+    void write_vertices(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target, const Scratch<Real>& s) const {
+        const auto& points = s.points->packed;
+        Real* position = target.positions + 3 * first;
+        for (std::size_t i = 0; i < own.count; ++i, position += 3) {
+            const Real* const a = reals_.positions.data() + 3 * points[own.ends[i].below];
+            const Real* const b = reals_.positions.data() + 3 * points[own.ends[i].above];
+            for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = core::interpolate(a[axis], b[axis], own.weights[i]);
         }
-        if (target_.normals) {
-            const auto normal = core::vertex_normal(packed_.gradients[s.packed_points[below]],
-                                                    packed_.gradients[s.packed_points[above]], t);
-            for (std::size_t axis = 0; axis < 3; ++axis) target_.normals[3 * vertex + axis] = static_cast<float>(normal[axis]);
+        if (target.ends || !target.fields.empty()) write_ends(own, first, target, s);
+        if (target.normals) write_normals(own, target.normals + 3 * first, s);
+    }
+
+    /// The user's points, and what depends on them.
+    void write_ends(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target, const Scratch<Real>& s) const {
+        constexpr std::size_t at_once = 64;
+        std::array<std::uint64_t, at_once> below, above;
+        for (std::size_t begin = 0; begin < own.count; begin += at_once, first += at_once) {
+            const std::size_t count = std::min(own.count - begin, at_once);
+            const Real* const weights = own.weights + begin;
+            for (std::size_t i = 0; i < count; ++i) {
+                below[i] = packed_.user_point(s.points->packed[own.ends[begin + i].below]);
+                above[i] = packed_.user_point(s.points->packed[own.ends[begin + i].above]);
+            }
+            if (target.ends) {
+                for (std::size_t i = 0; i < count; ++i) {
+                    target.ends[2 * (first + i)] = static_cast<std::int64_t>(below[i]);
+                    target.ends[2 * (first + i) + 1] = static_cast<std::int64_t>(above[i]);
+                }
+                std::copy_n(weights, count, target.weights + first);
+            }
+            for (std::size_t f = 0; f < target.fields.size(); ++f)
+                write_field<Real>(wanted_.fields[f], {below.data(), above.data(), weights, count},
+                                  target.fields[f] + first * wanted_.fields[f].values.components());
         }
     }
 
-    void emit_source(std::size_t cluster, std::uint64_t triangle, std::size_t tet) const {
+    void write_normals(const OwnVertices<Real>& own, float* out, const Scratch<Real>& s) const {
+        using Normals = VertexNormals<Real>;
+        for (std::size_t begin = 0; begin < own.count; begin += Normals::lanes) {
+            const std::size_t count = std::min(own.count - begin, Normals::lanes);
+            typename Normals::Codes below{}, above{};
+            typename Normals::Lanes weights{};
+            for (std::size_t i = 0; i < count; ++i) {
+                below[i] = packed_.gradients[s.points->packed[own.ends[begin + i].below]];
+                above[i] = packed_.gradients[s.points->packed[own.ends[begin + i].above]];
+                weights[i] = own.weights[begin + i];
+            }
+            Normals normals;
+            normals.compute(below, above, weights);
+            for (std::size_t i = 0; i < count; ++i)
+                for (std::size_t axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(normals.normal[axis][i]);
+        }
+    }
+
+    template <class Index>
+    static void write_triangles(const Record<Real>& record, Index* out, const Scratch<Real>& s) {
+        const std::uint16_t* const corners = record.corners();
+        for (std::size_t i = 0; i < 3 * std::size_t{record.triangles}; ++i) out[i] = static_cast<Index>(s.numbers[corners[i]]);
+    }
+
+    void write_sources(const Record<Real>& record, std::size_t cluster, std::int64_t* out) const {
         const std::uint64_t first_stored = core::group_size * std::uint64_t{packed_.headers[cluster].first_group};
-        target_.source_cells[triangle] = static_cast<std::int64_t>(packed_.user_cell(first_stored + tet));
-    }
-
-    void emit_triangles(std::size_t cluster, std::uint64_t next, Scratch<Real, Index>& s) const {
-        const auto tets = packed_.cluster_tets(cluster);
-        const bool has_tied = s.cut.has_tied();
-        for (std::size_t i = 0; i < s.cut.cut_count; ++i) {
-            const auto [tet, index] = s.cut.cut_tet[i];
-            const auto& v = tets[tet].corners;
-            const core::TetCase& c = core::case_table[index];
-            Index polygon[4];
-            for (std::size_t k = 0; k < 4; ++k) {
-                const std::uint8_t above = v[c.polygon[k].above], below = v[c.polygon[k].below];
-                polygon[k] = has_tied && s.cut.is_tied(above)
-                                 ? s.tied_numbers[above]
-                                 : number(s, {std::min(above, below), std::max(above, below)});
-            }
-            for (std::size_t t = 0; t < c.triangles; ++t) {
-                const auto& corners = core::triangle_corners[t];
-                const Index a = polygon[corners[0]], b = polygon[corners[1]], d = polygon[corners[2]];
-                if (has_tied && (a == b || b == d || d == a)) continue;
-                triangles_[3 * next] = a;
-                triangles_[3 * next + 1] = b;
-                triangles_[3 * next + 2] = d;
-                if (target_.source_cells) emit_source(cluster, next, tet);
-                ++next;
-            }
-        }
-    }
-
-    static Index& number(Scratch<Real, Index>& s, core::SeamEdge edge) {
-        return s.edge_numbers[std::size_t{edge.lower} * max_cluster_points + edge.higher];
+        for (std::size_t t = 0; t < record.triangles; ++t)
+            out[t] = static_cast<std::int64_t>(packed_.user_cell(first_stored + record.tets()[t]));
     }
 
     const Packed& packed_;
-    const Request<Real>& request_;
+    const core::Values<Real>& reals_;
+    const Wanted<Real>& wanted_;
     const Selection& selection_;
     const Masks& masks_;
-    const Counted& counted_;
-    const core::Buffer<Start>& starts_;
-    const Target<Real>& target_;
-    Index* triangles_;
+    const Counted<Real>& counted_;
+    const std::span<const Target<Real>> targets_;
 };
+
+#if defined(__x86_64__)
+// Everything is inlined into these, and so compiled for their instruction set.
+template <class Real>
+[[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2,popcnt"), gnu::flatten]] void
+emit_avx512(const Emitter<Real>& emitter, std::size_t begin, std::size_t end, Scratch<Real>& s) {
+    emitter.emit_places(begin, end, s);
+}
+template <class Real>
+[[gnu::target("avx2,bmi,bmi2,popcnt"), gnu::flatten]] void
+emit_avx2(const Emitter<Real>& emitter, std::size_t begin, std::size_t end, Scratch<Real>& s) {
+    emitter.emit_places(begin, end, s);
+}
+#endif
+
+template <class Real>
+void emit_places(const Emitter<Real>& emitter, std::size_t begin, std::size_t end, Scratch<Real>& s) {
+    switch (level()) {
+#if defined(__x86_64__)
+    case Level::avx512: return emit_avx512(emitter, begin, end, s);
+    case Level::avx2: return emit_avx2(emitter, begin, end, s);
+#endif
+    default: return emitter.emit_places(begin, end, s);
+    }
+}
 
 } // namespace
 
-template <class Real, class Index>
-void emit(const Packed& packed, const Request<Real>& request, const Selection& selection, const Masks& masks,
-          const Counted& counted, const core::Buffer<Start>& starts, const Target<Real>& target, Index* triangles,
-          const Progress& progress) {
-    const Emitter<Real, Index> emitter(packed, request, selection, masks, counted, starts, target, triangles);
-    using Memory = Scratch<Real, Index>;
-    tbb::enumerable_thread_specific<std::unique_ptr<Memory>> scratch([] { return std::make_unique_for_overwrite<Memory>(); });
-    core::parallel_ranges(selection.clusters.size(), 16, [&](std::size_t begin, std::size_t end) {
+template <class Real>
+void emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
+          const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress) {
+    const Emitter<Real> emitter(packed, wanted, selection, masks, counted, targets);
+    tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch([] { return std::make_unique<Scratch<Real>>(); });
+    core::parallel_ranges(selection.size(), 64, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
-        Memory& memory = *scratch.local();
-        for (std::size_t place = begin; place < end; ++place) emitter.emit_cluster(place, memory);
+        emit_places(emitter, begin, end, *scratch.local());
     });
 }
 
-#define ISOTET_EMIT(Real, Index)                                                                                          \
-    template void emit<Real, Index>(const Packed&, const Request<Real>&, const Selection&, const Masks&,                  \
-                                    const Counted&, const core::Buffer<Start>&, const Target<Real>&, Index*, const Progress&)
-ISOTET_EMIT(float, std::uint32_t);
-ISOTET_EMIT(float, std::uint64_t);
-ISOTET_EMIT(double, std::uint32_t);
-ISOTET_EMIT(double, std::uint64_t);
-#undef ISOTET_EMIT
+template <class Real>
+std::size_t emit_scratch_bytes() {
+    return sizeof(Scratch<Real>);
+}
+
+template std::size_t emit_scratch_bytes<float>();
+template std::size_t emit_scratch_bytes<double>();
+
+template void emit<float>(const Packed&, const Wanted<float>&, const Selection&, const Masks&, const Counted<float>&,
+                          std::span<const Target<float>>, const Progress&);
+template void emit<double>(const Packed&, const Wanted<double>&, const Selection&, const Masks&, const Counted<double>&,
+                           std::span<const Target<double>>, const Progress&);
 
 } // namespace isotet::cpu

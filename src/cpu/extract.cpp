@@ -2,80 +2,102 @@
 #include "cpu/extract.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <string_view>
 
 #include "core/memory.hpp"
+#include "core/parallel.hpp"
 #include "cpu/steps.hpp"
+#include "cpu/surface_arrays.hpp"
 
 namespace isotet::cpu {
 
 namespace {
 
-/// The surface of the one isovalue of the request.
+/// Memory that an extraction needs, surfaces included, told before it is taken.
 template <class Real>
-Result<ops::RawSurfaces> extract_one(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
-    const auto cancelled = [] { return Error{ErrorCode::cancelled, "extraction was cancelled"}; };
-    const Selection selection = select(packed, request.isovalues.front());
-    Masks masks(packed, selection);
-    const Counted counted = count(packed, request, selection, masks, progress);
-    if (progress.cancelled()) return cancelled();
-    const core::Buffer<Start> starts = scan(counted.counts, masks);
-    const Start total = starts[selection.clusters.size()];
-
-    const std::size_t index_bytes = total.vertex < wide_from ? 4 : 8;
-    const std::uint64_t bytes = total.vertex * (3 * sizeof(Real) + (request.ends ? 16 + sizeof(Real) : 0) + (request.normals ? 12 : 0)) +
-                                total.triangle * (3 * index_bytes + (request.source_cells ? 8 : 0));
-    // Asking the system how much is free takes longer than extracting a small surface.
-    if (bytes > std::uint64_t{1} << 26)
-        if (auto ok = core::require_memory("the surface", bytes); !ok) return ok.error();
-    core::Buffer<Real> positions(3 * total.vertex), weights(request.ends ? total.vertex : 0);
-    core::Buffer<float> normals(request.normals ? 3 * total.vertex : 0);
-    core::Buffer<std::int64_t> ends(request.ends ? 2 * total.vertex : 0), source_cells(request.source_cells ? total.triangle : 0);
-    Target<Real> target{positions.data(), nullptr, nullptr, nullptr, nullptr};
-    if (request.normals) target.normals = normals.data();
-    if (request.ends) {
-        target.ends = ends.data();
-        target.weights = weights.data();
+class Need {
+public:
+    Need(const ops::Request<Real>& request, const Selection& selection, const Masks& masks)
+        : request_(request), threads_(static_cast<std::size_t>(core::threads_here())) {
+        const std::size_t places = selection.size();
+        fixed_ = selection.bytes() + masks.bytes() + places * (sizeof(Start) + sizeof(void*)) +
+                 threads_ * (count_scratch_bytes<Real>() + emit_scratch_bytes<Real>());
+        // No tet gives more than two triangles and four vertices.
+        Total most;
+        most.vertices = 4 * selection.tets;
+        most.triangles = 2 * selection.tets;
+        const std::size_t records = places * sizeof(Record<Real>) + Record<Real>::bytes(most.vertices, most.vertices, most.triangles, true);
+        at_most_ = of({most}, records);
     }
-    if (request.source_cells) target.source_cells = source_cells.data();
 
-    ops::RawSurfaces out;
-    ops::RawSurface& surface = out.surfaces.emplace_back();
-    const auto emit_with = [&]<class Index>(core::Buffer<Index> triangles) {
-        emit(packed, request, selection, masks, counted, starts, target, triangles.data(), progress);
-        surface.triangles = std::move(triangles).to_array(3);
-    };
-    if (index_bytes == 4) emit_with(core::Buffer<std::uint32_t>(3 * total.triangle));
-    else emit_with(core::Buffer<std::uint64_t>(3 * total.triangle));
-    if (progress.cancelled()) return cancelled();
+    std::uint64_t at_most() const { return at_most_; }
 
-    surface.positions = std::move(positions).to_array(3);
-    if (request.normals) surface.normals = std::move(normals).to_array(3);
-    if (request.ends) {
-        surface.ends = std::move(ends).to_array(2);
-        surface.weights = std::move(weights).to_array();
+    std::uint64_t of(const std::vector<Total>& totals, std::size_t record_bytes) const {
+        std::uint64_t bytes = fixed_ + Arena::most_bytes(record_bytes, threads_);
+        for (const Total& total : totals)
+            bytes += SurfaceArrays<Real>::bytes(request_, total) + total.vertices * request_.more_vertex_bytes +
+                     total.triangles * request_.more_triangle_bytes;
+        return bytes;
     }
-    if (request.source_cells) surface.source_cells = std::move(source_cells).to_array();
-    surface.selected_clusters = selection.clusters.size();
-    surface.tied_points = counted.tied_points;
-    out.transient_bytes = selection.clusters.bytes() + selection.place.bytes() + masks.bytes() +
-                              counted.counts.bytes() + counted.records.bytes() + counted.record_bytes + starts.bytes();
-    return out;
-}
+
+private:
+    const ops::Request<Real>& request_;
+    std::size_t threads_;
+    std::uint64_t fixed_ = 0, at_most_ = 0;
+};
+
+/// What is needed is known exactly only once everything has been counted. But a bound is known from the selected clusters,
+/// and mostly there is far more memory. Asking the system how much takes longer than extracting a small surface.
+constexpr std::uint64_t ask_from = std::uint64_t{256} << 20;
 
 } // namespace
 
 template <class Real>
 Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
-    ops::RawSurfaces all;
-    for (const Real isovalue : request.isovalues) {
-        ops::Request<Real> single = request;
-        single.isovalues = {isovalue};
-        auto one = extract_one(packed, single, progress);
-        if (!one) return one;
-        all.surfaces.push_back(std::move(one->surfaces.front()));
-        all.transient_bytes = std::max(all.transient_bytes, one->transient_bytes);
+    const auto cancelled = [] { return Error{ErrorCode::cancelled, "extraction was cancelled"}; };
+    ops::RawSurfaces out;
+    if (request.isovalues.empty()) return out;
+
+    std::vector<std::size_t> order(request.isovalues.size()); // ascending isovalue -> the caller's
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return request.isovalues[a] < request.isovalues[b]; });
+    std::vector<Real> isovalues;
+    for (const std::size_t i : order) isovalues.push_back(request.isovalues[i]);
+    const Wanted<Real> wanted{isovalues, request.ties, request.source_cells, request.fields};
+
+    const auto selected = select(packed, wanted.isovalues);
+    if (!selected) return selected.error();
+    const Selection& selection = *selected;
+    Masks masks(selection);
+
+    const Need<Real> need(request, selection, masks);
+    out.predicted_bytes = need.at_most();
+    constexpr std::string_view what = "extraction";
+    if (need.at_most() > ask_from && !core::require_memory(what, need.at_most())) {
+        Counted<Real> trial = count(packed, wanted, selection, masks, Keep::nothing, progress);
+        if (progress.cancelled()) return cancelled();
+        out.predicted_bytes = need.of(scan(selection, masks, isovalues.size(), trial.starts), trial.record_bytes);
+        if (auto ok = core::require_memory(what, out.predicted_bytes); !ok) return ok.error();
     }
-    return all;
+
+    Counted<Real> counted = count(packed, wanted, selection, masks, Keep::records, progress);
+    if (progress.cancelled()) return cancelled();
+    const std::vector<Total> totals = scan(selection, masks, isovalues.size(), counted.starts);
+    std::vector<SurfaceArrays<Real>> arrays;
+    std::vector<Target<Real>> targets;
+    for (const Total& total : totals) targets.push_back(arrays.emplace_back(request, total).target(request));
+    emit(packed, wanted, selection, masks, counted, std::span<const Target<Real>>(targets), progress);
+    if (progress.cancelled()) return cancelled();
+
+    out.surfaces.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        out.surfaces[order[k]] = std::move(arrays[k]).to_surface(request);
+        out.surfaces[order[k]].tied_points = counted.tied_points[k];
+    }
+    out.transient_bytes = selection.bytes() + masks.bytes() + counted.bytes +
+                          static_cast<std::size_t>(core::threads_here()) * emit_scratch_bytes<Real>();
+    return out;
 }
 
 template Result<ops::RawSurfaces> extract<float>(const core::Packed&, const ops::Request<float>&, const Progress&);

@@ -1,5 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "core/parallel.hpp"
 #include "cpu/steps.hpp"
@@ -7,49 +11,84 @@
 namespace isotet::cpu {
 
 namespace {
-constexpr std::size_t clusters_a_task = 1 << 13;
+
+constexpr std::size_t clusters_a_task = 1 << 12;
+
+/// What some clusters add to a selection.
+struct Sums {
+    std::uint64_t places = 0, words = 0, tets = 0;
+};
+
+/// Calls f(cluster, first, end) for each cluster of a task whose range holds the isovalues [first, end) and no others.
+template <class Real, class F>
+void for_selected(const Packed& packed, std::span<const Real> isovalues, std::size_t task, F&& f) {
+    const auto& ranges = packed.as<Real>().ranges;
+    const Real lowest = isovalues.front(), highest = isovalues.back();
+    for (std::size_t c = task * clusters_a_task; c < std::min(packed.clusters(), (task + 1) * clusters_a_task); ++c) {
+        const core::Range<Real> range = ranges[c];
+        if (!(range.lower <= highest && lowest <= range.upper)) continue;
+        const auto first = std::lower_bound(isovalues.begin(), isovalues.end(), range.lower);
+        const auto end = std::upper_bound(first, isovalues.end(), range.upper);
+        if (first != end) f(c, static_cast<std::size_t>(first - isovalues.begin()), static_cast<std::size_t>(end - isovalues.begin()));
+    }
 }
 
+} // namespace
+
 template <class Real>
-Selection select(const Packed& packed, Real isovalue) {
-    const auto& ranges = packed.as<Real>().ranges;
-    const std::size_t clusters = packed.clusters();
-    const std::size_t tasks = (clusters + clusters_a_task - 1) / clusters_a_task;
-    std::vector<std::size_t> first(tasks + 1, 0);
-    const auto selected = [&](std::size_t c) { return ranges[c].lower <= isovalue && isovalue <= ranges[c].upper; };
+Result<Selection> select(const Packed& packed, std::span<const Real> isovalues) {
+    const auto words_of = [&](std::size_t c) { return Masks::tied_words + core::words_of_bits(packed.headers[c].own_seams); };
+    const std::size_t tasks = (packed.clusters() + clusters_a_task - 1) / clusters_a_task;
+    std::vector<Sums> before(tasks + 1);
     core::parallel_each(tasks, 1, [&](std::size_t task) {
-        std::size_t n = 0;
-        for (std::size_t c = task * clusters_a_task; c < std::min(clusters, (task + 1) * clusters_a_task); ++c) n += selected(c);
-        first[task + 1] = n;
+        Sums sums;
+        for_selected(packed, isovalues, task, [&](std::size_t c, std::size_t first, std::size_t end) {
+            sums.places += end - first;
+            sums.words += (end - first) * words_of(c);
+            sums.tets += (end - first) * packed.headers[c].tets;
+        });
+        before[task + 1] = sums;
     });
-    for (std::size_t task = 0; task < tasks; ++task) first[task + 1] += first[task];
+    for (std::size_t task = 0; task < tasks; ++task) {
+        before[task + 1].places += before[task].places;
+        before[task + 1].words += before[task].words;
+        before[task + 1].tets += before[task].tets;
+    }
+    const Sums all = before[tasks];
+    if (all.places > std::numeric_limits<std::uint32_t>::max())
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("{} isovalues lie in the ranges of {} clusters altogether, but in one pass there must be less "
+                                 "than 2^32: ask for fewer at a time",
+                                 isovalues.size(), all.places)};
 
     Selection selection;
-    selection.clusters = core::Buffer<std::uint32_t>(first[tasks]);
-    selection.place = core::Buffer<std::uint32_t>(clusters);
+    selection.clusters = core::Buffer<std::uint32_t>(all.places);
+    selection.isovalues = core::Buffer<std::uint32_t>(all.places);
+    selection.first_word = core::Buffer<std::uint64_t>(all.places + 1);
+    selection.base = core::Buffer<std::uint32_t>(packed.clusters());
+    selection.first_word[all.places] = all.words;
+    selection.tets = all.tets;
     core::parallel_each(tasks, 1, [&](std::size_t task) {
-        std::size_t n = first[task];
-        for (std::size_t c = task * clusters_a_task; c < std::min(clusters, (task + 1) * clusters_a_task); ++c) {
-            if (!selected(c)) continue;
-            selection.place[c] = static_cast<std::uint32_t>(n);
-            selection.clusters[n++] = static_cast<std::uint32_t>(c);
-        }
+        Sums next = before[task];
+        for_selected(packed, isovalues, task, [&](std::size_t c, std::size_t first, std::size_t end) {
+            selection.base[c] = static_cast<std::uint32_t>(next.places - first);
+            const std::uint64_t words = words_of(c);
+            for (std::size_t k = first; k < end; ++k, ++next.places, next.words += words) {
+                selection.clusters[next.places] = static_cast<std::uint32_t>(c);
+                selection.isovalues[next.places] = static_cast<std::uint32_t>(k);
+                selection.first_word[next.places] = next.words;
+            }
+        });
     });
     return selection;
 }
 
-template Selection select<float>(const Packed&, float);
-template Selection select<double>(const Packed&, double);
+template Result<Selection> select<float>(const Packed&, std::span<const float>);
+template Result<Selection> select<double>(const Packed&, std::span<const double>);
 
-Masks::Masks(const Packed& packed, const Selection& selection) : first_word_(selection.clusters.size() + 1) {
-    std::uint64_t words = 0;
-    for (std::size_t place = 0; place < selection.clusters.size(); ++place) {
-        first_word_[place] = words;
-        words += tied_words + core::words_of_bits(packed.headers[selection.clusters[place]].own_seams);
-    }
-    first_word_[selection.clusters.size()] = words;
-    words_ = core::Buffer<std::uint64_t>(words);
-    core::parallel_ranges(words, 1 << 15, [&](std::size_t begin, std::size_t end) { std::fill(words_.begin() + begin, words_.begin() + end, 0); });
+Masks::Masks(const Selection& selection) : selection_(&selection), words_(selection.first_word[selection.size()]) {
+    core::parallel_ranges(words_.size(), 1 << 15,
+                          [&](std::size_t begin, std::size_t end) { std::fill(words_.begin() + begin, words_.begin() + end, 0); });
 }
 
 } // namespace isotet::cpu

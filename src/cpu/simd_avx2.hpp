@@ -79,7 +79,7 @@ struct Avx2 {
         }
     }
 
-    ISOTET_AVX2 static void keys(const CutTets& cut, EdgeKey* out) { Portable::keys(cut, out); }
+    ISOTET_AVX2 static void keys(const CutTets& cut, VertexKey* out) { Portable::keys(cut, out); }
 
 private:
     /// Bits of the 128 sides in 16 bytes, twice.

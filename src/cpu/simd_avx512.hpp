@@ -81,7 +81,7 @@ struct Avx512 {
         }
     }
 
-    ISOTET_AVX512 static void keys(const CutTets& cut, EdgeKey* out) {
+    ISOTET_AVX512 static void keys(const CutTets& cut, VertexKey* out) {
         for (std::size_t i = 0; i < cut.count; ++i, out += 4) {
             const __m128i v = _mm_cvtsi32_si128(static_cast<int>(cut.corners[i]));
             const __m128i ends = _mm_shuffle_epi8(v, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(polygon_bytes[cut.cases[i]].data())));

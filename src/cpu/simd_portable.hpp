@@ -23,7 +23,7 @@ struct CutTets {
 };
 
 /// Edges of the polygons of cut tets: lower local index * 128 + higher, four a tet.
-using EdgeKey = std::uint16_t;
+using VertexKey = std::uint16_t;
 
 struct Portable {
     static constexpr std::size_t table_size = core::max_cluster_points;
@@ -67,13 +67,13 @@ struct Portable {
     }
 
     /// The four edges around each cut tet.
-    static void keys(const CutTets& cut, EdgeKey* out) {
+    static void keys(const CutTets& cut, VertexKey* out) {
         for (std::size_t i = 0; i < cut.count; ++i) {
             std::uint8_t v[4];
             std::memcpy(v, &cut.corners[i], 4);
             for (const core::CrossedEdge e : core::case_table[cut.cases[i]].polygon) {
                 const unsigned a = v[e.above], b = v[e.below];
-                *out++ = static_cast<EdgeKey>(std::min(a, b) * table_size + std::max(a, b));
+                *out++ = static_cast<VertexKey>(std::min(a, b) * table_size + std::max(a, b));
             }
         }
     }

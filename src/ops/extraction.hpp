@@ -11,6 +11,7 @@
 // above or tied).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,12 @@
 
 namespace isotet::ops {
 
+/// A point field of the user's grid that is carried onto surfaces.
+struct CarriedField {
+    Array values;
+    core::Storage storage;
+};
+
 /// What to extract.
 template <class Real>
 struct Request {
@@ -30,6 +37,10 @@ struct Request {
     bool ends = false;          ///< edge ends and weights
     bool normals = false;       ///< gradient normals (packed.gradients is there)
     bool source_cells = false;  ///< packed cell ids are there
+    /// For engines that interpolate point fields themselves; of others the caller asks for ends.
+    std::vector<CarriedField> fields;
+    /// Bytes that the caller will add to each vertex and triangle: engines reckon with them when they predict memory.
+    std::size_t more_vertex_bytes = 0, more_triangle_bytes = 0;
 };
 
 /// The surface of one isovalue; V vertices, F triangles. Parts that were not asked for are empty.
@@ -40,6 +51,7 @@ struct RawSurface {
     Array ends;         ///< int64 x 2, V: user's points, the one below first
     Array weights;      ///< Real, V
     Array source_cells; ///< int64, F: user's cells
+    std::vector<Array> fields; ///< Real x components, V
     std::uint64_t selected_clusters = 0;
     std::uint64_t tied_points = 0; ///< points whose stored value equals the isovalue, in tets that count or not
 };
@@ -48,7 +60,7 @@ struct RawSurface {
 struct RawSurfaces {
     std::vector<RawSurface> surfaces;  ///< in the order of the isovalues
     std::uint64_t transient_bytes = 0; ///< beyond the surfaces, at the peak
-    std::uint64_t predicted_bytes = 0; ///< needed at most, surfaces included, as known before the start
+    std::uint64_t predicted_bytes = 0; ///< needed at most, with surfaces and what the caller adds, as known before the start
 };
 
 } // namespace isotet::ops

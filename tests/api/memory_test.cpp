@@ -54,21 +54,41 @@ TEST_F(OutOfMemory, IsToldByPackWithTheAmountNeeded) {
                 "^packing the grid needs 1[0-9][0-9]\\.[0-9] MB, but [0-9.]+ MB are free");
 }
 
-void extract_with_little_memory() {
-    const Grid grid = made_grid("kuhn", 72, {"integer"}); // a surface of 80 MB
+/// A surface of 80 MB; and, from the tets of its clusters, a bound of some 300 MB.
+void extract_with_memory_left(std::uint64_t bytes) {
+    const Grid grid = made_grid("kuhn", 72, {"integer"});
     ExtractOptions options;
     options.threads = 1;
     options.ties = Ties::keep;
     options.edge_ends = true;
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     if (!extract(packed, 4, options)) std::exit(3); // what can be loaded lazily is loaded now
-    leave_memory(16 << 20);
+    leave_memory(bytes);
     end_with(extract(packed, 2, options));
 }
 
 TEST_F(OutOfMemory, IsToldByExtractWithTheAmountNeeded) {
-    EXPECT_EXIT(extract_with_little_memory(), testing::ExitedWithCode(0),
-                "^(the surface needs [0-9.]+ MB, but [0-9.]+ MB are free)");
+    EXPECT_EXIT(extract_with_memory_left(16 << 20), testing::ExitedWithCode(0),
+                "^extraction needs (9[0-9]|1[0-3][0-9])\\.[0-9] MB, but [0-9.]+ MB are free");
+}
+
+TEST_F(OutOfMemory, IsNotToldByExtractWhenOnlyABoundWouldNotFit) {
+    EXPECT_EXIT(extract_with_memory_left(200 << 20), testing::ExitedWithCode(1), "");
+}
+
+void extract_many_with_little_memory() {
+    const Grid grid = made_grid("kuhn", 40, {"gyroid"});
+    ExtractOptions options;
+    options.threads = 1;
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    if (!extract(packed, 0, options)) std::exit(3);
+    leave_memory(32 << 20); // for one of them it is enough
+    end_with(extract(packed, std::vector<double>(40, 0.1), options));
+}
+
+TEST_F(OutOfMemory, IsToldByExtractForAllIsovaluesTogether) {
+    EXPECT_EXIT(extract_many_with_little_memory(), testing::ExitedWithCode(0),
+                "^extraction needs (9[0-9]|1[0-3][0-9])\\.[0-9] MB, but [0-9.]+ MB are free");
 }
 
 TEST_F(OutOfMemory, IsToldByMakeGridBeforeAHugeGrid) {

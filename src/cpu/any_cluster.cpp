@@ -1,0 +1,194 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Any cluster: with tied points, points without data, double precision. Which of its own tied points and seam edges give
+// vertices may depend on clusters that hold them too, so these are left to the masks.
+#include <algorithm>
+#include <bit>
+
+#include "core/storage.hpp"
+#include "cpu/cutting.hpp"
+
+namespace isotet::cpu {
+
+namespace {
+
+constexpr std::uint8_t is_tied = 1, has_no_data = 2;
+
+template <class Real>
+class AnyCluster {
+public:
+    AnyCluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& s)
+        : cutting_(cutting), packed_(cutting.packed), place_(place), cluster_(cutting.selection.clusters[place]),
+          isovalue_number_(cutting.selection.isovalues[place]), isovalue_(cutting.wanted.isovalues[isovalue_number_]),
+          header_(packed_.headers[cluster_]), links_(packed_.cluster_links(cluster_)),
+          points_(std::size_t{header_.foreign_points} + header_.own_points), s_(s) {}
+
+    std::uint64_t own_tied_points() const {
+        const Real* const values = s_.values.data();
+        return static_cast<std::uint64_t>(std::count(values + header_.foreign_points, values + points_, isovalue_));
+    }
+
+    const Record<Real>* cut(Start& count) {
+        classify();
+        cut_tets();
+        s_.listed.clear();
+        s_.shared.clear();
+        s_.shared_keys.clear();
+        if (cutting_.wanted.ties == Ties::merge) share_tied_points();
+        share_own_seams();
+        share_foreign_seams();
+        list_inner_edges();
+        count = {s_.listed.size(), triangles_};
+        return triangles_ ? write_record() : nothing();
+    }
+
+private:
+    static const Record<Real>* nothing() {
+        static constexpr Record<Real> record = [] {
+            Record<Real> r;
+            r.lists_seams = false;
+            return r;
+        }();
+        return &record;
+    }
+
+    void classify() {
+        const bool merge = cutting_.wanted.ties == Ties::merge;
+        for (std::size_t k = 0; k < points_; ++k) {
+            const Real value = s_.values[k];
+            s_.above[k] = value >= isovalue_;
+            s_.special[k] = static_cast<std::uint8_t>(merge && value == isovalue_ ? is_tied : core::is_nan(value) ? has_no_data : 0);
+        }
+    }
+
+    void cut_tets() {
+        s_.cut.count = 0;
+        const core::Range<Real> range = packed_.as<Real>().ranges[cluster_];
+        if (!(range.lower < isovalue_)) return; // nothing below
+        const auto tets = packed_.cluster_tets(cluster_);
+        const core::GroupRange* group = packed_.group_ranges.data() + header_.first_group;
+        const std::uint8_t step = core::quantize(isovalue_, range);
+        for (std::size_t begin = 0; begin < tets.size(); begin += core::group_size, ++group) {
+            if (group->lower > step || step > group->upper) continue;
+            for (std::size_t i = begin; i < std::min(begin + core::group_size, tets.size()); ++i) cut_tet(i, tets[i].corners);
+        }
+    }
+
+    void cut_tet(std::size_t tet, const std::array<std::uint8_t, 4>& v) {
+        unsigned index = 0, tied = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (s_.special[v[k]] == has_no_data) return;
+            index |= unsigned{s_.above[v[k]]} << k;
+            tied |= unsigned{s_.special[v[k]]} << k;
+        }
+        // With corners below, above, and tied: something below, and something above or three tied.
+        if (index == 0 || index == 15 || (index == tied && std::popcount(tied) < 3)) return;
+        const core::TetCase& c = core::case_table[index];
+        VertexKey* const keys = s_.keys.data() + 4 * s_.cut.count;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint8_t above = v[c.polygon[k].above], below = v[c.polygon[k].below];
+            keys[k] = s_.special[above] == is_tied ? point_key(above) : edge_key({std::min(above, below), std::max(above, below)});
+        }
+        for (std::size_t k = 0; k < 4; ++k) s_.use(keys[k]);
+        for_triangles(keys, c, [&](std::size_t) { ++triangles_; });
+        s_.cut.cases[s_.cut.count] = static_cast<std::uint8_t>(index);
+        s_.cut.places[s_.cut.count++] = static_cast<std::uint16_t>(tet);
+    }
+
+    /// Calls f(0) and f(1) for the triangles of a polygon whose corners are three different vertices.
+    template <class F>
+    static void for_triangles(const VertexKey* keys, const core::TetCase& c, F&& f) {
+        for (std::size_t t = 0; t < c.triangles; ++t) {
+            const auto& corner = core::triangle_corners[t];
+            const VertexKey a = keys[corner[0]], b = keys[corner[1]], d = keys[corner[2]];
+            if (a != b && b != d && d != a) f(t);
+        }
+    }
+
+    std::size_t place_of(std::uint32_t cluster) const { return cutting_.selection.place(cluster, isovalue_number_); }
+
+    /// Tied points may be used by tets that their owner does not look at: every user tells it.
+    void share_tied_points() {
+        const auto share = [&](std::size_t local, std::size_t owner, std::uint32_t own_point) {
+            if (!s_.is_used(point_key(local))) return;
+            cutting_.masks.set_tied(owner, own_point);
+            s_.share(point_key(local), {static_cast<std::uint32_t>(owner), SharedVertex::tied + own_point});
+        };
+        std::size_t local = 0;
+        for (const core::Neighbour& neighbour : links_.neighbours)
+            for (const std::size_t end = local + neighbour.foreign_points; local < end; ++local)
+                if (s_.special[local] == is_tied) share(local, place_of(neighbour.cluster), links_.foreign_points[local]);
+        for (; local < points_; ++local)
+            if (s_.special[local] == is_tied) share(local, place_, static_cast<std::uint32_t>(local - header_.foreign_points));
+    }
+
+    /// Where all points of its owner have data, every crossed edge of the owner is used, and the owner knows it. Elsewhere
+    /// an edge may lie between tets without data only: whoever has a valid tet there tells the owner.
+    void share_own_seams() {
+        for (std::size_t k = 0; k < links_.own_seams.size(); ++k) {
+            const VertexKey key = edge_key(links_.own_seams[k]);
+            if (!s_.is_used(key)) continue;
+            cutting_.masks.set_seam(place_, k);
+            s_.share(key, {static_cast<std::uint32_t>(place_), static_cast<std::uint32_t>(k)});
+        }
+    }
+
+    void share_foreign_seams() {
+        std::size_t k = 0;
+        for (const core::Neighbour& neighbour : links_.neighbours) {
+            for (const std::size_t end = k + neighbour.foreign_seams; k < end; ++k) {
+                const core::ForeignSeam seam = links_.foreign_seams[k];
+                if (!s_.is_used(edge_key(seam.edge))) continue;
+                const std::size_t owner = place_of(neighbour.cluster);
+                if (packed_.has_no_data[neighbour.cluster]) cutting_.masks.set_seam(owner, seam.index);
+                s_.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
+            }
+        }
+    }
+
+    void list_inner_edges() {
+        core::for_bits(s_.used.data(), s_.used.size(), [&](std::size_t key) { s_.listed.push_back(static_cast<VertexKey>(key)); });
+        s_.used.fill(0);
+    }
+
+    const Record<Real>* write_record() {
+        number_vertices(s_);
+        Record<Real>& record = begin_record(isovalue_, triangles_, cutting_.wanted.source_cells, s_);
+        record.lists_seams = false;
+        std::uint16_t* corner = record.corners();
+        std::uint16_t* tet = record.tets();
+        for (std::size_t i = 0; i < s_.cut.count; ++i) {
+            const VertexKey* const keys = s_.keys.data() + 4 * i;
+            for_triangles(keys, core::case_table[s_.cut.cases[i]], [&](std::size_t t) {
+                for (const std::uint8_t k : core::triangle_corners[t]) *corner++ = s_.numbers[keys[k]];
+                if (record.has_tets) *tet++ = s_.cut.places[i];
+            });
+        }
+        return &record;
+    }
+
+    const Cutting<Real>& cutting_;
+    const Packed& packed_;
+    const std::size_t place_, cluster_;
+    const std::uint32_t isovalue_number_;
+    const Real isovalue_;
+    const core::ClusterHeader& header_;
+    const core::ClusterLinks links_;
+    const std::size_t points_;
+    CutScratch<Real>& s_;
+    std::size_t triangles_ = 0;
+};
+
+} // namespace
+
+template <class Real>
+const Record<Real>* cut_any_cluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch, Start& count,
+                                    std::uint64_t& tied_points) {
+    AnyCluster<Real> cluster(cutting, place, scratch);
+    tied_points += cluster.own_tied_points();
+    return cluster.cut(count);
+}
+
+template const Record<float>* cut_any_cluster<float>(const Cutting<float>&, std::size_t, CutScratch<float>&, Start&, std::uint64_t&);
+template const Record<double>* cut_any_cluster<double>(const Cutting<double>&, std::size_t, CutScratch<double>&, Start&, std::uint64_t&);
+
+} // namespace isotet::cpu
