@@ -12,6 +12,7 @@
 #include "console.hpp"
 #include "extract_plan.hpp"
 #include "extract_report.hpp"
+#include "extractor.hpp"
 #include "number_format.hpp"
 #include "output_paths.hpp"
 #include "packed_series.hpp"
@@ -24,7 +25,8 @@ namespace {
 /// One run of the command: what its steps share.
 class ExtractRun {
 public:
-    ExtractRun(const ExtractCommand& command, Console& console) : command_(command), console_(console) {}
+    ExtractRun(const ExtractCommand& command, Console& console)
+        : command_(command), console_(console), extractor_(command, console) {}
 
     Result<void> run();
     const ExtractNumbers& numbers() const noexcept { return numbers_; }
@@ -44,6 +46,7 @@ private:
     std::optional<GridSource> source_;
     ExtractPlan plan_;
     std::optional<PackedSeries> series_;
+    Extractor extractor_;
     StepFields fields_;
     std::vector<double> isovalues_; ///< of the step at hand: levels follow its range
     ExtractNumbers numbers_;
@@ -58,6 +61,7 @@ Result<void> ExtractRun::open() {
         !paths) {
         return paths;
     }
+    if (Result<void> opened = extractor_.open(); !opened) return opened;
     console_.detail("looking at " + command_.grid.file);
     Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
     if (!source) return source.error();
@@ -69,7 +73,6 @@ Result<void> ExtractRun::open() {
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.precision = command_.precision;
-    numbers_.engine = command_.engine;
     numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads)
                                                    : std::max(1U, std::thread::hardware_concurrency());
     numbers_.read_seconds = reading.seconds();
@@ -95,6 +98,7 @@ Result<void> ExtractRun::load(std::size_t step) {
 
     const Stopwatch packing;
     console_.detail("packing");
+    extractor_.unload();
     const Result<PackedSeries::Work> work = series_->load(*grid, *field, console_.progress());
     if (!work) return work.error();
     if (*work != PackedSeries::Work::packed)
@@ -105,6 +109,9 @@ Result<void> ExtractRun::load(std::size_t step) {
     numbers_.field = series_->packed().field();
     numbers_.averaged = field->averaged;
     say_what_packing_found(*grid);
+    const Stopwatch uploading;
+    if (Result<void> uploaded = extractor_.load(series_->packed()); !uploaded) return uploaded;
+    numbers_.upload_seconds += uploading.seconds();
     return choose_values(*field, step);
 }
 
@@ -163,10 +170,13 @@ Result<void> ExtractRun::extract_one(double isovalue, std::optional<double> time
     options.cell_fields = fields_.cell;
     const Stopwatch extracting;
     console_.detail("extracting " + shortest(isovalue));
-    Result<Extraction> extraction = extract(series_->packed(), isovalue, options, console_.progress());
+    Result<Extraction> extraction = extractor_.extract(isovalue, options);
     if (!extraction) return extraction.error();
     SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
     numbers.extract_seconds = extracting.seconds();
+    numbers.device = extractor_.last();
+    numbers_.engine = extractor_.engine_name();
+    numbers_.engine_text = extractor_.engine_text();
     surface = std::move(extraction->surface);
     numbers.isovalue = isovalue;
     numbers.time = time;

@@ -26,9 +26,6 @@ std::uint64_t process_peak_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-/// The engine that ran; both extract by clusters.
-const char* engine_name(EngineChoice engine) { return engine == EngineChoice::reference ? "reference" : "cpu"; }
-
 std::string memory_text(const ExtractNumbers& numbers) {
     const PackReport& pack = numbers.pack;
     std::string text = "packed " + bytes_text(pack.bytes);
@@ -50,6 +47,19 @@ std::string field_text(const ExtractNumbers& numbers) {
     return text;
 }
 
+std::string device_text(const ExtractNumbers& numbers) {
+    DeviceNumbers sum;
+    for (const SurfaceNumbers& surface : numbers.surfaces) {
+        if (!surface.device) continue;
+        sum.seconds += surface.device->seconds;
+        sum.uploaded_bytes += surface.device->uploaded_bytes;
+        sum.downloaded_bytes += surface.device->downloaded_bytes;
+        sum.page_loads += surface.device->page_loads;
+    }
+    return fmt::format("busy {}; up {}, down {}, {} pages loaded again", seconds_text(sum.seconds),
+                       bytes_text(sum.uploaded_bytes), bytes_text(sum.downloaded_bytes), grouped(sum.page_loads));
+}
+
 std::string facts_table(const ExtractNumbers& numbers) {
     const PackReport& pack = numbers.pack;
     Table table = facts();
@@ -65,13 +75,13 @@ std::string facts_table(const ExtractNumbers& numbers) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
     table.row({"field", field_text(numbers)});
-    table.row({"engine", fmt::format("{}{}, {} packing, {} thread{}", engine_name(numbers.engine),
-                                     numbers.engine == EngineChoice::automatic ? " (auto: the fastest there is)" : "",
+    table.row({"engine", fmt::format("{}, {} packing, {} thread{}", numbers.engine_text,
                                      numbers.precision == Precision::single ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
-    table.row({"time", fmt::format("read {}, pack {}", seconds_text(numbers.read_seconds),
-                                   seconds_text(numbers.pack_seconds))});
+    table.row({"time", fmt::format("read {}, pack {}{}", seconds_text(numbers.read_seconds), seconds_text(numbers.pack_seconds),
+                                   numbers.engine == "vulkan" ? ", upload " + seconds_text(numbers.upload_seconds) : "")});
+    if (numbers.engine == "vulkan") table.row({"device", device_text(numbers)});
     return table.text();
 }
 
@@ -113,11 +123,12 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["field"] = json_text(numbers.field.name);
     report["range"] = {numbers.field.lower, numbers.field.upper};
     report["no_data_points"] = numbers.field.no_data;
-    report["engine"] = engine_name(numbers.engine);
+    report["engine"] = numbers.engine;
     report["method"] = "clusters";
     report["precision"] = numbers.precision == Precision::single ? "float" : "double";
     report["threads"] = numbers.threads;
     report["seconds"] = {{"read", numbers.read_seconds}, {"pack", numbers.pack_seconds}};
+    if (numbers.engine == "vulkan") report["seconds"]["upload"] = numbers.upload_seconds;
     report["bytes"] = {{"packed", numbers.pack.bytes},
                        {"sources", numbers.pack.source_bytes},
                        {"normals", numbers.pack.gradient_bytes},
@@ -134,6 +145,11 @@ Json extract_json(const ExtractNumbers& numbers) {
                         {"area", surface.area},
                         {"seconds", {{"extract", surface.extract_seconds}, {"write", surface.write_seconds}}},
                         {"file", surface.file.empty() ? Json(nullptr) : json_text(surface.file)}});
+        if (surface.device)
+            list.back()["device"] = {{"seconds", surface.device->seconds},
+                                     {"bytes_up", surface.device->uploaded_bytes},
+                                     {"bytes_down", surface.device->downloaded_bytes},
+                                     {"page_loads", surface.device->page_loads}};
     }
     report["surfaces"] = std::move(list);
     return report;

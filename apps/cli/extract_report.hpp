@@ -11,6 +11,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
+#include "extractor.hpp"
 #include "json_output.hpp"
 #include "options.hpp"
 
@@ -24,6 +25,7 @@ struct SurfaceNumbers {
     std::uint64_t vertices = 0, triangles = 0;
     double area = 0;
     double extract_seconds = 0;
+    std::optional<DeviceNumbers> device;
     double write_seconds = 0; ///< of several surfaces in one file the last has it all
     std::string file;         ///< empty without OUT
 };
@@ -35,9 +37,9 @@ struct ExtractNumbers {
     FieldReport field; ///< of the last time step
     bool averaged = false;
     Precision precision = Precision::single;
-    EngineChoice engine = EngineChoice::automatic;
+    std::string engine = "cpu", engine_text = "cpu"; ///< of the last surface; in words
     unsigned threads = 1;
-    double read_seconds = 0, pack_seconds = 0;
+    double read_seconds = 0, pack_seconds = 0, upload_seconds = 0;
     std::vector<SurfaceNumbers> surfaces;
 
     std::uint64_t transient_peak() const;

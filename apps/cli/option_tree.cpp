@@ -47,6 +47,7 @@ Examples:
   isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
   isotet extract run.pvd 'front-{time}.vtp' -f c -i 0.5 --all-steps
   isotet extract make:kuhn:64:gyroid -i 0
+  isotet extract grid.vtu surface.vtp -f pressure -i 0.5 --engine vulkan
 )";
 
 constexpr const char* check_details = R"(
@@ -179,8 +180,14 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
                           "Precision of the packed grid");
     add_choice<EngineChoice>(
         app, "--engine", extract.engine,
-        {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"reference", EngineChoice::reference}},
-        "What extracts; reference is slow and obvious");
+        {{"auto", EngineChoice::automatic},
+         {"cpu", EngineChoice::cpu},
+         {"vulkan", EngineChoice::vulkan},
+         {"reference", EngineChoice::reference}},
+        "What extracts: auto is the CPU, or the device that --device names with the CPU where that fails; vulkan is a device "
+        "or an error; reference is slow and obvious");
+    add_device(app, extract.device);
+    add_device_memory(app, extract.device);
     add_reading(app, extract.grid, "--format");
     add_common(app, extract.common);
     app.footer(extract_details);

@@ -44,7 +44,13 @@ struct FieldChoice {
     bool cell_field = false;
 };
 
-enum class EngineChoice : std::uint8_t { automatic, cpu, reference };
+enum class EngineChoice : std::uint8_t { automatic, cpu, vulkan, reference };
+
+/// Which Vulkan device, and how much of its memory.
+struct DeviceChoice {
+    std::string name;                    ///< as DeviceOptions::choice; "none": no device
+    std::optional<std::uint64_t> memory; ///< bytes at most
+};
 
 struct ExtractCommand {
     CommonOptions common;
@@ -62,6 +68,7 @@ struct ExtractCommand {
     bool source_cells = false;
     Precision precision = Precision::single;
     EngineChoice engine = EngineChoice::automatic;
+    DeviceChoice device; ///< `name` is empty without --device
 };
 
 struct CheckCommand {
@@ -82,12 +89,6 @@ struct MakeCommand {
 
 struct FormatsCommand {
     CommonOptions common;
-};
-
-/// Which Vulkan device, and how much of its memory.
-struct DeviceChoice {
-    std::string name;                    ///< as DeviceOptions::choice; "none": no device
-    std::optional<std::uint64_t> memory; ///< bytes at most
 };
 
 struct DevicesCommand {

@@ -97,7 +97,8 @@ public:
     /// Uploads a packed grid.
     ///
     /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages that did
-    ///            not fit, for the user's numbers of points and cells, and for ties
+    ///            not fit, for the user's numbers of points and cells, and for ties. After set_field() or set_points() it
+    ///            must be uploaded again
     /// Cost       about 11 bytes a tet over the bus
     /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more; out_of_memory,
     ///            before anything is uploaded, when needs().least() is more than is free; machine; cancelled

@@ -146,8 +146,11 @@ TEST_F(Forced, ClustersWithManyCrossedEdgesGiveTheSameBytes) {
 
 TEST_F(Forced, WrongCallsAreErrors) {
     const Grid grid = made_grid("kuhn", 4, {"sphere"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    PackedGrid packed = pack(grid, point_field(grid)).value();
     DeviceGrid on_device = DeviceGrid::upload(device(), packed).value();
+    packed.set_field(field_of(std::vector<float>(grid.points.tuples(), 1.f))).value();
+    EXPECT_EQ(on_device.extract(0.5).error().code, ErrorCode::invalid_argument) << "the device still has the old field";
+    on_device = DeviceGrid::upload(device(), packed).value();
     EXPECT_EQ(on_device.extract(NAN).error().message, "the isovalue is nan, but must be finite");
     ExtractOptions options;
     options.normals = Normals::gradient;

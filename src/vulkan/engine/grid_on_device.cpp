@@ -195,6 +195,9 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
 }
 
 Result<WorkDone> GridOnDevice::extract(std::span<Task> tasks, const Progress& progress) {
+    if (packed_.field.data() != field_)
+        return Error{ErrorCode::invalid_argument,
+                     "the packed grid has got another field since it was uploaded to the device: it must be uploaded again"};
     WorkDone done;
     if (tasks.empty() || resident_.sizes().clusters == 0) return done;
     const std::uint64_t up = context_->staging().uploaded(), loads = cache_->loads();

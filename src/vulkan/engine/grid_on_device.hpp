@@ -55,7 +55,8 @@ public:
 
     /// Extracts one surface for every task; all have the same parts, and were prepared.
     ///
-    /// Errors   invalid_argument when a surface has 2^32 vertices or triangles or more; out_of_memory; machine; cancelled
+    /// Errors   invalid_argument when a surface has 2^32 vertices or triangles or more, or the packed grid has another field
+    ///          by now; out_of_memory; machine; cancelled
     Result<WorkDone> extract(std::span<Task> tasks, const Progress& progress);
 
     Context& context() const noexcept { return *context_; }
@@ -67,7 +68,7 @@ public:
     const Resident& resident() const noexcept { return resident_; }
 
 private:
-    GridOnDevice(std::shared_ptr<Context> context, const core::Packed& packed) : context_(std::move(context)), packed_(packed) {}
+    GridOnDevice(std::shared_ptr<Context> context, const core::Packed& packed) : context_(std::move(context)), packed_(packed), field_(packed.field.data()) {}
 
     Result<Passes> make_passes(const SurfaceParts& parts);
     Result<bool> extract_together(std::span<Task> tasks, Passes& passes, WorkDone& done);
@@ -81,6 +82,7 @@ private:
 
     std::shared_ptr<Context> context_;
     const core::Packed& packed_;
+    const void* field_; ///< of the packed grid when it was uploaded
     Resident resident_;
     std::optional<PageCache> cache_;
     Buffer results_; ///< heads of surfaces, on their way to the processor

@@ -1,0 +1,75 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet extract` with a device: the same files, and a note whenever the CPU stands in.
+#include <fstream>
+#include <iterator>
+
+#include "cli/program.hpp"
+
+namespace isotet::test {
+namespace {
+
+class ProgramOnDevice : public Program {
+protected:
+    static std::string content(const std::string& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+};
+
+TEST_F(ProgramOnDevice, WritesTheSameFile) {
+    const std::vector<std::string> command{"extract", "make:kuhn:12:gyroid,sphere", "-f", "gyroid", "-i", "0,0.3",
+                                           "--normals", "gradient", "--edge-ends", "-q", "-o"};
+    auto on_cpu = command, on_device = command, in_parts = command;
+    on_cpu.push_back(path("cpu.vtp"));
+    on_device.insert(on_device.end(), {path("device.vtp"), "--engine", "vulkan", "--device", "software"});
+    in_parts.insert(in_parts.end(),
+                    {path("parts.vtp"), "--engine", "vulkan", "--device", "software", "--device-memory", "1MB"});
+    for (const auto& words : {on_cpu, on_device, in_parts}) {
+        const RunResult run = isotet(words);
+        ASSERT_EQ(run.status, 0) << run.err;
+    }
+    const std::string expected = content(path("cpu.vtp"));
+    EXPECT_GT(expected.size(), 10'000u);
+    EXPECT_TRUE(content(path("device.vtp")) == expected);
+    EXPECT_TRUE(content(path("parts.vtp")) == expected);
+}
+
+TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {
+    const auto report = json_of({"extract", "make:kuhn:8:gyroid", "-i", "0", "--engine", "vulkan", "--device", "software"});
+    EXPECT_EQ(report["engine"], "vulkan");
+    const auto& surface = report["surfaces"][0];
+    EXPECT_GE(surface["device"]["bytes_down"].get<std::size_t>(),
+              12 * (surface["vertices"].get<std::size_t>() + surface["triangles"].get<std::size_t>()));
+}
+
+TEST_F(ProgramOnDevice, SaysSoWhenTheCpuStandsIn) {
+    const RunResult run = isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", "software", "--precision", "double"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_NE(run.err.find("note: the grid was packed in double precision, but the vulkan engine takes single precision only: "
+                           "the CPU extracts instead"),
+              std::string::npos)
+        << run.err;
+    EXPECT_NE(run.out.find("engine  cpu"), std::string::npos) << run.out;
+}
+
+TEST_F(ProgramOnDevice, RefusesWhatCannotBe) {
+    const auto extract = [](std::vector<std::string> more) {
+        more.insert(more.begin(), {"extract", "make:kuhn:8:gyroid", "-i", "0"});
+        return isotet(more);
+    };
+    RunResult run = extract({"--engine", "vulkan", "--device", "software", "--precision", "double"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "packed in double precision"));
+    run = extract({"--engine", "vulkan", "--device", "none"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "--engine vulkan needs a device"));
+    run = extract({"--engine", "cpu", "--device", "software"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "only --engine vulkan and auto use one"));
+    run = extract({"--engine", "vulkan", "--device", "software", "--device-memory", "8kB"});
+    EXPECT_EQ(run.status, 4);
+    EXPECT_TRUE(is_one_error(run, "of device memory at least"));
+}
+
+} // namespace
+} // namespace isotet::test
