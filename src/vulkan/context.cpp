@@ -2,7 +2,9 @@
 #include "vulkan/context.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
+#include <vector>
 
 #include "core/guard.hpp"
 #include "vulkan/choice.hpp"
@@ -10,6 +12,20 @@
 #include "vulkan/self_test.hpp"
 
 namespace isotet::vulkan {
+
+namespace {
+
+/// Keeps a device on which work still goes on, and the instance that it needs, to the end of the process and beyond the end
+/// of static objects.
+void leave_behind(std::unique_ptr<Instance> instance, std::unique_ptr<LogicalDevice> device) {
+    using Left = std::pair<std::unique_ptr<Instance>, std::unique_ptr<LogicalDevice>>;
+    static std::mutex mutex;
+    static auto* all = new std::vector<Left>;
+    const std::lock_guard lock(mutex);
+    all->emplace_back(std::move(instance), std::move(device));
+}
+
+} // namespace
 
 Result<std::shared_ptr<Context>> Context::open(const DeviceOptions& options, const Settings& settings) {
     return core::guarded("opening the device", [&] { return open_unguarded(options, settings); });
@@ -52,8 +68,7 @@ Context::~Context() {
     kernels_.reset();
     cache_.reset();
     memory_.reset();
-    // A device that is left behind needs its instance.
-    if (device_ && device_->hung()) static_cast<void>(instance_.release());
+    if (device_ && device_->hung()) leave_behind(std::move(instance_), std::move(device_));
 }
 
 } // namespace isotet::vulkan
