@@ -39,9 +39,9 @@ private:
 };
 
 /// One thread's memory, in blocks that grow; given back as a whole.
-class Arena {
+class BudgetedArena {
 public:
-    explicit Arena(Budget& budget) : budget_(&budget) {}
+    explicit BudgetedArena(Budget& budget) : budget_(&budget) {}
 
     /// Uninitialized; stays where it is.
     template <class T>

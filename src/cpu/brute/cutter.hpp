@@ -112,7 +112,7 @@ private:
     CutContext& context_;
     std::size_t number_;
     core::PointReader points_;
-    Arena arena_;
+    BudgetedArena arena_;
     CutCounts counts_;
     std::vector<std::uint64_t> in_range_;
     Chunk<Point>* chunk_ = nullptr;
