@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Looking at a field's values at the points that tets use, to choose how they are stored.
+// Looking at a field's values at the points that tets use, to choose how they are stored, and storing them.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/progress.hpp>
 
 #include "core/packed.hpp"
 #include "core/storage.hpp"
@@ -17,11 +18,14 @@ namespace isotet::core {
 struct FieldStorage {
     Storage storage;
     ValueStatistics statistics;
+    std::uint64_t flushed = 0; ///< stored values that are 0 though the values are not
 };
 
-/// Offset and scale for a field with any number of components (one pair for all of them), one tuple for each of the
-/// user's points. Parallel; two passes over the values at packed points.
-FieldStorage survey_field(const Array& values, const Packed& packed);
+/// Chooses offset and scale for a field of one component, one value for each of the user's points, and stores its values
+/// at the packed points in `out`. When cancelled, what comes back means nothing.
+/// Cost   parallel; one pass over the packed points, one more for an offset, one more for a scale
+template <class Real>
+FieldStorage store_field_values(const Array& values, const Packed& packed, const Progress& progress, Real* out);
 
 /// Storage of fields that were looked at before: so that a field carried onto many surfaces is looked at once. Arrays
 /// are told apart by their memory and its owner; borrowed ones, whose memory may be used again, are not remembered.
@@ -42,7 +46,9 @@ private:
     std::vector<Entry> entries_;
 };
 
-/// As survey_field(), from the packed grid's cache where it can be.
+/// Offset and scale for a field with any number of components (one pair for all of them); from the packed grid's cache
+/// where it can be.
+/// Cost   parallel; one pass over the values at packed points, one more for an offset
 Storage choose_storage(const Array& values, const Packed& packed);
 
 } // namespace isotet::core

@@ -3,30 +3,58 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/packed.hpp"
 
 namespace isotet::core {
 
-/// Calls f(local index, packed point) for each foreign point of a cluster.
-template <class F>
-void for_foreign_points(const Packed& packed, const ClusterLinks& links, F&& f) {
-    std::size_t local = 0;
-    for (const Neighbour& neighbour : links.neighbours) {
-        const std::uint64_t first = packed.headers[neighbour.cluster].first_point;
-        for (std::size_t end = local + neighbour.foreign_points; local < end; ++local) f(local, first + links.foreign_points[local]);
+/// Packed points of the local points of a cluster.
+class LocalPoints {
+public:
+    void find(const Packed& packed, std::size_t cluster) {
+        const ClusterHeader& h = packed.headers[cluster];
+        const ClusterLinks links = packed.cluster_links(cluster);
+        // In eights, without a branch a point: what is written too much is written again, or left alone.
+        std::array<std::uint8_t, max_cluster_points + at_once> indices;
+        std::copy(links.foreign_points.begin(), links.foreign_points.end(), indices.begin());
+        std::size_t n = 0;
+        for (const Neighbour& neighbour : links.neighbours) {
+            const std::uint64_t first = packed.headers[neighbour.cluster].first_point;
+            for (std::size_t k = 0; k < neighbour.foreign_points; k += at_once)
+                for (std::size_t i = 0; i < at_once; ++i) points_[n + k + i] = first + indices[n + k + i];
+            n += neighbour.foreign_points;
+        }
+        foreign_ = n;
+        for (std::size_t k = 0; k < h.own_points; k += at_once)
+            for (std::size_t i = 0; i < at_once; ++i) points_[n + k + i] = h.first_point + k + i;
     }
-}
+    std::size_t foreign() const { return foreign_; } ///< how many; they come first
+    std::uint64_t operator[](std::size_t local) const { return points_[local]; }
+
+private:
+    static constexpr std::size_t at_once = 8;
+    std::array<std::uint64_t, max_cluster_points + at_once> points_;
+    std::size_t foreign_ = 0;
+};
 
 /// Stored values of all local points; returns their number.
 template <class Real>
-std::size_t load_values(const Packed& packed, std::size_t cluster, Real* out) {
+std::size_t load_values(const Packed& packed, std::size_t cluster, const LocalPoints& points, Real* out) {
     const ClusterHeader& h = packed.headers[cluster];
     const Real* values = packed.as<Real>().values.data();
-    for_foreign_points(packed, packed.cluster_links(cluster), [&](std::size_t local, std::uint64_t point) { out[local] = values[point]; });
-    std::copy_n(values + h.first_point, h.own_points, out + h.foreign_points);
-    return std::size_t{h.foreign_points} + h.own_points;
+    for (std::size_t k = 0; k < points.foreign(); ++k) out[k] = values[points[k]];
+    std::copy_n(values + h.first_point, h.own_points, out + points.foreign());
+    return points.foreign() + h.own_points;
+}
+
+template <class Real>
+std::size_t load_values(const Packed& packed, std::size_t cluster, Real* out) {
+    LocalPoints points;
+    points.find(packed, cluster);
+    return load_values(packed, cluster, points, out);
 }
 
 /// Stored positions of all local points, 3 numbers each.
@@ -34,8 +62,9 @@ template <class Real>
 void load_positions(const Packed& packed, std::size_t cluster, Real* out) {
     const ClusterHeader& h = packed.headers[cluster];
     const Real* positions = packed.as<Real>().positions.data();
-    for_foreign_points(packed, packed.cluster_links(cluster),
-                       [&](std::size_t local, std::uint64_t point) { std::copy_n(positions + 3 * point, 3, out + 3 * local); });
+    LocalPoints points;
+    points.find(packed, cluster);
+    for (std::size_t k = 0; k < points.foreign(); ++k) std::copy_n(positions + 3 * points[k], 3, out + 3 * k);
     std::copy_n(positions + 3 * h.first_point, 3u * h.own_points, out + 3u * h.foreign_points);
 }
 

@@ -54,6 +54,10 @@ void store_positions(const Array& points, Packed& packed);
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress);
 
+/// Works out ranges, group ranges and has_no_data from the stored values.
+template <class Real>
+void store_ranges(Packed& packed, const Progress& progress);
+
 /// Computes the gradient direction of the stored field at every point (normal_code.hpp).
 void store_gradients(Packed& packed);
 

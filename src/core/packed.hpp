@@ -190,19 +190,26 @@ inline std::size_t local_points(const Packed& packed, std::size_t cluster, std::
     return n;
 }
 
+/// The power of two that brings the width of a range into [128, 256); 0 for a width of 0. Widths are far from denormals and
+/// overflow, and so is the factor.
+template <class Real>
+Real quantize_factor(Range<Real> range) {
+    using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+    constexpr int mantissa = std::numeric_limits<Real>::digits - 1, bias = std::numeric_limits<Real>::max_exponent - 1;
+    const Real width = range.upper - range.lower;
+    if (!(width > 0)) return 0;
+    const int exponent = static_cast<int>(std::bit_cast<Bits>(width) >> mantissa) - bias; // width is in [2^e, 2^(e+1))
+    return std::bit_cast<Real>(static_cast<Bits>(bias + 7 - exponent) << mantissa);
+}
+
 /// Places a value inside the range of a cluster: 0 at the lower end, up to 255 at the upper. Monotone and exact to
 /// compute on any device (one subtraction, one multiplication by a power of two), so that
 /// `lower <= v <= upper` implies `quantize(lower) <= quantize(v) <= quantize(upper)`.
 template <class Real>
 std::uint8_t quantize(Real value, Range<Real> range) {
-    using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
-    constexpr int mantissa = std::numeric_limits<Real>::digits - 1, bias = std::numeric_limits<Real>::max_exponent - 1;
-    const Real width = range.upper - range.lower;
-    if (!(width > 0) || !(value > range.lower)) return 0;
-    // width is in [2^e, 2^(e+1)), far from denormals and overflow: times 2^(7-e) it is below 256.
-    const int exponent = static_cast<int>(std::bit_cast<Bits>(width) >> mantissa) - bias;
-    const Real step = std::bit_cast<Real>(static_cast<Bits>(bias + 7 - exponent) << mantissa);
-    return static_cast<std::uint8_t>(std::min((std::min(value, range.upper) - range.lower) * step, Real(255)));
+    if (!(value > range.lower)) return 0;
+    return static_cast<std::uint8_t>(
+        std::min((std::min(value, range.upper) - range.lower) * quantize_factor(range), Real(255)));
 }
 
 } // namespace isotet::core

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <atomic>
 #include <memory>
+#include <utility>
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -20,8 +21,10 @@ public:
     void count_place(std::size_t place, CutScratch<Real>& s) const {
         const std::size_t cluster = cutting_.selection.clusters[place];
         if (s.cluster != cluster) {
-            ask_ahead(place);
-            core::load_values(cutting_.packed, cluster, s.values.data());
+            std::swap(s.local, s.next);
+            if (s.next_cluster != cluster) s.local->find(cutting_.packed, cluster);
+            ask_ahead(place, s);
+            core::load_values(cutting_.packed, cluster, *s.local, s.values.data());
             s.cluster = cluster;
         }
         const Record<Real>* record = nullptr;
@@ -38,7 +41,7 @@ public:
 
 private:
     /// Asks for what the clusters to come will read, while this one is worked on.
-    void ask_ahead(std::size_t place) const {
+    void ask_ahead(std::size_t place, CutScratch<Real>& s) const {
         const Packed& packed = cutting_.packed;
         const PlacesAhead ahead(cutting_.selection, place);
         const auto cluster = [&](std::size_t i) { return cutting_.selection.clusters[ahead[i]]; };
@@ -51,8 +54,9 @@ private:
         }
         if (ahead.has(0)) {
             const Real* const values = packed.as<Real>().values.data();
-            core::for_foreign_points(packed, packed.cluster_links(cluster(0)),
-                                     [&](std::size_t, std::uint64_t point) { prefetch(values + point); });
+            s.next->find(packed, cluster(0));
+            for (std::size_t k = 0; k < s.next->foreign(); ++k) prefetch(values + (*s.next)[k]);
+            s.next_cluster = cluster(0);
         }
     }
 

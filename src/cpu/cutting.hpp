@@ -37,8 +37,11 @@ struct CutScratch {
     static constexpr std::size_t points = core::max_cluster_points;
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-    std::size_t cluster = none; ///< whose values these are
-    alignas(64) std::array<Real, points> values{};
+    std::size_t cluster = none, next_cluster = none;
+    std::array<core::LocalPoints, 2> found;
+    core::LocalPoints* local = &found[0]; ///< of `cluster`
+    core::LocalPoints* next = &found[1];  ///< of `next_cluster`
+    alignas(64) std::array<Real, points> values{}; ///< of `cluster`
     alignas(64) std::array<std::uint8_t, points> above{}; ///< 1 or 0
     std::array<std::uint8_t, points> special;             ///< tied or without data; for any_cluster.cpp
     CutTets cut;

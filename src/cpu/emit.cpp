@@ -22,14 +22,14 @@ namespace {
 constexpr std::size_t max_points = core::max_cluster_points;
 constexpr std::size_t max_edges = max_points * (max_points - 1) / 2;
 
-/// Packed points of the local points of a cluster.
-struct LocalPoints {
+/// The local points of a cluster, found once.
+struct FoundPoints {
     std::size_t cluster = std::numeric_limits<std::size_t>::max();
-    std::array<std::uint64_t, max_points> packed;
+    core::LocalPoints packed;
 
     void find(const Packed& grid, std::size_t of) {
         if (cluster == of) return;
-        core::local_points(grid, of, packed.data());
+        packed.find(grid, of);
         cluster = of;
     }
 };
@@ -37,9 +37,9 @@ struct LocalPoints {
 /// One thread's memory.
 template <class Real>
 struct Scratch {
-    std::array<LocalPoints, 2> found;
-    LocalPoints* points = &found[0]; ///< of the cluster at hand
-    LocalPoints* next = &found[1];   ///< of the one after it
+    std::array<FoundPoints, 2> found;
+    FoundPoints* points = &found[0]; ///< of the cluster at hand
+    FoundPoints* next = &found[1];   ///< of the one after it
     std::array<EndPair, max_points + max_edges> ends; ///< of vertices that only masks know
     std::array<Real, max_points + max_edges> weights;
     std::array<std::uint64_t, max_points + max_edges> numbers; ///< of vertices by local number

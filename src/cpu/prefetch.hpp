@@ -5,15 +5,13 @@
 #include <array>
 #include <cstddef>
 
+#include "core/prefetch.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {
 
-inline void prefetch(const void* address) { __builtin_prefetch(address); }
-
-inline void prefetch_bytes(const void* first, std::size_t bytes) {
-    for (std::size_t at = 0; at < bytes; at += 64) prefetch(static_cast<const std::byte*>(first) + at);
-}
+using core::prefetch;
+using core::prefetch_bytes;
 
 /// The first place of each of the next three clusters after a place.
 class PlacesAhead {

@@ -5,7 +5,8 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
-#include "cpu/level.hpp"
+#include "core/level.hpp"
+#include "determinism/packed_bytes.hpp"
 #include "support/random_grid.hpp"
 #include "support/surface_bytes.hpp"
 
@@ -13,7 +14,7 @@ namespace isotet::test {
 namespace {
 
 TEST(InstructionLevels, GiveTheSameBytes) {
-    RecordProperty("best_level", std::string(cpu::name_of(cpu::best_level())));
+    RecordProperty("best_level", std::string(core::name_of(core::best_level())));
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
         const bool smooth = seed % 2;
         const NastyGrid g = nasty_grid(seed, {.side = 9, .values = smooth ? 0 : 5, .no_data = smooth ? 0 : 0.002, .missing = 0.05});
@@ -26,14 +27,30 @@ TEST(InstructionLevels, GiveTheSameBytes) {
                 options.engine = Engine::reference;
                 const Surface reference = extract(packed, isovalue, options).value().surface;
                 options.engine = Engine::cpu;
-                for (int level = 0; level <= int(cpu::best_level()); ++level) {
-                    cpu::force_level(cpu::Level(level));
+                for (int level = 0; level <= int(core::best_level()); ++level) {
+                    core::force_level(core::Level(level));
                     const Surface surface = extract(packed, isovalue, options).value().surface;
-                    cpu::force_level({});
+                    core::force_level({});
                     ASSERT_TRUE(bytes_of(surface) == bytes_of(reference))
-                        << "seed " << seed << ", isovalue " << isovalue << ", " << cpu::name_of(cpu::Level(level));
+                        << "seed " << seed << ", isovalue " << isovalue << ", " << core::name_of(core::Level(level));
                 }
             }
+    }
+}
+
+TEST(InstructionLevels, StoreTheSameFields) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const NastyGrid g = nasty_grid(seed, {.side = 9, .values = seed % 2 ? 0 : 5, .no_data = seed > 2 ? 0.05 : 0, .missing = 0.05});
+        for (const Precision precision : {Precision::single, Precision::double_}) {
+            std::string expected;
+            for (int level = 0; level <= int(core::best_level()); ++level) {
+                core::force_level(core::Level(level));
+                const PackedGrid packed = pack(g.grid, g.field, {.precision = precision}).value();
+                core::force_level({});
+                if (expected.empty()) expected = bytes_of(packed);
+                ASSERT_TRUE(bytes_of(packed) == expected) << "seed " << seed << ", " << core::name_of(core::Level(level));
+            }
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "cpu/level.hpp"
+#include "core/level.hpp"
 
 #include <atomic>
 
-namespace isotet::cpu {
+namespace isotet::core {
 
 namespace {
 std::atomic<int> forced{-1};
@@ -39,4 +39,4 @@ std::string_view name_of(Level level) {
     }
 }
 
-} // namespace isotet::cpu
+} // namespace isotet::core
