@@ -8,6 +8,7 @@
 
 #include "core/arithmetic.hpp"
 #include "core/parallel.hpp"
+#include "cpu/face_normals.hpp"
 
 namespace isotet::api {
 
@@ -66,9 +67,8 @@ Array face_normals(const ops::RawSurface& raw) {
     core::Buffer<float> normals(3 * raw.triangles.tuples());
     const Real* positions = raw.positions.as<Real>().data();
     with_indices(raw.triangles, [&](auto triangles) {
-        core::parallel_each(raw.triangles.tuples(), grain, [&](std::size_t t) {
-            const auto n = normal_of(positions, triangles.data() + 3 * t);
-            for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * t + axis] = static_cast<float>(n[axis]);
+        core::parallel_ranges(raw.triangles.tuples(), grain, [&](std::size_t begin, std::size_t end) {
+            cpu::face_normals(positions, triangles.data() + 3 * begin, end - begin, normals.data() + 3 * begin);
         });
     });
     return std::move(normals).to_array(3);
