@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet extract`: from a grid file to surface files.
+#include <algorithm>
+#include <span>
 #include <thread>
 
 #include <fmt/format.h>
@@ -22,6 +24,9 @@ namespace isotet::cli {
 
 namespace {
 
+/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written.
+constexpr std::size_t isovalues_a_pass = 8;
+
 /// One run of the command: what its steps share.
 class ExtractRun {
 public:
@@ -36,8 +41,8 @@ private:
     Result<void> load(std::size_t step);
     Result<void> choose_values(const PointField& field, std::size_t step);
     Result<void> extract_step(std::size_t step);
-    Result<void> extract_one(double isovalue, std::optional<double> time, Surface& surface);
-    Result<void> write(const Surface& surface, const std::string& path);
+    Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::optional<double> time);
+    Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
     void say_what_packing_found(const Grid& grid);
     void say_what_extracting_found(const SurfaceNumbers& surface);
 
@@ -164,59 +169,69 @@ void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
     }
 }
 
-Result<void> ExtractRun::extract_one(double isovalue, std::optional<double> time, Surface& surface) {
+Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::optional<double> time) {
     ExtractOptions options = plan_.extract;
     options.point_fields = fields_.point;
     options.cell_fields = fields_.cell;
     const Stopwatch extracting;
-    console_.detail("extracting " + shortest(isovalue));
-    Result<Extraction> extraction = extractor_.extract(isovalue, options);
-    if (!extraction) return extraction.error();
-    SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
-    numbers.extract_seconds = extracting.seconds();
-    numbers.device = extractor_.last();
+    for (const double isovalue : isovalues) console_.detail("extracting " + shortest(isovalue));
+    Result<std::vector<Extraction>> extractions = extractor_.extract(isovalues, options);
+    if (!extractions) return extractions.error();
+    const double seconds = extracting.seconds() / static_cast<double>(isovalues.size());
     numbers_.engine = extractor_.engine_name();
     numbers_.engine_text = extractor_.engine_text();
-    surface = std::move(extraction->surface);
-    numbers.isovalue = isovalue;
-    numbers.time = time;
-    numbers.report = extraction->report;
-    numbers.vertices = surface.vertices();
-    numbers.triangles = surface.triangle_count();
-    numbers.area = area(surface);
-    say_what_extracting_found(numbers);
-    return {};
+    std::vector<Surface> surfaces;
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        const Surface& surface = surfaces.emplace_back(std::move((*extractions)[i].surface));
+        SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
+        numbers.extract_seconds = seconds;
+        numbers.device = extractor_.last();
+        numbers.isovalue = isovalues[i];
+        numbers.time = time;
+        numbers.report = (*extractions)[i].report;
+        numbers.vertices = surface.vertices();
+        numbers.triangles = surface.triangle_count();
+        numbers.area = area(surface);
+        say_what_extracting_found(numbers);
+    }
+    return surfaces;
 }
 
-Result<void> ExtractRun::write(const Surface& surface, const std::string& path) {
+Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
     const Stopwatch writing;
-    console_.detail("writing " + path);
-    const Result<WriteReport> written = write_surface(surface, path, {}, console_.progress());
+    console_.detail("writing " + numbers.file);
+    const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.progress());
     if (!written) return written.error();
     console_.notes(written->notes);
-    numbers_.surfaces.back().write_seconds = writing.seconds();
+    numbers.write_seconds = writing.seconds();
     return {};
 }
 
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const std::optional<double> time = time_of(source_->info(), step);
     const bool one_file = !plan_.names.none() && !plan_.names.by_value();
-    std::vector<Surface> surfaces;
-    for (const double isovalue : isovalues_) {
-        Surface surface;
-        if (Result<void> extracted = extract_one(isovalue, time, surface); !extracted) return extracted;
-        if (plan_.names.none()) continue;
-        const std::string path = plan_.names.name(isovalue, time);
-        numbers_.surfaces.back().file = path;
-        if (one_file) {
-            surfaces.push_back(std::move(surface));
-        } else if (Result<void> written = write(surface, path); !written) {
-            return written;
+    // What goes into one file is in memory together anyway.
+    std::size_t at_once = !extractor_.in_one_pass() ? 1 : one_file ? isovalues_.size() : isovalues_a_pass;
+    std::vector<Surface> joined;
+    for (std::span<const double> left = isovalues_; !left.empty();) {
+        const std::span<const double> pass = left.first(std::min(at_once, left.size()));
+        Result<std::vector<Surface>> surfaces = extract_pass(pass, time);
+        if (!surfaces && surfaces.error().code == ErrorCode::out_of_memory && pass.size() > 1 && !one_file) {
+            at_once = pass.size() / 2;
+            continue;
+        }
+        if (!surfaces) return surfaces.error();
+        left = left.subspan(pass.size());
+        const std::size_t first = numbers_.surfaces.size() - pass.size();
+        for (std::size_t i = 0; i < pass.size() && !plan_.names.none(); ++i) {
+            SurfaceNumbers& numbers = numbers_.surfaces[first + i];
+            numbers.file = plan_.names.name(pass[i], time);
+            if (one_file) joined.push_back(std::move((*surfaces)[i]));
+            else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
         }
     }
     if (!one_file) return {};
-    const std::string& path = numbers_.surfaces.back().file;
-    return write(surfaces.size() == 1 ? surfaces.front() : join(surfaces, isovalues_), path);
+    return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());
 }
 
 Result<void> ExtractRun::run() {

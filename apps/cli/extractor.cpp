@@ -2,6 +2,7 @@
 #include "extractor.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -68,14 +69,20 @@ Result<Extraction> Extractor::extract_on_device(double isovalue, const ExtractOp
     return extraction;
 }
 
-Result<Extraction> Extractor::extract(double isovalue, const ExtractOptions& options) {
+Result<std::vector<Extraction>> Extractor::extract(std::span<const double> isovalues, const ExtractOptions& options) {
     last_.reset();
-    if (grid_) {
-        Result<Extraction> extraction = extract_on_device(isovalue, options);
-        if (extraction) return extraction;
-        if (Result<void> instead = without_device(extraction.error()); !instead) return instead.error();
+    std::vector<Extraction> done;
+    while (grid_ && done.size() < isovalues.size()) {
+        Result<Extraction> extraction = extract_on_device(isovalues[done.size()], options);
+        if (extraction) done.push_back(*std::move(extraction));
+        else if (Result<void> instead = without_device(extraction.error()); !instead) return instead.error();
     }
-    return isotet::extract(*packed_, isovalue, options, console_.progress());
+    if (done.size() == isovalues.size()) return done;
+    last_.reset();
+    auto rest = isotet::extract(*packed_, isovalues.subspan(done.size()), options, console_.progress());
+    if (!rest) return rest;
+    std::move(rest->begin(), rest->end(), std::back_inserter(done));
+    return done;
 }
 
 const char* Extractor::engine_name() const {

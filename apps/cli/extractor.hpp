@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <isotet/device_grid.hpp>
 #include <isotet/extract.hpp>
@@ -38,7 +40,9 @@ public:
     /// Uploads the packed grid, which stays where it is until unload().
     Result<void> load(const PackedGrid& packed);
 
-    Result<Extraction> extract(double isovalue, const ExtractOptions& options);
+    /// Surfaces of isovalues, in their order: all in one pass by the CPU engine, one after another on a device.
+    Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options);
+    bool in_one_pass() const { return !grid_; }
 
     /// "cpu", "reference", or "vulkan" with the device's name.
     std::string engine_text() const;
