@@ -1,13 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "vulkan/pipeline_cache.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -82,6 +87,28 @@ std::vector<std::byte> read_checked(const fs::path& path) {
     return bytes;
 }
 
+constexpr std::string_view prefix = "pipelines-", suffix = ".bin";
+
+/// Removes the files of other builds and drivers that were written longest ago, and what writers that were killed left.
+/// Other files are nobody's business here.
+void tidy(const fs::path& folder) {
+    using Written = std::pair<fs::file_time_type, fs::path>;
+    const auto hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    std::vector<Written> files;
+    std::error_code failed;
+    for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
+        const std::string name = entry->path().filename().string();
+        std::error_code gone; // by another process
+        if (!name.starts_with(prefix) || !entry->is_regular_file(gone)) continue;
+        const fs::file_time_type written = entry->last_write_time(gone);
+        if (gone) continue;
+        if (name.ends_with(suffix)) files.emplace_back(written, entry->path());
+        else if (name.find(fmt::format("{}.", suffix)) != name.npos && written < hour_ago) fs::remove(entry->path(), gone);
+    }
+    std::ranges::sort(files, std::greater());
+    for (std::size_t i = PipelineCache::most_files; i < files.size(); ++i) fs::remove(files[i].second, failed);
+}
+
 } // namespace
 
 fs::path pipeline_cache_folder() {
@@ -95,7 +122,7 @@ PipelineCache::PipelineCache(LogicalDevice& device, const Capabilities& capabili
     : device_(device) {
     std::vector<std::byte> bytes;
     if (!folder.empty()) {
-        file_ = folder / fmt::format("pipelines-{:016x}.bin", key_of(capabilities));
+        file_ = folder / fmt::format("{}{:016x}{}", prefix, key_of(capabilities), suffix);
         bytes = read_checked(file_);
     }
     VkPipelineCacheCreateInfo create{};
@@ -140,6 +167,7 @@ void PipelineCache::save() const {
     file.close();
     if (file) fs::rename(beside, file_, failed);
     if (!file || failed) fs::remove(beside, failed);
+    tidy(file_.parent_path());
 }
 
 } // namespace isotet::vulkan

@@ -78,6 +78,29 @@ TEST_F(CompiledPipelines, AreNotReadFromABrokenFile) {
     EXPECT_EQ(open(), whole.size() - head_bytes);
 }
 
+// Drivers and builds change: their files must not gather for ever.
+TEST_F(CompiledPipelines, OfOtherBuildsGoWhenThereAreMany) {
+    open();
+    const fs::path own = file();
+    const auto add = [&](const std::string& name, int hours_old) {
+        std::ofstream(folder() / name) << "x";
+        fs::last_write_time(folder() / name, fs::file_time_type::clock::now() - std::chrono::hours(hours_old));
+        return folder() / name;
+    };
+    std::vector<fs::path> others;
+    for (int i = 0; i < 12; ++i) others.push_back(add("pipelines-00000000000000" + std::to_string(10 + i) + ".bin", 1 + i));
+    const fs::path killed = add("pipelines-0000000000000000.bin.123", 2), writing = add("pipelines-0000000000000000.bin.456", 0);
+    const fs::path foreign = add("notes.txt", 1000);
+    fs::last_write_time(own, fs::file_time_type::clock::now() - std::chrono::hours(100));
+    EXPECT_GT(open(), 0u);
+    for (std::size_t i = 0; i < others.size(); ++i)
+        EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::most_files) << "file " << i << " of others, newest first";
+    EXPECT_TRUE(fs::exists(own)) << "it is the newest now";
+    EXPECT_FALSE(fs::exists(killed));
+    EXPECT_TRUE(fs::exists(writing)) << "somebody may be at it";
+    EXPECT_TRUE(fs::exists(foreign));
+}
+
 TEST_F(CompiledPipelines, DoWithoutAFolder) {
     fs::create_directories(folder().parent_path());
     std::ofstream(folder()) << "a file where the folder should be";
