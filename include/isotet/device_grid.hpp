@@ -97,8 +97,8 @@ public:
     /// Uploads a packed grid.
     ///
     /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages that did
-    ///            not fit, for the user's numbers of points and cells, and for ties. After set_field() or set_points() it
-    ///            must be uploaded again
+    ///            not fit, for the user's numbers of points and cells, and for ties. When its field or points are set, but
+    ///            not by the functions below, it must be uploaded again
     /// Cost       about 11 bytes a tet over the bus
     /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more; out_of_memory,
     ///            before anything is uploaded, when needs().least() is more than is free; machine; cancelled
@@ -108,6 +108,23 @@ public:
     DeviceGrid(DeviceGrid&&) noexcept;
     DeviceGrid& operator=(DeviceGrid&&) noexcept;
     ~DeviceGrid();
+
+    /// Replaces the contoured field of the packed grid and of the grid on the device (another field, or the next time step):
+    /// values go up, ranges are worked out on the device and come back.
+    ///
+    /// `packed`     the one that was uploaded
+    /// Guarantees   the packed grid is byte for byte what packed.set_field() makes of it
+    /// Cost         a pass over the values and 4 bytes a point over the bus, 0.1 bytes a tet back; gradients, and ranges of pages
+    ///              that are not on the device, are worked out on the processor
+    /// Errors       as PackedGrid::set_field(); invalid_argument when `packed` is another one; of the device: out_of_memory,
+    ///              machine. The packed grid has the field then, but must be uploaded again
+    Result<void> set_field(PackedGrid& packed, const PointField& field, int threads = 0, const Progress& progress = {});
+
+    /// Replaces the coordinates of both (a mesh that moves).
+    ///
+    /// Cost     PackedGrid::set_points(), and 12 bytes a point over the bus
+    /// Errors   as PackedGrid::set_points(): nothing has changed then; the others as set_field()
+    Result<void> set_points(PackedGrid& packed, const Array& points, int threads = 0, const Progress& progress = {});
 
     std::uint64_t device_bytes() const noexcept; ///< resident arrays and the pages that are there
     bool complete() const noexcept;              ///< all pages are there
@@ -127,18 +144,19 @@ public:
     Result<std::vector<DeviceSurface>> extract(std::span<const double> isovalues, const ExtractOptions& options = {},
                                                const Progress& progress = {});
 
-    /// A surface of this grid, on the processor, with all that was asked for when it was extracted. The packed grid must
-    /// still have the field that it had then.
+    /// A surface of this grid, on the processor, with all that was asked for when it was extracted. When the packed grid has
+    /// got another field or other points since then, the report does not tell false ties and near ties.
     ///
     /// Cost     the arrays over the bus; carried fields are interpolated here
     Result<Extraction> download(const DeviceSurface& surface, const Progress& progress = {});
 
-    /// What the last call of extract() or download() cost.
+    /// What the last call of a function above cost.
     const DeviceWork& work() const noexcept;
 
 private:
     struct Data;
     explicit DeviceGrid(std::unique_ptr<Data> data);
+    Result<void> check_same(const PackedGrid& packed) const;
     Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
                               const Progress& progress);
     std::unique_ptr<Data> data_;

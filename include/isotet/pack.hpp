@@ -92,6 +92,7 @@ public:
     Result<void> set_points(const Array& points, int threads = 0, const Progress& progress = {});
 
 private:
+    friend class DeviceGrid; // sets a field with the device's help
     std::unique_ptr<core::Packed> data_;
 };
 

@@ -9,6 +9,7 @@
 #include "core/field_storage.hpp"
 #include "core/guard.hpp"
 #include "core/parallel.hpp"
+#include "core/set_field.hpp"
 #include "core/storage.hpp"
 #include "vulkan/engine/grid_on_device.hpp"
 
@@ -19,6 +20,9 @@ struct DeviceSurface::Data {
     vulkan::SurfaceBuffers buffers;
     double isovalue = 0;
     float stored = 0;
+    double stored_in_unit = 0;     ///< of the field
+    std::array<double, 3> origin{};
+    std::uint64_t changes = 0;     ///< of the packed grid, when it was extracted
     ExtractOptions options;
 
     Result<Extraction> download(const core::Packed& packed) const;
@@ -66,6 +70,12 @@ DeviceWork work_of(vulkan::WorkDone&& done) {
 
 } // namespace
 
+Result<void> DeviceGrid::check_same(const PackedGrid& packed) const {
+    if (&packed.data() != &data_->grid->packed())
+        return Error{ErrorCode::invalid_argument, "the packed grid to change is not the one that was uploaded to the device"};
+    return data_->grid->check_current();
+}
+
 DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOptions& options) {
     if (!packed.data().single()) return {};
     const vulkan::GridNeeds needs = vulkan::GridOnDevice::needs(packed.data(), options.page_bytes);
@@ -94,13 +104,51 @@ Result<Extraction> DeviceSurface::Data::download(const core::Packed& packed) con
     std::vector<core::Storage> storages;
     for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
     Extraction out;
-    out.surface = api::finish<float>(packed.origin, without_normals, storages, *raw);
+    out.surface = api::finish<float>(origin, without_normals, storages, *raw);
     out.surface.normals_kind = options.normals;
     out.surface.normals = raw->normals;
-    api::report_ties(packed, isovalue, stored, raw->tied_points, out.report);
+    if (packed.changes == changes) {
+        api::report_ties(packed, isovalue, stored, raw->tied_points, out.report);
+    } else {
+        out.report.tied_points = raw->tied_points;
+        out.report.isovalue_stored = stored_in_unit;
+    }
     out.report.selected_clusters = raw->selected_clusters;
     out.report.surface_bytes = api::bytes_of(out.surface);
     return out;
+}
+
+Result<void> DeviceGrid::set_field(PackedGrid& packed, const PointField& field, int threads, const Progress& progress) {
+    return core::guarded("setting the field on the device", [&]() -> Result<void> {
+        core::Packed& data = *packed.data_;
+        if (auto ok = check_same(packed); !ok) return ok;
+        if (auto ok = core::check_field(field, data.user_points); !ok) return ok;
+        Result<void> result;
+        core::with_threads(threads, [&] {
+            result = core::store_values<float>(field, data, progress);
+            if (result && !data.gradients.empty()) core::store_gradients(data);
+            if (!result) return;
+            auto done = data_->grid->take_field(data, progress);
+            if (done) {
+                data_->work = work_of(*std::move(done));
+                return;
+            }
+            core::store_ranges<float>(data, 0, data.clusters(), {}); // whatever the device made of them
+            result = done.error();
+        });
+        return result;
+    });
+}
+
+Result<void> DeviceGrid::set_points(PackedGrid& packed, const Array& points, int threads, const Progress& progress) {
+    return core::guarded("setting the points on the device", [&]() -> Result<void> {
+        if (auto ok = check_same(packed); !ok) return ok;
+        if (auto ok = packed.set_points(points, threads, progress); !ok) return ok;
+        auto done = data_->grid->take_points(progress);
+        if (!done) return done.error();
+        data_->work = work_of(*std::move(done));
+        return {};
+    });
 }
 
 std::uint64_t DeviceGrid::device_bytes() const noexcept { return data_->grid->device_bytes(); }
@@ -138,6 +186,9 @@ Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::sp
             data->context = grid.shared_context();
             data->isovalue = isovalues[i];
             data->stored = core::store_isovalue<float>(isovalues[i], packed.storage);
+            data->stored_in_unit = core::restore_value(data->stored, packed.storage);
+            data->origin = packed.origin;
+            data->changes = packed.changes;
             data->options = options;
             if (auto ok = data->buffers.prepare(grid.context(), parts_of(options)); !ok) return ok;
             tasks.push_back({data->stored, options.ties, data->buffers});

@@ -6,7 +6,7 @@
 #include "core/local_values.hpp"
 #include "core/normal_code.hpp"
 #include "core/orientation.hpp"
-#include "core/pack_draft.hpp"
+#include "core/set_field.hpp"
 #include "core/parallel.hpp"
 #include "core/storage.hpp"
 #include "core/tet_gradient.hpp"

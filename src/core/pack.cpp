@@ -17,8 +17,6 @@ namespace isotet {
 
 namespace core {
 
-namespace {
-
 Result<void> check_field(const PointField& field, std::uint64_t points) {
     if (field.values.components() != 1 && !field.values.empty())
         return Error{ErrorCode::invalid_argument, fmt::format("field '{}' has {} components, but the contoured field must have 1",
@@ -28,6 +26,8 @@ Result<void> check_field(const PointField& field, std::uint64_t points) {
                      fmt::format("field '{}' has {} values, but the grid has {} points", field.name, field.values.tuples(), points)};
     return {};
 }
+
+namespace {
 
 /// At the peak: the sorted tets (16 B) and, beside them, what blocks return, or later the packed grid with the candidate
 /// seams; and 5 bytes a user's point for owners and places.
@@ -43,8 +43,16 @@ void measure(Packed& packed) {
     report.source_bytes = packed.cell_ids.bytes() + packed.wide_cell_ids.bytes();
 }
 
+template <class Real>
 Result<void> store_field(const PointField& field, Packed& packed, const Progress& progress) {
-    return packed.single() ? store_values<float>(field, packed, progress) : store_values<double>(field, packed, progress);
+    if (auto ok = store_values<Real>(field, packed, progress); !ok) return ok;
+    store_ranges<Real>(packed, 0, packed.clusters(), progress);
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "storing the field was cancelled"};
+    return {};
+}
+
+Result<void> store_field(const PointField& field, Packed& packed, const Progress& progress) {
+    return packed.single() ? store_field<float>(field, packed, progress) : store_field<double>(field, packed, progress);
 }
 
 void store_points(const Array& points, Packed& packed) {

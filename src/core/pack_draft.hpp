@@ -11,6 +11,7 @@
 
 #include "core/buffer.hpp"
 #include "core/packed.hpp"
+#include "core/set_field.hpp"
 #include "core/tet_order.hpp"
 
 namespace isotet::core {
@@ -49,16 +50,5 @@ Result<void> link_clusters(Draft& draft, const Progress& progress);
 /// Stores the coordinates; fills positions, origin and what of it goes into the report.
 template <class Real>
 void store_positions(const Array& points, Packed& packed);
-
-/// Stores the values of a field; fills values, ranges, group ranges, has_no_data, storage and the field's report.
-template <class Real>
-Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress);
-
-/// Works out ranges, group ranges and has_no_data from the stored values.
-template <class Real>
-void store_ranges(Packed& packed, const Progress& progress);
-
-/// Computes the gradient direction of the stored field at every point (normal_code.hpp).
-void store_gradients(Packed& packed);
 
 } // namespace isotet::core

@@ -140,6 +140,7 @@ struct Packed {
     std::uint64_t user_points = 0, user_cells = 0;
     PackReport report;
     FieldReport field_report;
+    std::uint64_t changes = 0;          ///< of field or points: who holds a copy can tell
 
     std::size_t clusters() const { return headers.size(); }
     std::size_t points() const { return point_ids.size() + wide_point_ids.size(); }

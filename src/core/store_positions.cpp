@@ -77,6 +77,7 @@ bool is_coarse(const PointReader& points, const Packed& packed, std::size_t clus
 
 template <class Real>
 void store_positions(const Array& array, Packed& packed) {
+    ++packed.changes;
     const PointReader points(array);
     const bool unchanged = array.type() == ScalarType::float32 || sizeof(Real) == sizeof(double);
     packed.origin = {};

@@ -1,11 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "core/set_field.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "core/group_ranges.hpp"
 #include "core/local_values.hpp"
-#include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
 #include "core/prefetch.hpp"
 #include "core/storage.hpp"
@@ -94,10 +95,11 @@ void store_ranges(Packed& packed, std::size_t cluster, const LocalPoints& points
 } // namespace
 
 template <class Real>
-void store_ranges(Packed& packed, const Progress& progress) {
+void store_ranges(Packed& packed, std::size_t first, std::size_t last, const Progress& progress) {
     const Real* const values = packed.as<Real>().values.data();
-    parallel_ranges(packed.clusters(), clusters_a_task, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(last - first, clusters_a_task, [&](std::size_t from, std::size_t to) {
         if (progress.cancelled()) return;
+        const std::size_t begin = first + from, end = first + to;
         std::array<LocalPoints, 2> points; // of the cluster at hand and the next, in turn
         points[begin % 2].find(packed, begin);
         for (std::size_t c = begin; c < end; ++c) {
@@ -111,7 +113,7 @@ void store_ranges(Packed& packed, const Progress& progress) {
     });
 }
 
-template void store_ranges<float>(Packed&, const Progress&);
-template void store_ranges<double>(Packed&, const Progress&);
+template void store_ranges<float>(Packed&, std::size_t, std::size_t, const Progress&);
+template void store_ranges<double>(Packed&, std::size_t, std::size_t, const Progress&);
 
 } // namespace isotet::core

@@ -1,12 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "core/set_field.hpp"
+
 #include "core/field_storage.hpp"
-#include "core/pack_draft.hpp"
 
 namespace isotet::core {
 
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress) {
-    const auto cancelled = [] { return Error{ErrorCode::cancelled, "storing the field was cancelled"}; };
+    ++packed.changes;
     Values<Real>& reals = packed.as<Real>();
     if (reals.values.size() != packed.points()) {
         reals.values = Buffer<Real>(packed.points());
@@ -15,9 +16,7 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
         packed.has_no_data = Buffer<std::uint8_t>(packed.clusters());
     }
     const FieldStorage stored = store_field_values(field.values, packed, progress, reals.values.data());
-    if (progress.cancelled()) return cancelled();
-    store_ranges<Real>(packed, progress);
-    if (progress.cancelled()) return cancelled();
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "storing the field was cancelled"};
 
     const Storage& chosen = stored.storage;
     const ValueStatistics& statistics = stored.statistics;

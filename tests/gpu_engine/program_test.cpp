@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "cli/program.hpp"
+#include "cli/small_grid.hpp"
 
 namespace isotet::test {
 namespace {
@@ -32,6 +33,22 @@ TEST_F(ProgramOnDevice, WritesTheSameFile) {
     EXPECT_GT(expected.size(), 10'000u);
     EXPECT_TRUE(content(path("device.vtp")) == expected);
     EXPECT_TRUE(content(path("parts.vtp")) == expected);
+}
+
+TEST_F(ProgramOnDevice, TimeStepsSendTheirValuesOnly) {
+    put_content(path("g.msh"), small_grid({{"p", {0, 1, 1, 1, 2}, 0}, {"p", {0, 2, 2, 2, 4}, 0.1}, {"p", {0, 4, 4, 4, 8}, 2.5}}));
+    const auto extract = [&](const std::string& out, std::vector<std::string> more) {
+        more.insert(more.begin(), {"extract", path("g.msh"), path(out), "-f", "p", "-i", "1.5", "--all-steps", "-v"});
+        const RunResult run = isotet(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.err;
+    };
+    extract("cpu-{time}.vtp", {});
+    const std::string said = extract("device-{time}.vtp", {"--engine", "vulkan", "--device", "software"});
+    EXPECT_EQ(said.find("of device memory, "), said.rfind("of device memory, ")) << "uploaded once: " << said;
+    EXPECT_NE(said.find("not packed again"), std::string::npos) << said;
+    for (const std::string time : {"0", "0.1", "2.5"})
+        EXPECT_TRUE(content(path("device-" + time + ".vtp")) == content(path("cpu-" + time + ".vtp"))) << time;
 }
 
 TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {

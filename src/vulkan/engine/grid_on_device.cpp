@@ -194,10 +194,15 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
     return run_and_read_heads(recorder, one, done);
 }
 
+Result<void> GridOnDevice::check_current() const {
+    if (packed_.changes == changes_) return {};
+    return Error{ErrorCode::invalid_argument,
+                 "the packed grid has got another field or other points, but not through the grid on the device: it must be "
+                 "uploaded again"};
+}
+
 Result<WorkDone> GridOnDevice::extract(std::span<Task> tasks, const Progress& progress) {
-    if (packed_.field.data() != field_)
-        return Error{ErrorCode::invalid_argument,
-                     "the packed grid has got another field since it was uploaded to the device: it must be uploaded again"};
+    if (auto ok = check_current(); !ok) return ok.error();
     WorkDone done;
     if (tasks.empty() || resident_.sizes().clusters == 0) return done;
     const std::uint64_t up = context_->staging().uploaded(), loads = cache_->loads();

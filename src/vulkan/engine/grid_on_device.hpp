@@ -55,9 +55,23 @@ public:
 
     /// Extracts one surface for every task; all have the same parts, and were prepared.
     ///
-    /// Errors   invalid_argument when a surface has 2^32 vertices or triangles or more, or the packed grid has another field
-    ///          by now; out_of_memory; machine; cancelled
+    /// Errors   invalid_argument when a surface has 2^32 vertices or triangles or more, or by check_current();
+    ///          out_of_memory; machine; cancelled
     Result<WorkDone> extract(std::span<Task> tasks, const Progress& progress);
+
+    /// After core::store_values(), and store_gradients() where there are gradients, gave the packed grid another field: uploads
+    /// values, works out ranges on the device, and brings these into the packed grid.
+    ///
+    /// `packed`   the one that was uploaded
+    /// Errors     out_of_memory; machine; cancelled. Ranges of the packed grid are then wrong, and the grid on the device must go
+    Result<WorkDone> take_field(core::Packed& packed, const Progress& progress);
+
+    /// After the packed grid got other points: uploads positions and gradients of the pages that are there.
+    /// Errors   as above, but the packed grid is as it was
+    Result<WorkDone> take_points(const Progress& progress);
+
+    /// Errors   invalid_argument when the packed grid has changed since it was uploaded, but not through the two above
+    Result<void> check_current() const;
 
     Context& context() const noexcept { return *context_; }
     const std::shared_ptr<Context>& shared_context() const noexcept { return context_; }
@@ -68,13 +82,15 @@ public:
     const Resident& resident() const noexcept { return resident_; }
 
 private:
-    GridOnDevice(std::shared_ptr<Context> context, const core::Packed& packed) : context_(std::move(context)), packed_(packed), field_(packed.field.data()) {}
+    GridOnDevice(std::shared_ptr<Context> context, const core::Packed& packed) 
+        : context_(std::move(context)), packed_(packed), changes_(packed.changes) {}
 
     Result<Passes> make_passes(const SurfaceParts& parts);
     Result<bool> extract_together(std::span<Task> tasks, Passes& passes, WorkDone& done);
     Result<void> extract_paged(const Task& task, Passes& passes, const Progress& progress, WorkDone& done);
     Result<void> sweep(const Task& task, std::span<const std::uint32_t> pages, const Progress& progress, WorkDone& done,
                        void (Passes::*pass)(Recorder&, const Task&, std::uint32_t) const, const Passes& passes);
+    Result<void> find_ranges(core::Packed& packed, WorkDone& done);
     Result<void> run(Recorder& recorder, WorkDone& done);
     Result<void> run_and_read_heads(Recorder& recorder, std::span<Task> tasks, WorkDone& done);
     Result<bool> prepare_again(const Task& task, Passes& passes);
@@ -82,7 +98,7 @@ private:
 
     std::shared_ptr<Context> context_;
     const core::Packed& packed_;
-    const void* field_; ///< of the packed grid when it was uploaded
+    std::uint64_t changes_; ///< of the packed grid that the device knows
     Resident resident_;
     std::optional<PageCache> cache_;
     Buffer results_; ///< heads of surfaces, on their way to the processor

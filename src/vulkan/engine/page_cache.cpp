@@ -145,9 +145,44 @@ Result<bool> PageCache::release_one() {
     return true;
 }
 
-Result<void> PageCache::release_all() {
-    for (std::uint32_t i = 0; i < pages_.size(); ++i) release(i);
-    return upload_table();
+/// `from`   `components` words for each packed point
+Result<void> PageCache::upload_points(const void* from, std::size_t components, std::uint32_t layout::Page::*place,
+                                      const Progress& progress) {
+    for (std::uint32_t i = 0; i < plan_.size(); ++i) {
+        if (!is_loaded(i)) continue;
+        if (progress.cancelled()) return cancelled();
+        core::Buffer<std::uint32_t> words(components * plan_[i].points());
+        fill_points(static_cast<const std::uint32_t*>(from), components, plan_[i], words.data());
+        auto ok = context_.staging().upload(buffer(i), std::uint64_t{4} * (plan_[i].layout.*place),
+                                            std::as_bytes(std::span(words.data(), words.size())));
+        if (!ok) return ok;
+        progress("upload", static_cast<double>(i + 1) / static_cast<double>(plan_.size()));
+    }
+    return {};
+}
+
+Result<void> PageCache::upload_values(const Progress& progress) {
+    return upload_points(packed_.as<float>().values.data(), 1, &layout::Page::values, progress);
+}
+
+Result<void> PageCache::upload_gradients(const Progress& progress) {
+    return upload_points(packed_.gradients.data(), 1, &layout::Page::gradients, progress);
+}
+
+Result<void> PageCache::upload_positions(const Progress& progress) {
+    return upload_points(packed_.as<float>().positions.data(), 3, &layout::Page::positions, progress);
+}
+
+Result<void> PageCache::download_group_ranges(core::Packed& packed) const {
+    for (std::uint32_t i = 0; i < plan_.size(); ++i) {
+        if (!is_loaded(i)) continue;
+        const std::span ranges(packed.group_ranges.data() + plan_[i].layout.first_group, plan_[i].groups);
+        if (auto ok = context_.staging().download(buffer(i), std::uint64_t{4} * plan_[i].layout.group_ranges,
+                                                  std::as_writable_bytes(ranges));
+            !ok)
+            return ok;
+    }
+    return {};
 }
 
 Result<void> PageCache::upload_table() { return resident_.upload_pages(context_, entries_); }

@@ -50,9 +50,19 @@ public:
     /// Takes the least recently used page off the device; false when none is there.
     Result<bool> release_one();
 
-    /// After the field or the points of the packed grid changed.
+    /// Tells the device which pages are there, and where.
+    Result<void> upload_table();
+
+    /// After the packed grid got other values or points: replaces parts of the pages that are there.
+    Result<void> upload_values(const Progress& progress);
+    Result<void> upload_gradients(const Progress& progress);
+    Result<void> upload_positions(const Progress& progress);
+
+    /// Brings the ranges of groups, as the device has worked them out, into the packed grid.
+    Result<void> download_group_ranges(core::Packed& packed) const;
+
+    /// Which pages an isovalue hits, after the packed grid got other ranges.
     void find_ranges();
-    Result<void> release_all();
 
 private:
     struct Loaded {
@@ -61,10 +71,11 @@ private:
     };
 
     Result<void> load_page(std::uint32_t page);
+    Result<void> upload_points(const void* from, std::size_t components, std::uint32_t layout::Page::*place,
+                               const Progress& progress);
     Result<void> fit_page(std::uint32_t page, std::uint64_t keep_since);
     std::uint32_t oldest(std::uint64_t before) const;
     void release(std::uint32_t page);
-    Result<void> upload_table();
 
     Context& context_;
     const core::Packed& packed_;

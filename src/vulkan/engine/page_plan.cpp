@@ -92,14 +92,8 @@ void place_arrays(const Packed& packed, PlannedPage& page) {
     page.words = words;
 }
 
-/// Copies an array of all points: the page's own ones, then the halo's.
-template <class T>
-void gather(const T* from, std::size_t components, const PlannedPage& page, T* out) {
-    const std::size_t own = components * page.layout.own_points;
-    std::copy_n(from + components * page.layout.first_point, own, out);
-    out += own;
-    for (const std::uint32_t point : page.halo) out = std::copy_n(from + components * point, components, out);
-}
+/// The words of floats, to be copied.
+const std::uint32_t* words_of(const core::Buffer<float>& floats) { return reinterpret_cast<const std::uint32_t*>(floats.data()); }
 
 /// A cluster's links, as the device wants them.
 class LinkWriter {
@@ -170,10 +164,9 @@ void place_clusters(const Packed& packed, const PlannedPage& page, std::uint32_t
 
 void fill_page(const Packed& packed, const PlannedPage& page, const layout::Cluster* clusters, std::uint32_t* out) {
     const layout::Page& at = page.layout;
-    float* const floats = reinterpret_cast<float*>(out);
-    fill_values(packed, page, floats + at.values);
-    gather(packed.as<float>().positions.data(), 3, page, floats + at.positions);
-    if (!packed.gradients.empty()) fill_gradients(packed, page, out + at.gradients);
+    fill_points(words_of(packed.as<float>().values), 1, page, out + at.values);
+    fill_points(words_of(packed.as<float>().positions), 3, page, out + at.positions);
+    if (!packed.gradients.empty()) fill_points(packed.gradients.data(), 1, page, out + at.gradients);
     std::copy(page.halo.begin(), page.halo.end(), out + at.halo);
     std::memcpy(out + at.tets, packed.tets.data() + core::group_size * std::size_t{at.first_group},
                 sizeof(core::StoredTet) * core::group_size * page.groups);
@@ -184,12 +177,9 @@ void fill_page(const Packed& packed, const PlannedPage& page, const layout::Clus
     });
 }
 
-void fill_values(const Packed& packed, const PlannedPage& page, float* out) {
-    gather(packed.as<float>().values.data(), 1, page, out);
-}
-
-void fill_gradients(const Packed& packed, const PlannedPage& page, std::uint32_t* out) {
-    gather(packed.gradients.data(), 1, page, out);
+void fill_points(const std::uint32_t* from, std::size_t components, const PlannedPage& page, std::uint32_t* out) {
+    out = std::copy_n(from + components * page.layout.first_point, components * page.layout.own_points, out);
+    for (const std::uint32_t point : page.halo) out = std::copy_n(from + components * point, components, out);
 }
 
 } // namespace isotet::vulkan

@@ -42,8 +42,9 @@ void place_clusters(const core::Packed& packed, const PlannedPage& page, std::ui
 /// `out`       page.words words
 void fill_page(const core::Packed& packed, const PlannedPage& page, const layout::Cluster* clusters, std::uint32_t* out);
 
-/// The same for parts that depend on the field only: values (and gradients), of own points and halo.
-void fill_values(const core::Packed& packed, const PlannedPage& page, float* out);
-void fill_gradients(const core::Packed& packed, const PlannedPage& page, std::uint32_t* out);
+/// An array of all points as a page has it: those of its own points, then those of its halo.
+/// `from`   `components` words for each packed point
+/// `out`    as many for each of page.points()
+void fill_points(const std::uint32_t* from, std::size_t components, const PlannedPage& page, std::uint32_t* out);
 
 } // namespace isotet::vulkan

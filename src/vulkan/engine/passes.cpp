@@ -117,4 +117,12 @@ void Passes::normals(Recorder& recorder, const Task& task) const {
                                {reads(s.head), reads(s.positions), reads(s.triangles), reads(s.lowest), writes(s.normals)});
 }
 
+Result<void> Passes::ranges(Context& context, Recorder& recorder, const Resident& r) {
+    auto kernel = context.kernels().get(engine::ranges);
+    if (!kernel) return kernel.error();
+    recorder.dispatch(**kernel, layout::RangesPush{address_of(r.tables)}, r.sizes().clusters,
+                      {reads(r.tables), reads(r.pages), reads(r.clusters), writes(r.ranges), writes(r.no_data)});
+    return {};
+}
+
 } // namespace isotet::vulkan

@@ -47,6 +47,9 @@ public:
     /// Normals that need the whole surface; nothing where the parts have none.
     void normals(Recorder& recorder, const Task& task) const;
 
+    /// Works out the ranges of all clusters on pages that are there, from their values. By itself: needs no task and no parts.
+    static Result<void> ranges(Context& context, Recorder& recorder, const Resident& resident);
+
 private:
     Passes(const Resident& resident, const SurfaceParts& parts) : resident_(resident), parts_(parts) {}
     Result<const Kernel*> emit_kernel(Context& context, std::uint32_t edge_room) const;

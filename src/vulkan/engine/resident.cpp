@@ -109,6 +109,15 @@ Result<void> Resident::upload_ranges(Context& context, const core::Packed& packe
     return upload_tables(context, packed);
 }
 
+Result<void> Resident::download_ranges(Context& context, core::Packed& packed) const {
+    core::Buffer<core::Range<float>>& to = packed.as<float>().ranges;
+    if (auto ok = context.staging().download(ranges, 0, std::as_writable_bytes(std::span(to.data(), to.size()))); !ok) return ok;
+    std::vector<std::uint32_t> bits(pieces(packed.clusters(), 32));
+    if (auto ok = context.staging().download(no_data, 0, std::as_writable_bytes(std::span(bits))); !ok) return ok;
+    for (std::size_t c = 0; c < packed.clusters(); ++c) packed.has_no_data[c] = bits[c / 32] >> c % 32 & 1;
+    return {};
+}
+
 Result<void> Resident::upload_pages(Context& context, std::span<const layout::Page> entries) {
     return context.staging().upload(pages, 0, std::as_bytes(entries));
 }

@@ -46,14 +46,17 @@ public:
     Buffer emitted;
     Buffer lists;    ///< layout::Lists
 
-    /// Ranges and points without data of all clusters, from the packed grid.
+    /// Addresses and sizes, and whether any point has no data.
+    Result<void> upload_tables(Context& context, const core::Packed& packed);
+    /// Ranges and points without data of all clusters, from the packed grid; and tables.
     Result<void> upload_ranges(Context& context, const core::Packed& packed);
+    /// The other way round, as the device has worked them out.
+    Result<void> download_ranges(Context& context, core::Packed& packed) const;
     Result<void> upload_pages(Context& context, std::span<const layout::Page> entries);
 
 private:
     Result<void> take(Context& context);
     Result<void> upload_clusters(Context& context, const core::Packed& packed, const std::vector<PlannedPage>& plan);
-    Result<void> upload_tables(Context& context, const core::Packed& packed);
 
     ResidentSizes sizes_;
 };

@@ -167,6 +167,11 @@ struct ExtractPush {
     uint batch;            ///< 0: all pages; else count and emit leave clusters of pages of other batches alone
 };
 
+/// Push constants of the pass that works out ranges.
+struct RangesPush {
+    Address tables;
+};
+
 /// Push constants of kernels that work on a finished surface.
 struct SurfacePush {
     Address surface;       ///< Output
