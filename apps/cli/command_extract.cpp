@@ -103,20 +103,21 @@ Result<void> ExtractRun::load(std::size_t step) {
 
     const Stopwatch packing;
     console_.detail("packing");
-    extractor_.unload();
-    const Result<PackedSeries::Work> work = series_->load(*grid, *field, console_.progress());
+    const Result<PackedSeries::Work> work = series_->load(*grid, *field, extractor_, console_.progress());
     if (!work) return work.error();
-    if (*work != PackedSeries::Work::packed)
-        console_.detail("the cells are those of the step before: not packed again");
+    const bool packed_again = *work == PackedSeries::Work::packed;
+    if (!packed_again) console_.detail("the cells are those of the step before: not packed again");
     numbers_.pack_seconds += packing.seconds();
     numbers_.cells = grid->cells.count();
     numbers_.pack = series_->packed().report();
     numbers_.field = series_->packed().field();
     numbers_.averaged = field->averaged;
     say_what_packing_found(*grid);
-    const Stopwatch uploading;
-    if (Result<void> uploaded = extractor_.load(series_->packed()); !uploaded) return uploaded;
-    numbers_.upload_seconds += uploading.seconds();
+    if (packed_again) {
+        const Stopwatch uploading;
+        if (Result<void> uploaded = extractor_.load(series_->packed()); !uploaded) return uploaded;
+        numbers_.upload_seconds += uploading.seconds();
+    }
     return choose_values(*field, step);
 }
 

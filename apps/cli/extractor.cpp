@@ -59,6 +59,32 @@ Result<void> Extractor::load(const PackedGrid& packed) {
     return {};
 }
 
+Result<bool> Extractor::left_to_cpu(const Result<void>& set) {
+    if (set) return false;
+    const ErrorCode code = set.error().code;
+    if (code != ErrorCode::machine && code != ErrorCode::out_of_memory) return set.error();
+    if (Result<void> instead = without_device(set.error()); !instead) return instead.error();
+    return true;
+}
+
+Result<void> Extractor::set_field(PackedGrid& packed, const PointField& field, int threads) {
+    if (grid_) {
+        const Result<bool> left = left_to_cpu(grid_->set_field(packed, field, threads, console_.progress()));
+        if (!left) return left.error();
+        if (!*left) return {};
+    }
+    return packed.set_field(field, threads, console_.progress());
+}
+
+Result<void> Extractor::set_points(PackedGrid& packed, const Array& points, int threads) {
+    if (grid_) {
+        const Result<bool> left = left_to_cpu(grid_->set_points(packed, points, threads, console_.progress()));
+        if (!left) return left.error();
+        if (!*left) return {};
+    }
+    return packed.set_points(points, threads, console_.progress());
+}
+
 Result<Extraction> Extractor::extract_on_device(double isovalue, const ExtractOptions& options) {
     if (Result<void> done = grid_->extract(isovalue, surface_, options, console_.progress()); !done) return done.error();
     DeviceWork work = grid_->work();

@@ -34,11 +34,16 @@ public:
     /// Errors   usage: a device beside an engine that uses none; what Device::open() says
     Result<void> open();
 
-    /// The packed grid is about to change.
+    /// The packed grid is about to go.
     void unload() { grid_.reset(); }
 
     /// Uploads the packed grid, which stays where it is until unload().
     Result<void> load(const PackedGrid& packed);
+
+    /// Replaces the field or the points of the packed grid, here and on the device. Where the device fails and the CPU may
+    /// stand in, they are replaced here.
+    Result<void> set_field(PackedGrid& packed, const PointField& field, int threads);
+    Result<void> set_points(PackedGrid& packed, const Array& points, int threads);
 
     /// Surfaces of isovalues, in their order: all in one pass by the CPU engine, one after another on a device.
     Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options);
@@ -53,6 +58,8 @@ private:
     bool wants_device() const;
     /// The error, or nothing after a note where the CPU may stand in.
     Result<void> without_device(const Error& error);
+    /// Whether the CPU must do what the device did not; the error where it may not, or where it could not either.
+    Result<bool> left_to_cpu(const Result<void>& set);
     Result<Extraction> extract_on_device(double isovalue, const ExtractOptions& options);
 
     const ExtractCommand& command_;

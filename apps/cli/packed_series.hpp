@@ -9,6 +9,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
+#include "extractor.hpp"
 #include "fingerprint.hpp"
 
 namespace isotet::cli {
@@ -21,13 +22,14 @@ public:
     /// What load() had to do.
     enum class Work { packed, moved_points, set_field };
 
-    /// Makes the packed grid that of this step: with the same cells as the step before only points and values are set.
-    Result<Work> load(const Grid& grid, const PointField& field, const Progress& progress);
+    /// Makes the packed grid that of this step, here and where the extractor has it: with the same cells as the step before
+    /// only points and values are set. One that was packed again the extractor does not have.
+    Result<Work> load(const Grid& grid, const PointField& field, Extractor& extractor, const Progress& progress);
 
     const PackedGrid& packed() const noexcept { return packed_; }
 
 private:
-    Result<Work> pack_again(const Grid& grid, const PointField& field, const Progress& progress);
+    Result<Work> pack_again(const Grid& grid, const PointField& field, Extractor& extractor, const Progress& progress);
 
     PackOptions options_;
     bool several_;
