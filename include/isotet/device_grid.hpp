@@ -131,8 +131,11 @@ public:
 
     /// Extracts the surface of an isovalue; it stays on the device. `options` as for extract(), `engine` aside.
     ///
-    /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes. Where pages must be loaded: these,
-    ///          up to twice
+    /// Point fields are uploaded once, 4 bytes a point and component, and stay while their arrays live (borrowed ones are
+    /// uploaded each time); where there is no room for them, download() interpolates instead.
+    ///
+    /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes, and new fields. Where pages must be
+    ///          loaded: these, up to twice
     /// Errors   as extract(); invalid_argument when the surface has 2^32 vertices or triangles or more; out_of_memory of the
     ///          device; machine
     Result<DeviceSurface> extract(double isovalue, const ExtractOptions& options = {}, const Progress& progress = {});
@@ -147,7 +150,7 @@ public:
     /// A surface of this grid, on the processor, with all that was asked for when it was extracted. When the packed grid has
     /// got another field or other points since then, the report does not tell false ties and near ties.
     ///
-    /// Cost     the arrays over the bus; carried fields are interpolated here
+    /// Cost     the arrays over the bus; cell fields are copied here
     Result<Extraction> download(const DeviceSurface& surface, const Progress& progress = {});
 
     /// What the last call of a function above cost.

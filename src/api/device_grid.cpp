@@ -23,14 +23,20 @@ struct DeviceSurface::Data {
     double stored_in_unit = 0;     ///< of the field
     std::array<double, 3> origin{};
     std::uint64_t changes = 0;     ///< of the packed grid, when it was extracted
+    std::vector<core::Storage> storages; ///< of the point fields that were interpolated on the device: of all, or of none
     ExtractOptions options;
 
     Result<Extraction> download(const core::Packed& packed) const;
 };
 
+using FieldsOnDevice = std::vector<std::shared_ptr<const vulkan::CarriedField>>;
+
 struct DeviceGrid::Data {
     std::unique_ptr<vulkan::GridOnDevice> grid;
     DeviceWork work;
+
+    Result<void> extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
+                         const FieldsOnDevice& fields, const Progress& progress);
 };
 
 DeviceSurface::DeviceSurface() = default;
@@ -51,9 +57,28 @@ DeviceGrid::~DeviceGrid() = default;
 
 namespace {
 
-vulkan::SurfaceParts parts_of(const ExtractOptions& options) {
-    return {options.normals, options.edge_ends || !options.point_fields.empty(),
-            options.source_cells || !options.cell_fields.empty()};
+vulkan::SurfaceParts parts_of(const ExtractOptions& options, const FieldsOnDevice& fields) {
+    vulkan::SurfaceParts parts{options.normals, options.edge_ends || !options.point_fields.empty(),
+                               options.source_cells || !options.cell_fields.empty(), {}};
+    for (const auto& field : fields) parts.fields.push_back(field->components);
+    return parts;
+}
+
+/// The point fields on the device: all of them, or none where there is not room for all.
+Result<FieldsOnDevice> carry(vulkan::GridOnDevice& grid, const ExtractOptions& options) {
+    FieldsOnDevice fields;
+    if (!grid.complete()) grid.fields().clear(); // pages need the room
+    if (!grid.complete()) return fields;
+    for (const Field& field : options.point_fields) {
+        auto carried = grid.fields().get(grid.context(), &grid.packed(), field);
+        if (!carried && carried.error().code == ErrorCode::out_of_memory) {
+            grid.fields().clear();
+            return FieldsOnDevice();
+        }
+        if (!carried) return carried.error();
+        fields.push_back(*std::move(carried));
+    }
+    return fields;
 }
 
 DeviceWork work_of(vulkan::WorkDone&& done) {
@@ -94,17 +119,20 @@ Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& pa
     });
 }
 
-/// Geometry and normals as the device made them; fields as after any engine.
+/// As the device made it; but cell fields, and point fields that were not interpolated there, as after any engine.
 Result<Extraction> DeviceSurface::Data::download(const core::Packed& packed) const {
     if (auto ok = api::check_fit(options, packed); !ok) return ok.error();
-    auto raw = buffers.download(*context, packed);
+    const bool fields_are_there = !buffers.fields.empty();
+    const bool ends = options.edge_ends || (!options.point_fields.empty() && !fields_are_there);
+    auto raw = buffers.download(*context, &packed, ends);
     if (!raw) return std::move(raw).error();
     ExtractOptions without_normals = options;
     without_normals.normals = Normals::none;
-    std::vector<core::Storage> storages;
-    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
+    std::vector<core::Storage> stored_as = storages;
+    if (!fields_are_there)
+        for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field.values, packed));
     Extraction out;
-    out.surface = api::finish<float>(origin, without_normals, storages, *raw);
+    out.surface = api::finish<float>(origin, without_normals, stored_as, *raw);
     out.surface.normals_kind = options.normals;
     out.surface.normals = raw->normals;
     if (packed.changes == changes) {
@@ -172,30 +200,51 @@ Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const 
     return extract_into(std::span(&isovalue, 1), std::span(&surface, 1), options, progress);
 }
 
+/// `fields`   of the options, on the device; empty: they are interpolated after the download
+Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
+                                       const FieldsOnDevice& fields, const Progress& progress) {
+    const core::Packed& packed = grid->packed();
+    std::vector<vulkan::Task> tasks;
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        auto& data = surfaces[i].data_;
+        if (!data || data->context != grid->shared_context()) data = std::make_unique<DeviceSurface::Data>();
+        data->context = grid->shared_context();
+        data->isovalue = isovalues[i];
+        data->stored = core::store_isovalue<float>(isovalues[i], packed.storage);
+        data->stored_in_unit = core::restore_value(data->stored, packed.storage);
+        data->origin = packed.origin;
+        data->changes = packed.changes;
+        data->storages.clear();
+        for (const auto& field : fields) data->storages.push_back(field->storage);
+        data->options = options;
+        if (auto ok = data->buffers.prepare(grid->context(), parts_of(options, fields)); !ok) return ok;
+        tasks.push_back({data->stored, options.ties, data->buffers, fields});
+    }
+    auto done = grid->extract(tasks, progress);
+    if (!done) return done.error();
+    work = work_of(*std::move(done));
+    return {};
+}
+
 Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
                                       const ExtractOptions& options, const Progress& progress) {
     return core::guarded("extraction", [&]() -> Result<void> {
         vulkan::GridOnDevice& grid = *data_->grid;
-        const core::Packed& packed = grid.packed();
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok;
-        if (auto ok = api::check_fit(options, packed); !ok) return ok;
-        std::vector<vulkan::Task> tasks;
-        for (std::size_t i = 0; i < isovalues.size(); ++i) {
-            auto& data = surfaces[i].data_;
-            if (!data || data->context != grid.shared_context()) data = std::make_unique<DeviceSurface::Data>();
-            data->context = grid.shared_context();
-            data->isovalue = isovalues[i];
-            data->stored = core::store_isovalue<float>(isovalues[i], packed.storage);
-            data->stored_in_unit = core::restore_value(data->stored, packed.storage);
-            data->origin = packed.origin;
-            data->changes = packed.changes;
-            data->options = options;
-            if (auto ok = data->buffers.prepare(grid.context(), parts_of(options)); !ok) return ok;
-            tasks.push_back({data->stored, options.ties, data->buffers});
+        if (auto ok = api::check_fit(options, grid.packed()); !ok) return ok;
+        if (auto ok = grid.check_current(); !ok) return ok;
+        const std::uint64_t up = grid.context().staging().uploaded();
+        auto fields = carry(grid, options);
+        if (!fields) return fields.error();
+        auto done = data_->extract(isovalues, surfaces, options, *fields, progress);
+        if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty()) {
+            // Fields can be interpolated elsewhere, surfaces cannot.
+            fields->clear();
+            grid.fields().clear();
+            done = data_->extract(isovalues, surfaces, options, {}, progress);
         }
-        auto done = grid.extract(tasks, progress);
-        if (!done) return done.error();
-        data_->work = work_of(*std::move(done));
+        if (!done) return done;
+        data_->work.uploaded_bytes = grid.context().staging().uploaded() - up;
         progress("extract", 1);
         return {};
     });

@@ -107,6 +107,7 @@ Result<void> GridOnDevice::make_room(SurfaceBuffers& surface) {
     for (;;) {
         auto grown = surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::exact);
         if (grown || grown.error().code != ErrorCode::out_of_memory) return grown;
+        if (!surface.parts().fields.empty()) return grown; // fields give way before pages do
         auto released = cache_->release_one();
         if (!released) return released.error();
         if (!*released) return grown;
@@ -142,7 +143,7 @@ Result<bool> GridOnDevice::extract_together(std::span<Task> tasks, Passes& passe
         passes.count(recorder, task);
         passes.scan(recorder, task);
         passes.emit(recorder, task);
-        passes.normals(recorder, task);
+        passes.finish(recorder, task);
     }
     if (auto ok = run_and_read_heads(recorder, tasks, done); !ok) return ok.error();
     bool complete = true;
@@ -190,7 +191,7 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
     }
     if (auto ok = sweep(task, pages, progress, done, &Passes::emit, passes); !ok) return ok;
     Recorder recorder(*context_);
-    passes.normals(recorder, task);
+    passes.finish(recorder, task);
     return run_and_read_heads(recorder, one, done);
 }
 

@@ -14,6 +14,7 @@
 
 #include "core/packed.hpp"
 #include "vulkan/context.hpp"
+#include "vulkan/engine/carried_fields.hpp"
 #include "vulkan/engine/page_cache.hpp"
 #include "vulkan/engine/passes.hpp"
 #include "vulkan/engine/resident.hpp"
@@ -73,6 +74,9 @@ public:
     /// Errors   invalid_argument when the packed grid has changed since it was uploaded, but not through the two above
     Result<void> check_current() const;
 
+    /// Point fields that surfaces carry, by packed point.
+    CarriedFields& fields() noexcept { return fields_; }
+
     Context& context() const noexcept { return *context_; }
     const std::shared_ptr<Context>& shared_context() const noexcept { return context_; }
     std::uint64_t device_bytes() const { return resident_.sizes().cost() + cache_->loaded_bytes(); }
@@ -101,6 +105,7 @@ private:
     std::uint64_t changes_; ///< of the packed grid that the device knows
     Resident resident_;
     std::optional<PageCache> cache_;
+    CarriedFields fields_;
     Buffer results_; ///< heads of surfaces, on their way to the processor
     bool many_edges_ = false; ///< some cluster had many crossed edges once
 };

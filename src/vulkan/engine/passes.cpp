@@ -41,6 +41,7 @@ Result<Passes> Passes::make(Context& context, const Resident& resident, const Su
         keep(passes.lowest_triangles_, context.kernels().get(engine::lowest_triangles));
         keep(passes.missing_normals_, context.kernels().get(engine::missing_normals));
     }
+    if (!parts.fields.empty()) keep(passes.fields_, context.kernels().get(engine::fields));
     if (!done) return done.error();
     return passes;
 }
@@ -115,6 +116,21 @@ void Passes::normals(Recorder& recorder, const Task& task) const {
                                {reads(s.head), reads(s.triangles), reads(s.normals), writes(s.lowest)});
     recorder.dispatch_indirect(*missing_normals_, push, s.head, of_vertices,
                                {reads(s.head), reads(s.positions), reads(s.triangles), reads(s.lowest), writes(s.normals)});
+}
+
+void Passes::fields(Recorder& recorder, const Task& task) const {
+    const SurfaceBuffers& s = task.surface;
+    for (std::size_t i = 0; i < s.fields.size() && s.fields[i]; ++i) {
+        const CarriedField& from = *task.fields[i];
+        const layout::FieldPush push{address_of(s.head), address_of(from.values), address_of(s.fields[i]), from.components};
+        recorder.dispatch_indirect(*fields_, push, s.head, offsetof(Output, vertex_groups_x),
+                                   {reads(s.head), reads(s.ends), reads(s.weights), reads(from.values), writes(s.fields[i])});
+    }
+}
+
+void Passes::finish(Recorder& recorder, const Task& task) const {
+    normals(recorder, task);
+    fields(recorder, task);
 }
 
 Result<void> Passes::ranges(Context& context, Recorder& recorder, const Resident& r) {

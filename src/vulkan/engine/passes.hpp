@@ -4,11 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include <isotet/extract.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/context.hpp"
+#include "vulkan/engine/carried_fields.hpp"
 #include "vulkan/engine/resident.hpp"
 #include "vulkan/engine/surface_buffers.hpp"
 #include "vulkan/recorder.hpp"
@@ -20,6 +23,7 @@ struct Task {
     float isovalue; ///< stored form
     Ties ties;
     SurfaceBuffers& surface;
+    std::vector<std::shared_ptr<const CarriedField>> fields; ///< one for each of the surface's
 };
 
 class Passes {
@@ -44,20 +48,22 @@ public:
     /// Leaves clusters with many crossed edges out without make_emit_many().
     void emit(Recorder& recorder, const Task& task, std::uint32_t batch = 0) const;
 
-    /// Normals that need the whole surface; nothing where the parts have none.
-    void normals(Recorder& recorder, const Task& task) const;
+    /// Normals that need the whole surface, and fields; nothing where the parts have none.
+    void finish(Recorder& recorder, const Task& task) const;
 
     /// Works out the ranges of all clusters on pages that are there, from their values. By itself: needs no task and no parts.
     static Result<void> ranges(Context& context, Recorder& recorder, const Resident& resident);
 
 private:
     Passes(const Resident& resident, const SurfaceParts& parts) : resident_(resident), parts_(parts) {}
+    void normals(Recorder& recorder, const Task& task) const;
+    void fields(Recorder& recorder, const Task& task) const;
     Result<const Kernel*> emit_kernel(Context& context, std::uint32_t edge_room) const;
 
     const Resident& resident_;
     SurfaceParts parts_;
     const Kernel *select_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *emit_few_ = nullptr, *emit_many_ = nullptr;
-    const Kernel *face_normals_ = nullptr, *lowest_triangles_ = nullptr, *missing_normals_ = nullptr;
+    const Kernel *face_normals_ = nullptr, *lowest_triangles_ = nullptr, *missing_normals_ = nullptr, *fields_ = nullptr;
 };
 
 } // namespace isotet::vulkan

@@ -41,20 +41,24 @@ std::uint32_t with_spare(std::uint64_t items) {
 
 } // namespace
 
-std::array<SurfaceBuffers::Part, 7> SurfaceBuffers::arrays() {
+std::vector<SurfaceBuffers::Part> SurfaceBuffers::arrays() {
     const bool gradient = parts_.normals == Normals::gradient, face = parts_.normals == Normals::face;
-    return {{{positions, "positions", vector_bytes, 0, true},
-             {triangles, "triangles", 0, vector_bytes, true},
-             {normals, "normals", gradient ? vector_bytes : 0, face ? vector_bytes : 0, gradient || face},
-             {lowest, "lowest triangles", word_bytes, 0, gradient},
-             {ends, "edge ends", 2 * word_bytes, 0, parts_.ends},
-             {weights, "edge weights", word_bytes, 0, parts_.ends},
-             {sources, "source cells", 0, word_bytes, parts_.sources}}};
+    std::vector<Part> all{{positions, "positions", vector_bytes, 0, true},
+                          {triangles, "triangles", 0, vector_bytes, true},
+                          {normals, "normals", gradient ? vector_bytes : 0, face ? vector_bytes : 0, gradient || face},
+                          {lowest, "lowest triangles", word_bytes, 0, gradient},
+                          {ends, "edge ends", 2 * word_bytes, 0, parts_.ends},
+                          {weights, "edge weights", word_bytes, 0, parts_.ends},
+                          {sources, "source cells", 0, word_bytes, parts_.sources}};
+    fields.resize(parts_.fields.size());
+    for (std::size_t i = 0; i < fields.size(); ++i) all.push_back({fields[i], "field", word_bytes * parts_.fields[i], 0, true});
+    return all;
 }
 
 std::uint64_t SurfaceBuffers::bytes() const {
     std::uint64_t bytes = 0;
     for (const Buffer* buffer : {&head, &positions, &triangles, &normals, &lowest, &ends, &weights, &sources}) bytes += buffer->size();
+    for (const Buffer& field : fields) bytes += field.size();
     return bytes;
 }
 
@@ -108,7 +112,7 @@ Result<void> SurfaceBuffers::grow(Context& context, std::uint64_t vertices, std:
     return {};
 }
 
-Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::Packed& packed) const {
+Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::Packed* packed, bool with_ends) const {
     const std::uint64_t v = vertices(), t = triangle_count();
     ops::RawSurface out;
     out.selected_clusters = result.selected_clusters;
@@ -119,14 +123,16 @@ Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::P
         to = std::move(*array).to_array(components);
         return {};
     };
-    const auto user_point = [&](std::uint32_t point) { return packed.user_point(point); };
-    const auto user_cell = [&](std::uint32_t tet) { return packed.user_cell(tet); };
+    const auto user_point = [&](std::uint32_t point) { return packed->user_point(point); };
+    const auto user_cell = [&](std::uint32_t tet) { return packed->user_cell(tet); };
     Result<void> ok = fetch(out.positions, positions, v, 3, float{});
     if (ok) ok = fetch(out.triangles, triangles, t, 3, std::uint32_t{});
     if (ok && parts_.normals != Normals::none) ok = fetch(out.normals, normals, parts_.normals == Normals::face ? t : v, 3, float{});
-    if (ok && parts_.ends) ok = fetch(out.weights, weights, v, 1, float{});
-    if (ok && parts_.ends) ok = fetch_numbers(context, out.ends, ends, v, 2, user_point);
+    if (ok && with_ends) ok = fetch(out.weights, weights, v, 1, float{});
+    if (ok && with_ends) ok = fetch_numbers(context, out.ends, ends, v, 2, user_point);
     if (ok && parts_.sources) ok = fetch_numbers(context, out.source_cells, sources, t, 1, user_cell);
+    for (std::size_t i = 0; ok && i < fields.size(); ++i)
+        ok = fetch(out.fields.emplace_back(), fields[i], v, parts_.fields[i], float{});
     if (!ok) return ok.error();
     return out;
 }

@@ -3,8 +3,8 @@
 // and holds the arguments of an indexed draw.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <vector>
 
 #include <isotet/extract.hpp>
 #include <isotet/result.hpp>
@@ -18,8 +18,9 @@ namespace isotet::vulkan {
 /// Which arrays a surface has besides positions and triangles.
 struct SurfaceParts {
     Normals normals = Normals::none;
-    bool ends = false; ///< and weights
+    bool ends = false; ///< and weights; needed for fields
     bool sources = false;
+    std::vector<std::uint32_t> fields; ///< components of each
 
     friend bool operator==(const SurfaceParts&, const SurfaceParts&) = default;
 };
@@ -31,6 +32,7 @@ class SurfaceBuffers {
 public:
     Buffer head; ///< layout::Output
     Buffer positions, triangles, normals, lowest, ends, weights, sources;
+    std::vector<Buffer> fields; ///< float x components a vertex
 
     std::uint64_t vertices() const noexcept { return result.vertices_low; }
     std::uint64_t triangle_count() const noexcept { return result.triangles_low; }
@@ -49,8 +51,11 @@ public:
     enum class Room : std::uint8_t { exact, spare /* a quarter more */ };
     Result<void> grow(Context& context, std::uint64_t vertices, std::uint64_t triangles, Room room);
 
-    /// What there is, on the processor. `packed` numbers points and cells as the user did.
-    Result<ops::RawSurface> download(Context& context, const core::Packed& packed) const;
+    /// What there is, on the processor.
+    ///
+    /// `packed`   numbers points and cells as the user did; null where neither ends nor sources are wanted
+    /// `ends`     whether ends and weights are wanted: fields may have needed them on the device only
+    Result<ops::RawSurface> download(Context& context, const core::Packed* packed, bool ends) const;
 
 private:
     /// An array: bytes for each vertex and triangle, and whether the parts have it.
@@ -60,7 +65,7 @@ private:
         std::uint64_t vertex_bytes, triangle_bytes;
         bool wanted;
     };
-    std::array<Part, 7> arrays();
+    std::vector<Part> arrays();
     void drop_arrays();
 
     SurfaceParts parts_;

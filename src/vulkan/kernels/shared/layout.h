@@ -177,6 +177,14 @@ struct SurfacePush {
     Address surface;       ///< Output
 };
 
+/// Push constants of the pass that interpolates a point field.
+struct FieldPush {
+    Address surface;       ///< Output
+    Address values;        ///< float x components a packed point
+    Address field;         ///< float x components a vertex
+    uint components;
+};
+
 #ifdef __cplusplus
 } // namespace isotet::vulkan::layout
 #endif

@@ -1,0 +1,48 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Point fields of the user's grid on the device, by packed point: so that surfaces carry them there.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <memory>
+
+#include <isotet/array.hpp>
+#include <isotet/result.hpp>
+
+#include "core/packed.hpp"
+#include "vulkan/context.hpp"
+
+namespace isotet::vulkan {
+
+struct CarriedField {
+    Buffer values; ///< float x components for each packed point
+    std::uint32_t components = 1;
+    core::Storage storage;
+};
+
+/// Fields are told apart by their memory and its owner, and stay on the device while the owner lives; those of borrowed
+/// arrays, whose memory may be used again, are uploaded each time.
+class CarriedFields {
+public:
+    /// The field, uploaded unless it is there.
+    ///
+    /// `packed`   null when it is gone: only fields that are there can be had
+    /// Cost       4 bytes a point and component over the bus
+    /// Errors     out_of_memory; machine; invalid_argument for a field that is not there when `packed` is gone
+    Result<std::shared_ptr<const CarriedField>> get(Context& context, const core::Packed* packed, const Field& field);
+
+    /// Gives their memory back, as far as nobody uses them.
+    void clear() { entries_.clear(); }
+
+private:
+    struct Entry {
+        std::weak_ptr<const void> owner;
+        const void* data;
+        std::size_t tuples, components;
+        ScalarType type;
+        std::shared_ptr<const CarriedField> field;
+    };
+    std::list<Entry> entries_;
+};
+
+} // namespace isotet::vulkan
