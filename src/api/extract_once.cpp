@@ -44,8 +44,8 @@ Result<ExtractedOnce> extract_as(const ops::BruteInput& input, std::span<const d
     request.ends = options.edge_ends || !options.point_fields.empty();
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
-    auto result = options.engine == Engine::reference ? reference::brute<Real>(input, request, progress)
-                                                      : cpu::brute<Real>(input, request, progress);
+    auto result = options.engine == Engine::reference ? reference::extract_brute<Real>(input, request, progress)
+                                                      : cpu::extract_brute<Real>(input, request, progress);
     if (!result) return std::move(result).error();
     progress("extract", 0.8);
 

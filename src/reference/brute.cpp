@@ -278,7 +278,7 @@ ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Bru
 } // namespace
 
 template <class Real>
-Result<ops::BruteResult> brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress) {
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress) {
     if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
     std::vector<UserTet> tets = all_tets(input.grid, input.cells);
     if (tets.empty()) return core::nothing_to_contour(input.grid, input.cells);
@@ -293,7 +293,7 @@ Result<ops::BruteResult> brute(const ops::BruteInput& input, const ops::BruteReq
     return result;
 }
 
-template Result<ops::BruteResult> brute<float>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
-template Result<ops::BruteResult> brute<double>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
+template Result<ops::BruteResult> extract_brute<float>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
+template Result<ops::BruteResult> extract_brute<double>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
 
 } // namespace isotet::reference

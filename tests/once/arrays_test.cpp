@@ -75,12 +75,12 @@ TEST(InstructionLevelsOnce, GiveTheSameBytes) {
 class WideNumbersOnce : public testing::Test {
 protected:
     void TearDown() override {
-        cpu::brute_wide_from = brute_limit_;
+        cpu::brute::wide_points_from = brute_limit_;
         cpu::wide_from = limit_;
     }
 
 private:
-    const std::uint64_t brute_limit_ = cpu::brute_wide_from, limit_ = cpu::wide_from;
+    const std::uint64_t brute_limit_ = cpu::brute::wide_points_from, limit_ = cpu::wide_from;
 };
 
 TEST_F(WideNumbersOnce, OfPointsAndEdgesGiveTheSameBytes) {
@@ -89,9 +89,9 @@ TEST_F(WideNumbersOnce, OfPointsAndEdgesGiveTheSameBytes) {
         for (const Ties ties : {Ties::merge, Ties::keep}) {
             const OnceOptions options = with_everything(ties, precision);
             const std::string narrow = bytes_of(surface_once(g.grid, g.field, 0.5, options));
-            cpu::brute_wide_from = 1; // points
+            cpu::brute::wide_points_from = 1; // points
             EXPECT_TRUE(bytes_of(surface_once(g.grid, g.field, 0.5, options)) == narrow);
-            cpu::brute_wide_from = g.grid.points.tuples() + 1; // edges
+            cpu::brute::wide_points_from = g.grid.points.tuples() + 1; // edges
             EXPECT_TRUE(bytes_of(surface_once(g.grid, g.field, 0.5, options)) == narrow);
         }
 }

@@ -12,7 +12,7 @@
 #include "core/buffer.hpp"
 #include "core/memory.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 /// What all arenas have taken, against what is free. It is asked how much that is once, and only when a lot is taken.
 class Budget {
@@ -65,7 +65,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t first_block = std::size_t{64} << 10, largest_block = std::size_t{4} << 20;
+    static constexpr std::size_t first_block = std::size_t{4} << 20, largest_block = std::size_t{4} << 20;
 
     void add_block(std::size_t bytes) {
         const std::size_t grown = blocks_.empty() ? first_block : std::min(largest_block, 2 * blocks_.back().size());
@@ -82,4 +82,4 @@ private:
     std::size_t left_ = 0;
 };
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

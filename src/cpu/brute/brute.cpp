@@ -2,6 +2,7 @@
 #include "cpu/brute/brute.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@
 #include "cpu/brute/normals.hpp"
 #include "cpu/extract.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -51,10 +52,10 @@ template <class Real>
 class BruteRun {
 public:
     BruteRun(const ops::BruteInput& input, const ops::BruteRequest& request)
-        : input_(input), request_(request), wide_(input.grid.points.tuples() >= brute_wide_from) {}
+        : input_(input), request_(request), wide_(input.grid.points.tuples() >= wide_points_from) {}
 
     Result<ops::BruteResult> run(const Progress& progress) {
-        if (auto ok = require_if_much("extraction", input_.grid.points.tuples()); !ok) return ok.error();
+        if (auto ok = require_if_much("extraction", std::bit_ceil(input_.grid.points.tuples())); !ok) return ok.error();
         sides_ = Sides(input_.grid.points.tuples());
         if (auto ok = request_.isovalues.empty() ? look_only(progress) : extract_all(progress); !ok) return ok.error();
         result_.origin = survey_.origin;
@@ -105,7 +106,7 @@ private:
         if (!cut) return cut.error();
         if (!is_as_assumed(context)) return std::optional<ops::BruteSurface>{};
         const CutCounts counts = cut->counts();
-        if (counts.edges >= brute_wide_from && !wide_) {
+        if (counts.edges >= wide_points_from && !wide_) {
             wide_ = true;
             return std::optional<ops::BruteSurface>{};
         }
@@ -148,7 +149,7 @@ private:
         if (progress.cancelled()) return cancelled();
         progress("extract", 0.7);
         options.wide = welded.vertices() >= wide_from;
-        const std::uint64_t kept = sides_.points() + context.budget.taken();
+        const std::uint64_t kept = sides_.bytes() + context.budget.taken();
         result_.transient_bytes = std::max(result_.transient_bytes,
                                            kept + welding_memory<Point>(counts.edges) + counts.edges * (options.wide ? 8 : 4));
         result_.predicted_bytes = std::max(result_.predicted_bytes, kept + needed);
@@ -220,13 +221,16 @@ private:
 };
 
 } // namespace
+} // namespace isotet::cpu::brute
+
+namespace isotet::cpu {
 
 template <class Real>
-Result<ops::BruteResult> brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress) {
-    return BruteRun<Real>(input, request).run(progress);
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress) {
+    return brute::BruteRun<Real>(input, request).run(progress);
 }
 
-template Result<ops::BruteResult> brute<float>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
-template Result<ops::BruteResult> brute<double>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
+template Result<ops::BruteResult> extract_brute<float>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
+template Result<ops::BruteResult> extract_brute<double>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
 
 } // namespace isotet::cpu

@@ -11,9 +11,11 @@ namespace isotet::cpu {
 ///              decide on the storage (the ends of the range, say) turn out to be used by no tet
 /// Errors       invalid_data for a broken grid; out_of_memory before memory is taken; cancelled
 template <class Real>
-Result<ops::BruteResult> brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress);
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress);
 
+namespace brute {
 /// From this many points on, or so many edges found by cut tets, point numbers of welding have 64 bits. Tests lower it.
-inline std::uint64_t brute_wide_from = std::uint64_t{1} << 31;
+inline std::uint64_t wide_points_from = std::uint64_t{1} << 31;
+} // namespace brute
 
 } // namespace isotet::cpu

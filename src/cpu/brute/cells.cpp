@@ -2,14 +2,21 @@
 #include "cpu/brute/cells.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
 #include <tbb/enumerable_thread_specific.h>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "core/parallel.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -21,15 +28,63 @@ bool is_collapsed(const core::Tet& t) {
     return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
 }
 
-/// Calls f with a pointer to the numbers in their own type.
-template <class F>
-void visit_corners(const Array& connectivity, const F& f) {
-    switch (connectivity.type()) {
-    case ScalarType::int32: return f(connectivity.as<std::int32_t>().data());
-    case ScalarType::uint32: return f(connectivity.as<std::uint32_t>().data());
-    case ScalarType::int64: return f(connectivity.as<std::int64_t>().data());
-    default: return f(connectivity.as<std::uint64_t>().data());
+constexpr std::size_t tets_at_once = 1 << 10; ///< few enough that their corners are still near when cut ones are fetched
+
+/// Adds up the flags of each tet's corners. False when a number has no flags, and so is no point; numbers that have none are
+/// masked before they are looked up.
+template <class Index>
+bool add_up_sides(const Sides& sides, const Index* corners, std::size_t tets, std::uint16_t* sums) {
+    using Unsigned = std::make_unsigned_t<Index>; // a negative number becomes one that is too large
+    const auto mask = static_cast<Unsigned>(std::min<std::uint64_t>(sides.mask(), std::numeric_limits<Index>::max()));
+    std::uint64_t all = 0;
+    if constexpr (sizeof(Index) == 4) {
+        // Two corners at once: a tet is two words to load, check and mask.
+        const std::uint64_t both = mask * std::uint64_t{0x1'0000'0001};
+        for (std::size_t i = 0; i < tets; ++i) {
+            std::array<std::uint64_t, 2> words;
+            std::memcpy(words.data(), corners + 4 * i, sizeof words);
+            all |= words[0] | words[1];
+            const std::uint64_t p = words[0] & both, q = words[1] & both;
+            const unsigned sum = sides[static_cast<std::uint32_t>(p)] + sides[p >> 32] + sides[static_cast<std::uint32_t>(q)] + sides[q >> 32];
+            sums[i] = static_cast<std::uint16_t>(sum);
+        }
+        return (all & ~both) == 0;
+    } else {
+        for (std::size_t i = 0; i < tets; ++i) {
+            unsigned sum = 0;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto corner = static_cast<Unsigned>(corners[4 * i + k]);
+                all |= corner;
+                sum += sides[corner & mask];
+            }
+            sums[i] = static_cast<std::uint16_t>(sum);
+        }
+        return (all & ~std::uint64_t{mask}) == 0;
     }
+}
+
+/// Writes the places of tets with corners on both sides, or with one that needs attention; returns how many.
+std::size_t find_worth_looking(const std::array<std::uint16_t, tets_at_once>& sums, std::uint32_t* places) {
+    std::size_t found = 0;
+#if defined(__SSE2__)
+    const __m128i one = _mm_set1_epi8(1), two = _mm_set1_epi8(2), attention = _mm_set1_epi8(16);
+    for (std::uint32_t i = 0; i < tets_at_once; i += 16) {
+        const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i]));
+        const __m128i high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i + 8]));
+        const __m128i sum = _mm_packus_epi16(low, high); // 255 where it is more
+        const __m128i less_one = _mm_sub_epi8(sum, one);
+        const __m128i both_sides = _mm_cmpeq_epi8(_mm_min_epu8(less_one, two), less_one); // 1, 2 or 3
+        const __m128i worth = _mm_or_si128(both_sides, _mm_cmpeq_epi8(_mm_max_epu8(sum, attention), sum));
+        for (auto bits = static_cast<unsigned>(_mm_movemask_epi8(worth)); bits; bits &= bits - 1)
+            places[found++] = i + static_cast<std::uint32_t>(std::countr_zero(bits));
+    }
+#else
+    for (std::uint32_t i = 0; i < tets_at_once; ++i) {
+        places[found] = i;
+        found += sums[i] % 4 != 0 || sums[i] >= 16;
+    }
+#endif
+    return found;
 }
 
 /// The pass over one chunk of cells.
@@ -41,54 +96,38 @@ public:
     /// Cells that are nothing but four numbers, `corners` those of the first.
     template <class Index>
     void pass_tets(const Index* corners, std::size_t count) {
-        constexpr std::size_t at_once = 1 << 10; // so that corners are still near when cut tets are fetched
-        std::array<std::uint32_t, at_once> cut;
-        for (std::size_t begin = 0; begin < count; begin += at_once) {
+        std::array<std::uint16_t, tets_at_once> sums;
+        std::array<std::uint32_t, tets_at_once> places;
+        for (std::size_t begin = 0; begin < count; begin += tets_at_once) {
             const Index* const part = corners + 4 * begin;
-            const std::size_t n = find_cut(part, std::min(at_once, count - begin), cut.data());
-            if (context_.broken.load(std::memory_order_relaxed)) return;
-            for (std::size_t i = 0; i < n; ++i) {
-                const Index* const v = part + 4 * std::size_t{cut[i]};
-                cutter_.add({static_cast<Point>(v[0]), static_cast<Point>(v[1]), static_cast<Point>(v[2]), static_cast<Point>(v[3])},
-                            static_cast<std::uint32_t>(begin + cut[i]));
+            const std::size_t size = std::min(tets_at_once, count - begin);
+            if (!add_up_sides(context_.sides, part, size, sums.data())) return broken();
+            std::fill(sums.begin() + static_cast<std::ptrdiff_t>(size), sums.end(), 0);
+            const std::size_t found = find_worth_looking(sums, places.data());
+            for (std::size_t i = 0; i < found; ++i) {
+                const std::uint32_t place = places[i];
+                const Index* const v = part + 4 * std::size_t{place};
+                const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]), static_cast<Point>(v[2]),
+                                               static_cast<Point>(v[3])};
+                if (sums[place] >= 16) [[unlikely]] look_at({tet[0], tet[1], tet[2], tet[3]});
+                if (sums[place] % 4 != 0) cutter_.add(tet, static_cast<std::uint32_t>(begin + place));
             }
+            if (context_.broken.load(std::memory_order_relaxed)) return;
         }
     }
 
-    /// Cells of any type, with offsets or not.
-    void pass_cells(std::size_t begin, std::size_t end) {
+    /// Cells of any type, with offsets or not, `corners` those of the whole grid.
+    template <class Index>
+    void pass_cells(const Index* corners, std::size_t begin, std::size_t end) {
         for (std::size_t cell = begin; cell < end; ++cell)
-            if (!pass_cell(cell, static_cast<std::uint32_t>(cell - begin))) {
+            if (!pass_cell(corners, cell, static_cast<std::uint32_t>(cell - begin))) {
                 broken();
                 return;
             }
     }
 
 private:
-    /// Writes the places of tets with corners on both sides; returns how many.
-    template <class Index>
-    std::size_t find_cut(const Index* corners, std::size_t count, std::uint32_t* cut) {
-        using Unsigned = std::make_unsigned_t<Index>; // a negative number becomes a huge one
-        if (cells_.points() == 0) return broken();
-        const auto last = static_cast<Unsigned>(std::min<std::uint64_t>(cells_.points() - 1, std::numeric_limits<Index>::max()));
-        const Sides& sides = context_.sides;
-        std::size_t n = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const auto a = static_cast<Unsigned>(corners[4 * i]), b = static_cast<Unsigned>(corners[4 * i + 1]),
-                       c = static_cast<Unsigned>(corners[4 * i + 2]), d = static_cast<Unsigned>(corners[4 * i + 3]);
-            if (std::max(std::max(a, b), std::max(c, d)) > last) [[unlikely]] return broken();
-            const unsigned flags = sides[a] | sides[b] << 1 | sides[c] << 2 | sides[d] << 3;
-            cut[n] = static_cast<std::uint32_t>(i);
-            n += (flags & 15) - 1 < 14; // neither all below nor all above
-            if (flags > 15) [[unlikely]] look_at({a, b, c, d});
-        }
-        return n;
-    }
-
-    std::size_t broken() {
-        context_.broken.store(true, std::memory_order_relaxed);
-        return 0;
-    }
+    void broken() { context_.broken.store(true, std::memory_order_relaxed); }
 
     /// Some corner is not just above or below.
     void look_at(const core::Tet& tet) {
@@ -98,18 +137,20 @@ private:
         for (const std::uint64_t point : tet) context_.sides.saw(point);
     }
 
-    bool pass_cell(std::size_t cell, std::uint32_t place) {
-        const std::uint64_t begin = cells_.first(cell), corners = cells_.corners(cell);
-        if (corners > cells_.connectivity_size() || begin > cells_.connectivity_size() - corners) return false;
+    /// False when the cell is broken.
+    template <class Index>
+    bool pass_cell(const Index* corners, std::size_t cell, std::uint32_t place) {
+        const std::uint64_t begin = cells_.first(cell), count = cells_.corners(cell);
+        if (count > cells_.connectivity_size() || begin > cells_.connectivity_size() - count) return false;
         const auto expected = static_cast<std::uint64_t>(core::corners_of(cells_.type(cell)));
         if (expected == 0) {
             cutter_.leave_out_cell();
             return true;
         }
-        if (corners != expected) return false;
+        if (count != expected) return false;
         unsigned any = 0, all = side::above;
-        for (std::uint64_t k = 0; k < corners; ++k) {
-            const std::uint64_t point = cells_.corner(begin + k);
+        for (std::uint64_t k = 0; k < count; ++k) {
+            const std::uint64_t point = core::widened(corners[begin + k]);
             if (point >= cells_.points()) return false;
             const unsigned flags = context_.sides[point];
             any |= flags;
@@ -143,8 +184,6 @@ private:
 template <class Point>
 CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
     const CellReader& cells = context.input.cells;
-    const Cells& grid_cells = context.input.grid.cells;
-    const bool bare_tets = cells.only_tets() && grid_cells.offsets.empty();
     const std::size_t chunks = (cells.count() + cells_a_chunk - 1) / cells_a_chunk;
     CutCells<Point> out;
     out.chunks.resize(chunks + 1);
@@ -157,8 +196,10 @@ CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
         const std::size_t begin = chunk * cells_a_chunk, end = std::min(cells.count(), begin + cells_a_chunk);
         cutter.begin(out.chunks[chunk], begin);
         ChunkPass<Point> pass(context, cutter);
-        if (bare_tets) visit_corners(grid_cells.connectivity, [&](const auto* corners) { pass.pass_tets(corners + 4 * begin, end - begin); });
-        else pass.pass_cells(begin, end);
+        cells.connectivity().visit([&](const auto* corners) {
+            if (cells.bare_tets()) pass.pass_tets(corners + 4 * begin, end - begin);
+            else pass.pass_cells(corners, begin, end);
+        });
         if (!context.broken.load(std::memory_order_relaxed)) cutter.end();
     };
     for (std::size_t first = 0; first < chunks; first += chunks_a_report) {
@@ -196,4 +237,4 @@ std::uint64_t count_cut_tets(const CellReader& cells, const Sides& sides) {
     return total;
 }
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

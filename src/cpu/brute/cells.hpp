@@ -7,7 +7,7 @@
 
 #include "cpu/brute/cutter.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 constexpr std::size_t cells_a_chunk = 1 << 15;
 
@@ -40,4 +40,4 @@ void see_used_points(const core::CellReader& cells, Sides& sides);
 /// Tets that have corners on both sides, for which there may have to be memory.
 std::uint64_t count_cut_tets(const core::CellReader& cells, const Sides& sides);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

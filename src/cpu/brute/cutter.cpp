@@ -9,7 +9,7 @@
 #include "cpu/brute/orient.hpp"
 #include "cpu/level.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -114,17 +114,6 @@ void Cutter<Point>::end() {
 }
 
 template <class Point>
-std::uint32_t Cutter<Point>::number_of(CrossedEdge<Point> edge) {
-    const std::uint64_t mixed = edge.lower * std::uint64_t{0x9e3779b97f4a7c15} + edge.higher * std::uint64_t{0xc2b2ae3d27d4eb4f};
-    Remembered& last = memory_[mixed >> (64 - memory_bits)];
-    if (last.edge == edge && last.chunk == chunks_) return last.number;
-    last = {edge, edges_, chunks_};
-    *found_++ = edge;
-    ++in_range_[context_.ranges.of(edge.lower)];
-    return edges_++;
-}
-
-template <class Point>
 void Cutter<Point>::cut() {
     const std::size_t count = std::exchange(pending_, 0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -144,30 +133,49 @@ void Cutter<Point>::cut() {
     auto* const polygons = arena_.template take<std::array<std::uint32_t, 4>>(count);
     auto* const triangles = arena_.template take<std::uint8_t>(count);
     auto* const cells = context_.keep_cells ? arena_.template take<std::uint32_t>(count) : nullptr;
-    auto* const found = arena_.template take<CrossedEdge<Point>>(4 * count);
-    found_ = found;
-    std::uint32_t tets = 0;
+    auto* const found = arena_.template take<CrossedEdge<Point>>(4 * count + 1);
+    // Bytes are written below, which might be anything: what is needed again and again stands in variables of its own.
+    CrossedEdge<Point>* next = found;
+    std::uint32_t edges = edges_, tets = 0;
+    std::uint64_t made_triangles = 0;
+    Remembered* const memory = memory_.data();
+    const std::uint32_t chunk = chunks_;
+    const auto number_of = [&](CrossedEdge<Point> edge) {
+        Remembered& last = memory[edge.mixed() >> (64 - memory_bits)];
+        // Found lately or not is nearly a toss, so what happens to a new edge happens to all, and only new ones count.
+        const unsigned is_new = !(last.edge == edge) | (last.chunk != chunk);
+        const std::uint32_t number = is_new ? edges : last.number;
+        last = {edge, number, chunk};
+        *next = edge;
+        next += is_new;
+        edges += is_new;
+        return number;
+    };
     for (std::size_t i = 0; i < count; ++i) {
-        std::array<CrossedEdge<Point>, 4> polygon;
         unsigned made;
+        std::array<std::uint32_t, 4>& numbers = polygons[tets];
         if (codes_[i] & tet_code::unusual) [[unlikely]] {
+            std::array<CrossedEdge<Point>, 4> polygon;
             made = unusual_polygon(i, polygon);
             if (made == 0) continue;
+            for (std::size_t k = 0; k < 4; ++k) numbers[k] = number_of(polygon[k]);
         } else {
             const SortedPolygon& p = sorted_polygons[codes_[i]];
-            for (std::size_t k = 0; k < 4; ++k) polygon[k] = {sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1};
             made = p.triangles;
+            for (std::size_t k = 0; k < 4; ++k) numbers[k] = number_of({sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1});
         }
-        for (std::size_t k = 0; k < 4; ++k) polygons[tets][k] = number_of(polygon[k]);
         triangles[tets] = static_cast<std::uint8_t>(made);
         if (cells) cells[tets] = cells_[i];
-        chunk_->triangles += made;
+        made_triangles += made;
         ++tets;
         if (context_.rounds_coordinates) counts_.coarse_tets += is_coarse(i);
     }
-    const auto edges = static_cast<std::uint32_t>(found_ - found);
-    arena_.keep(found, edges);
-    if (tets) chunk_->pieces.push_back({tets, edges, polygons, triangles, cells, found});
+    edges_ = edges;
+    for (const CrossedEdge<Point>* edge = found; edge < next; ++edge) ++in_range_[context_.ranges.of(edge->lower)];
+    chunk_->triangles += made_triangles;
+    const auto new_edges = static_cast<std::uint32_t>(next - found);
+    arena_.keep(found, new_edges);
+    if (tets) chunk_->pieces.push_back({tets, new_edges, polygons, triangles, cells, found});
 }
 
 /// The polygon of a tet that the batch leaves open, with equal edges at a tied point; the fourth repeats the third when there
@@ -213,13 +221,11 @@ bool Cutter<Point>::is_mirrored_flat(std::size_t tet) {
         for (std::size_t b = a + 1; b < 4; ++b) odd ^= corners_[a][tet] > corners_[b][tet];
     const core::CellReader& reader = context_.input.cells;
     const std::uint64_t cell = first_cell_ + cells_[tet];
-    if (reader.type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron)) {
+    if (core::Orienter::is_whole(reader.type(cell))) {
         context_.saw_flat.store(true, std::memory_order_relaxed);
         return odd != context_.mostly_negative;
     }
-    double six_volumes = 0;
-    for (const core::Tet& piece : reader.tets(cell)) six_volumes += points_.six_volumes(piece);
-    return odd != (six_volumes < 0);
+    return odd != (core::Orienter::six_volumes(points_, reader.tets(cell)) < 0);
 }
 
 template <class Point>
@@ -240,4 +246,4 @@ bool Cutter<Point>::is_coarse(std::size_t tet) const {
 template class Cutter<std::uint32_t>;
 template class Cutter<std::uint64_t>;
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

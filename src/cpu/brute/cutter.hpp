@@ -11,13 +11,19 @@
 #include "cpu/brute/arena.hpp"
 #include "cpu/brute/points.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 /// A crossed edge by the user's numbers of its ends, `Point` wide; a tied point is an edge to itself.
 template <class Point>
 struct CrossedEdge {
     Point lower, higher;
-    friend bool operator==(const CrossedEdge&, const CrossedEdge&) = default;
+
+    friend bool operator==(const CrossedEdge& a, const CrossedEdge& b) {
+        if constexpr (sizeof(Point) == 4) return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+        else return a.lower == b.lower && a.higher == b.higher;
+    }
+    /// A number whose highest bits are as good as drawn.
+    std::uint64_t mixed() const { return lower * std::uint64_t{0x9e3779b97f4a7c15} + higher * std::uint64_t{0xc2b2ae3d27d4eb4f}; }
 };
 
 /// What a batch of cut tets leaves. Edges are numbered within the chunk; one that was found by another chunk, or too long
@@ -82,7 +88,7 @@ public:
     const CutCounts& counts() const { return counts_; }
     void leave_out_cell() { ++counts_.left_out; }
     /// Edges found in each range. Welding turns them into places.
-    std::vector<std::uint64_t>& in_range() { return in_range_; }
+    std::vector<Point>& in_range() { return in_range_; }
 
     void begin(Chunk<Point>& chunk, std::uint64_t first_cell);
     /// A tet with corners on both sides, points as in the file; `cell` is counted from the chunk's first.
@@ -95,7 +101,7 @@ public:
 
 private:
     static constexpr std::size_t batch = 256;
-    static constexpr unsigned memory_bits = 12;
+    static constexpr unsigned memory_bits = 11;
 
     /// Where an edge was last found. Several share a place: the last one stays.
     struct Remembered {
@@ -107,19 +113,17 @@ private:
     unsigned unusual_polygon(std::size_t tet, std::array<CrossedEdge<Point>, 4>& polygon);
     bool is_mirrored_flat(std::size_t tet);
     bool is_coarse(std::size_t tet) const;
-    std::uint32_t number_of(CrossedEdge<Point> edge);
 
     CutContext& context_;
     std::size_t number_;
     core::PointReader points_;
     BudgetedArena arena_;
     CutCounts counts_;
-    std::vector<std::uint64_t> in_range_;
+    std::vector<Point> in_range_;
     Chunk<Point>* chunk_ = nullptr;
     std::uint64_t first_cell_ = 0;
     std::uint32_t chunks_ = 0; ///< begun
     std::uint32_t edges_ = 0;  ///< of the chunk
-    CrossedEdge<Point>* found_ = nullptr;
     std::vector<Remembered> memory_;
 
     // The batch: row k holds corner k of all tets.
@@ -130,4 +134,4 @@ private:
     std::array<std::uint32_t, batch> cells_;
 };
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

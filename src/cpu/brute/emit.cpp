@@ -1,11 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "cpu/brute/emit.hpp"
 
-#include <utility>
+#include <array>
 
 #include "core/parallel.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -20,16 +20,12 @@ struct Target {
 
 template <class Real>
 void make_vertex(const VertexSource<Real>& source, std::uint64_t vertex, std::uint64_t lower, std::uint64_t higher, const Target<Real>& target) {
-    std::uint64_t below = lower, above = higher;
-    Real t = 0;
-    if (lower != higher) {
-        Real s0 = source.value(lower), s1 = source.value(higher);
-        if (s0 >= source.isovalue()) {
-            std::swap(below, above);
-            std::swap(s0, s1);
-        }
-        t = core::edge_weight(source.isovalue(), s0, s1);
-    }
+    const std::array<std::uint64_t, 2> ends{lower, higher};
+    const std::array<Real, 2> values{source.value(lower), source.value(higher)};
+    // Which end is above is a toss: an index costs less than a branch.
+    const std::size_t up = values[0] >= source.isovalue() ? 0 : 1;
+    const std::uint64_t below = ends[1 - up], above = ends[up];
+    const Real t = lower == higher ? Real(0) : core::edge_weight(source.isovalue(), values[1 - up], values[up]);
     const auto a = source.position(below), b = source.position(above);
     for (std::size_t axis = 0; axis < 3; ++axis) target.positions[3 * vertex + axis] = core::interpolate(a[axis], b[axis], t);
     if (!target.ends) return;
@@ -39,15 +35,19 @@ void make_vertex(const VertexSource<Real>& source, std::uint64_t vertex, std::ui
 }
 
 /// Makes the vertices and tells the number of each to all edges that were found there.
-template <class Point, class Index, class Make>
-void number_edges(const Welded<Point>& welded, Index* numbers, const Make& make, const Progress& progress) {
+template <class Real, class Point, class Index>
+void number_edges(const VertexSource<Real>& source, const Welded<Point>& welded, const Target<Real>& target, Index* numbers,
+                  const Progress& progress) {
+    constexpr std::uint64_t ahead = 24; // edges: what is read while a higher end is waited for; lower ends follow each other
     core::parallel_ranges(welded.first_edge.size() - 1, ranges_a_task, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
         std::uint64_t vertex = welded.first_vertex[begin];
         const FoundEdge<Point>* const edges = welded.edges.data();
         const std::uint64_t first = welded.first_edge[begin], last = welded.first_edge[end];
         for (std::uint64_t i = first; i < last; ++i) {
-            if (i == first || edges[i].edge != edges[i - 1].edge) make(vertex++, edges[i].edge.lower, edges[i].edge.higher);
+            if (i + ahead < last && edges[i + ahead].edge != edges[i + ahead - 1].edge) source.prefetch(edges[i + ahead].edge.higher);
+            if (i == first || edges[i].edge != edges[i - 1].edge)
+                make_vertex(source, vertex++, edges[i].edge.lower, edges[i].edge.higher, target);
             numbers[edges[i].number] = static_cast<Index>(vertex - 1);
         }
     });
@@ -98,10 +98,7 @@ Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Po
     ops::RawSurface surface;
     const auto emit_with = [&]<class Index>(core::Buffer<Index> triangles) {
         core::Buffer<Index> numbers(edges);
-        const auto make = [&](std::uint64_t vertex, std::uint64_t lower, std::uint64_t higher) {
-            make_vertex(source, vertex, lower, higher, target);
-        };
-        number_edges(welded, numbers.data(), make, progress);
+        number_edges(source, welded, target, numbers.data(), progress);
         welded = {};
         progress("extract", 0.8);
         emit_triangles(cut, numbers.data(), triangles.data(), options.source_cells ? source_cells.data() : nullptr, progress);
@@ -130,4 +127,4 @@ ISOTET_EMIT(double, std::uint32_t);
 ISOTET_EMIT(double, std::uint64_t);
 #undef ISOTET_EMIT
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

@@ -7,14 +7,15 @@
 #include "core/arithmetic.hpp"
 #include "cpu/brute/weld.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 /// What vertices are made from: values and positions as they are stored.
 template <class Real>
 class VertexSource {
 public:
     VertexSource(const ops::BruteInput& input, const PointSurvey& survey, Real isovalue)
-        : input_(&input), points_(input.grid.points), origin_(survey.origin), storage_(survey.field.storage), isovalue_(isovalue) {}
+        : input_(&input), origin_(survey.origin), storage_(survey.field.storage), isovalue_(isovalue),
+          value_bytes_(size_of(input.field.values.type())), point_bytes_(3 * size_of(input.grid.points.type())) {}
 
     const ops::BruteInput& input() const { return *input_; }
     Real isovalue() const { return isovalue_; }
@@ -26,18 +27,29 @@ public:
         return core::store_value<Real>(user, storage_);
     }
     core::Vector<Real> position(std::uint64_t point) const {
-        const core::Point user = points_[point];
         core::Vector<Real> stored;
-        for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = core::store_coordinate<Real>(user[axis], origin_[axis]);
+        if (input_->grid.points.type() == ScalarType::float32) { // these have no origin
+            const float* const user = input_->grid.points.as<float>().data() + 3 * point;
+            for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = core::store_coordinate<Real>(user[axis], 0);
+        } else {
+            const double* const user = input_->grid.points.as<double>().data() + 3 * point;
+            for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = core::store_coordinate<Real>(user[axis], origin_[axis]);
+        }
         return stored;
+    }
+
+    /// Asks for what value() and position() will read: in grids without order waiting for memory is what costs most.
+    void prefetch(std::uint64_t point) const {
+        __builtin_prefetch(static_cast<const std::byte*>(input_->field.values.data()) + point * value_bytes_);
+        __builtin_prefetch(static_cast<const std::byte*>(input_->grid.points.data()) + point * point_bytes_);
     }
 
 private:
     const ops::BruteInput* input_;
-    core::PointReader points_;
     std::array<double, 3> origin_;
     core::Storage storage_;
     Real isovalue_;
+    std::size_t value_bytes_, point_bytes_;
 };
 
 /// What is wanted, and how wide the numbers of vertices are.
@@ -57,4 +69,4 @@ template <class Real, class Point>
 Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Point>& cut, Welded<Point> welded, const EmitOptions& options,
                              const Progress& progress);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

@@ -10,7 +10,7 @@
 #include "core/parallel.hpp"
 #include "core/tet_gradient.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -136,4 +136,4 @@ Result<GradientNormals> gradient_normals(const VertexSource<Real>& source, const
 template Result<GradientNormals> gradient_normals<float>(const VertexSource<float>&, const Sides&, bool, const ops::RawSurface&, const Progress&);
 template Result<GradientNormals> gradient_normals<double>(const VertexSource<double>&, const Sides&, bool, const ops::RawSurface&, const Progress&);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

@@ -4,7 +4,7 @@
 
 #include "cpu/brute/emit.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 struct GradientNormals {
     Array normals; ///< float32 x 3, V
@@ -19,4 +19,4 @@ template <class Real>
 Result<GradientNormals> gradient_normals(const VertexSource<Real>& source, const Sides& sides, bool mostly_negative,
                                          const ops::RawSurface& surface, const Progress& progress);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

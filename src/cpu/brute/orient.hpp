@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 /// What is known of a tet with its corners ascending.
 namespace tet_code {
@@ -63,4 +63,4 @@ inline void sign_volumes(const Coordinates& xyz, Codes& codes, std::size_t count
     }
 }
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

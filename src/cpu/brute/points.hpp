@@ -6,8 +6,10 @@
 // them have not been seen in the end, survey_points() is asked again without them: the same answer proves the assumption.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -17,10 +19,10 @@
 #include "core/storage.hpp"
 #include "ops/brute.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
-/// Flags of a point at one isovalue. Shifted by 0 to 3, one for each corner, and ORed, the first four bits are the tet's
-/// case, and any other bit says that a corner needs attention.
+/// Flags of a point at one isovalue. Of the sum over the four corners of a tet the low four bits tell how many are above; from
+/// 16 on some corner needs attention.
 namespace side {
 constexpr std::uint8_t above = 0x01;
 constexpr std::uint8_t watched = 0x10; ///< it matters whether a tet uses the point, and none was seen yet
@@ -30,18 +32,24 @@ constexpr std::uint8_t unsound = 0x80; ///< coordinates that are not finite or 2
 } // namespace side
 
 /// The flags of all points. The pass over the cells takes `watched` away, from many threads: hence the atomics, which cost
-/// nothing more than plain bytes.
+/// nothing more than plain bytes. Numbers that are no points up to the next power of two have flags, too, `unsound`: so a
+/// number that was masked can be looked up before it is known to be a point.
 class Sides {
 public:
     Sides() = default;
-    explicit Sides(std::size_t points) : flags_(points) {}
+    explicit Sides(std::size_t points) : points_(points), flags_(std::bit_ceil(points)) {
+        std::fill(flags_.begin() + points, flags_.end(), side::unsound);
+    }
 
+    /// All ones; no larger number has flags.
+    std::uint64_t mask() const { return flags_.size() - 1; }
     std::uint8_t operator[](std::size_t point) const { return at(point).load(std::memory_order_relaxed); }
     void saw(std::size_t point) {
         const std::uint8_t now = (*this)[point];
         if (now & side::watched) at(point).store(now & ~side::watched, std::memory_order_relaxed);
     }
-    std::size_t points() const { return flags_.size(); }
+    std::size_t points() const { return points_; }
+    std::size_t bytes() const { return flags_.bytes(); }
 
     /// For everything that happens before or after the pass.
     core::Buffer<std::uint8_t>& flags() { return flags_; }
@@ -50,6 +58,7 @@ public:
 private:
     std::atomic_ref<std::uint8_t> at(std::size_t point) const { return std::atomic_ref(flags_.data()[point]); }
 
+    std::size_t points_ = 0;
     mutable core::Buffer<std::uint8_t> flags_;
 };
 
@@ -91,7 +100,6 @@ PointSurvey survey_points(const ops::BruteInput& input, const Sides* seen);
 enum class Watch : std::uint8_t {
     nothing,
     deciding, ///< points that decide on the survey
-    all,
 };
 
 struct SidesFound {
@@ -110,4 +118,4 @@ template <class Real>
 void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, SidesFound found,
                  const Sides& sides, ops::BruteSurface& surface);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

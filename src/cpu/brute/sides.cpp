@@ -8,7 +8,7 @@
 #include "core/parallel.hpp"
 #include "cpu/brute/points.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -25,12 +25,11 @@ template <class Real, class T>
 class SideFinder {
 public:
     SideFinder(const StoredField& field, Real stored, std::optional<double> nearest, Ties ties, Watch watch)
-        : storage_(field.storage), stored_(stored), near_(nearest.has_value()),
-          lower_(static_cast<Number>(field.statistics.lower)), upper_(static_cast<Number>(field.statistics.upper)),
+        : storage_(field.storage), stored_(stored), lower_(static_cast<Number>(field.statistics.lower)), upper_(static_cast<Number>(field.statistics.upper)),
           tied_flags_(ties == Ties::merge ? side::watched | side::tied : side::watched),
-          deciding_flag_(watch == Watch::deciding ? side::watched : 0), all_flag_(watch == Watch::all ? side::watched : 0),
+          near_flag_(nearest ? side::watched : 0), deciding_flag_(watch == Watch::deciding ? side::watched : 0),
           as_they_are_(field.storage.offset == 0 && field.storage.scale == 1 && !field.may_flush()) {
-        if (near_) stored_nearest_ = core::store_value<Real>(*nearest, storage_);
+        if (nearest) stored_nearest_ = core::store_value<Real>(*nearest, storage_);
     }
 
     SidesFound find(const T* values, std::size_t count, std::uint8_t* flags) const {
@@ -44,18 +43,22 @@ private:
 
     template <class Store>
     SidesFound find(const T* values, std::size_t count, std::uint8_t* flags, const Store& store) const {
-        unsigned any_tied = 0, any_near = 0;
+        // Flags are bytes, which might be anything: what is read again and again stands in variables of its own.
+        const Real stored = stored_, stored_nearest = stored_nearest_;
+        const Number lower = lower_, upper = upper_, offset = static_cast<Number>(storage_.offset);
+        const std::uint8_t tied_flags = tied_flags_, near_flag = near_flag_, deciding_flag = deciding_flag_;
+        std::uint8_t any_tied = 0, any_near = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const auto value = static_cast<Number>(values[i]);
             const Real s = store(values[i]);
-            const bool no_data = core::is_nan(value), tied = s == stored_, near = near_ & (s == stored_nearest_);
-            const bool deciding = no_data | (value == lower_) | (value == upper_) | (std::abs(value) == infinity) |
-                                  ((s == 0) & (value != static_cast<Number>(storage_.offset)));
-            flags[i] = static_cast<std::uint8_t>((s >= stored_ ? side::above : 0) | (no_data ? side::no_data : 0) |
-                                                 (tied ? tied_flags_ : 0) | (near ? side::watched : 0) |
-                                                 (deciding ? deciding_flag_ : 0) | all_flag_);
-            any_tied |= tied;
-            any_near |= near;
+            const bool no_data = value != value, tied = s == stored;
+            const bool deciding = no_data | (value == lower) | (value == upper) | (std::abs(value) == infinity) | ((s == 0) & (value != offset));
+            const auto if_tied = static_cast<std::uint8_t>(tied ? tied_flags : 0);
+            const auto if_near = static_cast<std::uint8_t>(s == stored_nearest ? near_flag : 0);
+            flags[i] = static_cast<std::uint8_t>((s >= stored ? side::above : 0) | (no_data ? side::no_data : 0) | if_tied | if_near |
+                                                 (deciding ? deciding_flag : 0));
+            any_tied |= if_tied;
+            any_near |= if_near;
         }
         return {any_tied != 0, any_near != 0};
     }
@@ -64,9 +67,8 @@ private:
 
     core::Storage storage_;
     Real stored_, stored_nearest_ = 0;
-    bool near_;
     Number lower_, upper_;
-    std::uint8_t tied_flags_, deciding_flag_, all_flag_;
+    std::uint8_t tied_flags_, near_flag_, deciding_flag_;
     bool as_they_are_;
 };
 
@@ -160,4 +162,4 @@ void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double
 template void report_ties<float>(const ops::BruteInput&, const PointSurvey&, double, float, SidesFound, const Sides&, ops::BruteSurface&);
 template void report_ties<double>(const ops::BruteInput&, const PointSurvey&, double, double, SidesFound, const Sides&, ops::BruteSurface&);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

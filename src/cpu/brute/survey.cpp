@@ -10,7 +10,7 @@
 #include "core/orientation.hpp"
 #include "cpu/brute/points.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -57,10 +57,10 @@ public:
             const bool finite = size < infinity<Number>; // false for NaN
             no_data_[k] += value != value;
             infinite_[k] += size == infinity<Number>;
-            lower_[k] = finite && value < lower_[k] ? value : lower_[k];
-            upper_[k] = finite && value > upper_[k] ? value : upper_[k];
-            smallest_[k] = finite && magnitude > 0 && magnitude < smallest_[k] ? magnitude : smallest_[k];
-            largest_[k] = finite && magnitude > largest_[k] ? magnitude : largest_[k];
+            lower_[k] = finite & (value < lower_[k]) ? value : lower_[k];
+            upper_[k] = finite & (value > upper_[k]) ? value : upper_[k];
+            smallest_[k] = finite & (magnitude > 0) & (magnitude < smallest_[k]) ? magnitude : smallest_[k];
+            largest_[k] = finite & (magnitude > largest_[k]) ? magnitude : largest_[k];
         }
     }
 
@@ -247,4 +247,4 @@ FieldReport PointSurvey::report(const std::string& name) const {
     return report;
 }
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

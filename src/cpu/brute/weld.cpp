@@ -8,7 +8,7 @@
 
 #include "core/parallel.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 namespace {
 
@@ -28,7 +28,7 @@ std::vector<std::uint64_t> place_ranges(CutCells<Point>& cut, std::size_t count)
     std::uint64_t next = 0;
     for (std::size_t range = 0; range < count; ++range) {
         first[range] = next;
-        for (const auto& cutter : cut.cutters) next += std::exchange(cutter->in_range()[range], next);
+        for (const auto& cutter : cut.cutters) next += std::exchange(cutter->in_range()[range], static_cast<Point>(next));
     }
     first[count] = next;
     return first;
@@ -37,7 +37,7 @@ std::vector<std::uint64_t> place_ranges(CutCells<Point>& cut, std::size_t count)
 /// Moves the edges that one cutter found into their ranges.
 template <class Point>
 void scatter(const CutCells<Point>& cut, std::size_t cutter, const Ranges& ranges, FoundEdge<Point>* out) {
-    std::uint64_t* const places = cut.cutters[cutter]->in_range().data();
+    Point* const places = cut.cutters[cutter]->in_range().data();
     for (const Chunk<Point>& chunk : cut.chunks) {
         if (chunk.cutter != cutter) continue;
         auto number = static_cast<Point>(chunk.edges);
@@ -113,4 +113,4 @@ Welded<Point> weld(CutCells<Point>& cut, const Ranges& ranges) {
 template Welded<std::uint32_t> weld<std::uint32_t>(CutCells<std::uint32_t>&, const Ranges&);
 template Welded<std::uint64_t> weld<std::uint64_t>(CutCells<std::uint64_t>&, const Ranges&);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute

@@ -8,7 +8,7 @@
 #include "core/buffer.hpp"
 #include "cpu/brute/cells.hpp"
 
-namespace isotet::cpu {
+namespace isotet::cpu::brute {
 
 /// An edge and the number under which it was found.
 template <class Point>
@@ -38,4 +38,4 @@ std::uint64_t welding_memory(std::uint64_t edges) {
 template <class Point>
 Welded<Point> weld(CutCells<Point>& cut, const Ranges& ranges);
 
-} // namespace isotet::cpu
+} // namespace isotet::cpu::brute
