@@ -134,12 +134,12 @@ Reply IsotetContestant::extract_from(const std::string& name, double isovalue, c
 }
 
 Reply IsotetContestant::extract_once(double isovalue) {
-    ExtractOptions options;
-    options.threads = threads_;
+    OnceOptions options;
+    options.extract.threads = threads_;
     const Stopwatch watch;
-    // The packed grid is a temporary, gone before the clock stops: nothing is kept.
-    const Extraction extraction = extract(pack(grid_, field_, pack_options()).value(), isovalue, options).value();
+    const ExtractedOnce once = isotet::extract_once(grid_, field_, {&isovalue, 1}, options).value();
     const double seconds = watch.seconds();
+    const Extraction& extraction = once.surfaces.front();
     const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
     return describe(extraction, seconds).count("must_move", input + bytes_of(extraction.surface));
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/extract.hpp>
+#include <isotet/extract_once.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 

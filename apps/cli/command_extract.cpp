@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <isotet/extract.hpp>
+#include <isotet/extract_once.hpp>
 #include <isotet/write.hpp>
 
 #include "cells_left_out.hpp"
@@ -39,11 +40,15 @@ public:
 private:
     Result<void> open();
     Result<void> load(std::size_t step);
-    Result<void> choose_values(const PointField& field, std::size_t step);
+    Result<void> pack(const Grid& grid);
+    Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::optional<double> time);
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
-    void say_what_packing_found(const Grid& grid);
+    Result<void> look_at_field();
+    Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options);
+    void say_what_the_step_holds(const Grid& grid);
+    void say_what_rounding_moves();
     void say_what_extracting_found(const SurfaceNumbers& surface);
 
     const ExtractCommand& command_;
@@ -52,8 +57,11 @@ private:
     ExtractPlan plan_;
     std::optional<PackedSeries> series_;
     Extractor extractor_;
+    Grid grid_; ///< of the step at hand, where nothing is packed
+    PointField field_;
     StepFields fields_;
-    std::vector<double> isovalues_; ///< of the step at hand: levels follow its range
+    std::vector<double> isovalues_;  ///< of the step at hand: levels follow its range
+    std::uint64_t coarse_tets_ = 0; ///< of the step at hand, where nothing is packed
     ExtractNumbers numbers_;
 };
 
@@ -75,6 +83,7 @@ Result<void> ExtractRun::open() {
     if (!plan) return plan.error();
     plan_ = *std::move(plan);
     series_.emplace(plan_.pack, plan_.steps.size());
+    numbers_.method = plan_.method;
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.precision = command_.precision;
@@ -84,45 +93,73 @@ Result<void> ExtractRun::open() {
     return {};
 }
 
-/// Reads one step and makes it the packed one. The grid itself is gone afterwards; the fields to carry stay.
+/// Reads one step and packs it or keeps it as it is.
 Result<void> ExtractRun::load(std::size_t step) {
     const Stopwatch reading;
     console_.detail(fmt::format("reading step {}", step));
     fields_ = {};
-    const Result<Grid> grid = source_->read(plan_.read, step, console_);
+    grid_ = {};
+    field_ = {};
+    Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
     const auto prefer = command_.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    const Result<PointField> field =
+    Result<PointField> field =
         find_field(*grid, plan_.field.name, {.prefer = prefer, .threads = command_.common.threads});
     if (!field) return field.error();
     console_.note(field->note);
     Result<StepFields> fields = carried_fields(plan_, *grid);
     if (!fields) return fields.error();
     fields_ = *std::move(fields);
+    field_ = *std::move(field);
     numbers_.read_seconds += reading.seconds();
+    numbers_.cells = grid->cells.count();
+    numbers_.averaged = field_.averaged;
+    if (!plan_.method.brute) {
+        if (Result<void> packed = pack(*grid); !packed) return packed;
+    } else {
+        grid_ = *std::move(grid);
+        coarse_tets_ = 0;
+        if (command_.isovalues.empty())
+            if (Result<void> looked = look_at_field(); !looked) return looked;
+    }
+    return choose_values(step);
+}
 
+/// For isovalues that are chosen by the range of the field. It counts as reading.
+Result<void> ExtractRun::look_at_field() {
+    const Stopwatch looking;
+    console_.detail("looking at the field");
+    const Result<ExtractedOnce> looked = extract_once(grid_, field_, {}, {plan_.extract, command_.precision}, console_.progress());
+    if (!looked) return looked.error();
+    numbers_.field = looked->field;
+    numbers_.read_seconds += looking.seconds();
+    return {};
+}
+
+/// The grid itself is not needed afterwards; the fields to carry stay.
+Result<void> ExtractRun::pack(const Grid& grid) {
     const Stopwatch packing;
     console_.detail("packing");
-    const Result<PackedSeries::Work> work = series_->load(*grid, *field, extractor_, console_.progress());
+    const Result<PackedSeries::Work> work = series_->load(grid, field_, extractor_, console_.progress());
     if (!work) return work.error();
     const bool packed_again = *work == PackedSeries::Work::packed;
     if (!packed_again) console_.detail("the cells are those of the step before: not packed again");
     numbers_.pack_seconds += packing.seconds();
-    numbers_.cells = grid->cells.count();
     numbers_.pack = series_->packed().report();
     numbers_.field = series_->packed().field();
-    numbers_.averaged = field->averaged;
-    say_what_packing_found(*grid);
+    numbers_.cells_left_out = numbers_.pack->cells_left_out;
+    say_what_the_step_holds(grid);
+    say_what_rounding_moves();
     if (packed_again) {
         const Stopwatch uploading;
         if (Result<void> uploaded = extractor_.load(series_->packed()); !uploaded) return uploaded;
         numbers_.upload_seconds += uploading.seconds();
     }
-    return choose_values(*field, step);
+    return {};
 }
 
-Result<void> ExtractRun::choose_values(const PointField& field, std::size_t step) {
-    Result<std::vector<double>> isovalues = choose_isovalues(command_, field, numbers_.field, console_);
+Result<void> ExtractRun::choose_values(std::size_t step) {
+    Result<std::vector<double>> isovalues = choose_isovalues(command_, field_, numbers_.field, console_);
     if (!isovalues) return isovalues.error();
     isovalues_ = *std::move(isovalues);
     if (!plan_.names.by_value() && !plan_.names.by_time()) return {};
@@ -135,19 +172,22 @@ Result<void> ExtractRun::choose_values(const PointField& field, std::size_t step
     return {};
 }
 
-void ExtractRun::say_what_packing_found(const Grid& grid) {
-    const PackReport& pack = numbers_.pack;
-    if (pack.cells_left_out > 0) console_.note(cells_left_out_note(grid));
-    if (pack.coarse_clusters > 0) {
-        console_.note(fmt::format(
-            "in {} of {} clusters rounding to float32 moves points by over a thousandth of the shortest edge; "
-            "--precision double keeps them",
-            grouped(pack.coarse_clusters), grouped(pack.clusters)));
-    }
+void ExtractRun::say_what_the_step_holds(const Grid& grid) {
+    if (numbers_.cells_left_out > 0) console_.note(cells_left_out_note(grid));
     if (numbers_.field.flushed > 0) {
         console_.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0",
                                   grouped(numbers_.field.flushed), numbers_.field.name));
     }
+}
+
+void ExtractRun::say_what_rounding_moves() {
+    std::string where;
+    if (numbers_.pack && numbers_.pack->coarse_clusters > 0)
+        where = fmt::format("in {} of {} clusters", grouped(numbers_.pack->coarse_clusters), grouped(numbers_.pack->clusters));
+    else if (coarse_tets_ > 0)
+        where = fmt::format("in {} cut tets", grouped(coarse_tets_));
+    if (where.empty()) return;
+    console_.note(where + " rounding to float32 moves points by over a thousandth of the shortest edge; --precision double keeps them");
 }
 
 void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
@@ -170,13 +210,24 @@ void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
     }
 }
 
+Result<std::vector<Extraction>> ExtractRun::extract(std::span<const double> isovalues, const ExtractOptions& options) {
+    if (!plan_.method.brute) return extractor_.extract(isovalues, options);
+    Result<ExtractedOnce> once =
+        extract_once(grid_, field_, isovalues, {options, command_.precision}, console_.progress());
+    if (!once) return once.error();
+    numbers_.field = once->field;
+    numbers_.cells_left_out = once->cells_left_out;
+    coarse_tets_ += once->coarse_tets;
+    return std::move(once->surfaces);
+}
+
 Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::optional<double> time) {
     ExtractOptions options = plan_.extract;
     options.point_fields = fields_.point;
     options.cell_fields = fields_.cell;
     const Stopwatch extracting;
     for (const double isovalue : isovalues) console_.detail("extracting " + shortest(isovalue));
-    Result<std::vector<Extraction>> extractions = extractor_.extract(isovalues, options);
+    Result<std::vector<Extraction>> extractions = extract(isovalues, options);
     if (!extractions) return extractions.error();
     const double seconds = extracting.seconds() / static_cast<double>(isovalues.size());
     numbers_.engine = extractor_.engine_name();
@@ -230,6 +281,10 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
             if (one_file) joined.push_back(std::move((*surfaces)[i]));
             else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
         }
+    }
+    if (plan_.method.brute) {
+        say_what_the_step_holds(grid_);
+        say_what_rounding_moves();
     }
     if (!one_file) return {};
     return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());

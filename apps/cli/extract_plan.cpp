@@ -62,6 +62,25 @@ Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan,
     return {};
 }
 
+/// Packing takes as long as brute takes for this many surfaces, or somewhat less.
+constexpr std::size_t most_surfaces_by_brute = 32;
+
+Result<Method> choose_method(const ExtractCommand& command, std::size_t steps) {
+    const bool on_device = command.engine == EngineChoice::vulkan ||
+                           (command.engine == EngineChoice::automatic && !command.device.name.empty() && command.device.name != "none");
+    if (command.method == MethodChoice::clusters) return Method{false, "asked for"};
+    if (command.method == MethodChoice::brute) {
+        if (!on_device) return Method{true, "asked for"};
+        return Error{ErrorCode::invalid_argument, "--method brute was asked for, but devices take packed grids only: clusters"};
+    }
+    if (on_device) return Method{false, "auto: devices take packed grids"};
+    const std::size_t isovalues = std::max<std::size_t>({command.isovalues.size(), static_cast<std::size_t>(command.levels), 1});
+    const std::size_t surfaces = isovalues > most_surfaces_by_brute ? isovalues : isovalues * steps; // neither overflows
+    return Method{surfaces <= most_surfaces_by_brute,
+                  fmt::format("auto: {} surface{}, and packing pays for more than {}", surfaces, surfaces == 1 ? "" : "s",
+                              most_surfaces_by_brute)};
+}
+
 /// --with, or all point fields that the format can hold; nothing means all.
 Result<std::optional<CarriedFields>> plan_carried(const ExtractCommand& command, const GridSource& source,
                                                   bool format_holds_fields) {
@@ -94,6 +113,9 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     if (!steps) return steps.error();
     plan.steps = *std::move(steps);
     if (Result<void> names = check_names(command, plan, source.info()); !names) return names.error();
+    Result<Method> method = choose_method(command, plan.steps.size());
+    if (!method) return method.error();
+    plan.method = *std::move(method);
 
     Result<FoundField> field = choose_field(source, command.field);
     if (!field) return field.error();

@@ -19,9 +19,18 @@
 
 namespace isotet::cli {
 
+/// How surfaces are made.
+struct Method {
+    bool brute = false; ///< straight from the arrays of each step, which are not packed
+    std::string why;
+
+    const char* name() const noexcept { return brute ? "brute" : "clusters"; }
+};
+
 struct ExtractPlan {
     OutputNames names{""};
     std::vector<std::size_t> steps;
+    Method method;
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
     FieldsToRead read;

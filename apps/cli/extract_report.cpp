@@ -27,15 +27,17 @@ std::uint64_t process_peak_bytes() {
 }
 
 std::string memory_text(const ExtractNumbers& numbers) {
-    const PackReport& pack = numbers.pack;
+    const std::string rest =
+        fmt::format("extracting {}, whole process {}", bytes_text(numbers.transient_peak()), bytes_text(process_peak_bytes()));
+    if (!numbers.pack) return rest;
+    const PackReport& pack = *numbers.pack;
     std::string text = "packed " + bytes_text(pack.bytes);
     if (pack.tets > 0) {
         text += fmt::format(" ({:.1f} bytes a tet)", static_cast<double>(pack.bytes) / static_cast<double>(pack.tets));
     }
     if (pack.source_bytes > 0) text += ", source cells " + bytes_text(pack.source_bytes);
     if (pack.gradient_bytes > 0) text += ", gradients " + bytes_text(pack.gradient_bytes);
-    return fmt::format("{}, extracting {}, whole process {}", text, bytes_text(numbers.transient_peak()),
-                       bytes_text(process_peak_bytes()));
+    return text + ", " + rest;
 }
 
 std::string field_text(const ExtractNumbers& numbers) {
@@ -60,27 +62,38 @@ std::string device_text(const ExtractNumbers& numbers) {
                        bytes_text(sum.uploaded_bytes), bytes_text(sum.downloaded_bytes), grouped(sum.page_loads));
 }
 
-std::string facts_table(const ExtractNumbers& numbers) {
-    const PackReport& pack = numbers.pack;
-    Table table = facts();
-    table.row({"grid", fmt::format("{} ({})", numbers.grid, numbers.format)});
-    table.row({"cells", grouped(numbers.cells)});
+/// What packing counts.
+void add_pack_rows(const PackReport& pack, Table& table) {
     table.row({"points", fmt::format("{} used", grouped(pack.points))});
     table.row({"tets", grouped(pack.tets)});
-    for (const auto& [count, what] : {std::pair{pack.cells_left_out, "cells left out"},
-                                      {pack.collapsed_tets, "collapsed tets, dropped"},
+    for (const auto& [count, what] : {std::pair{pack.collapsed_tets, "collapsed tets, dropped"},
                                       {pack.repeated_tets, "repeated tets, dropped"},
                                       {pack.inverted_tets, "inverted tets"},
                                       {pack.flat_tets, "flat tets"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
+}
+
+std::string time_text(const ExtractNumbers& numbers) {
+    std::string text = "read " + seconds_text(numbers.read_seconds);
+    if (numbers.pack) text += ", pack " + seconds_text(numbers.pack_seconds);
+    if (numbers.engine == "vulkan") text += ", upload " + seconds_text(numbers.upload_seconds);
+    return text;
+}
+
+std::string facts_table(const ExtractNumbers& numbers) {
+    Table table = facts();
+    table.row({"grid", fmt::format("{} ({})", numbers.grid, numbers.format)});
+    table.row({"cells", grouped(numbers.cells)});
+    if (numbers.cells_left_out > 0) table.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
+    if (numbers.pack) add_pack_rows(*numbers.pack, table);
     table.row({"field", field_text(numbers)});
-    table.row({"engine", fmt::format("{}, {} packing, {} thread{}", numbers.engine_text,
+    table.row({"method", fmt::format("{} ({})", numbers.method.name(), numbers.method.why)});
+    table.row({"engine", fmt::format("{}, {} precision, {} thread{}", numbers.engine_text,
                                      numbers.precision == Precision::single ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
-    table.row({"time", fmt::format("read {}, pack {}{}", seconds_text(numbers.read_seconds), seconds_text(numbers.pack_seconds),
-                                   numbers.engine == "vulkan" ? ", upload " + seconds_text(numbers.upload_seconds) : "")});
+    table.row({"time", time_text(numbers)});
     if (numbers.engine == "vulkan") table.row({"device", device_text(numbers)});
     return table.text();
 }
@@ -117,21 +130,23 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["grid"] = json_text(numbers.grid);
     report["format"] = numbers.format;
     report["cells"] = numbers.cells;
-    report["points"] = numbers.pack.points;
-    report["tets"] = numbers.pack.tets;
-    report["cells_left_out"] = numbers.pack.cells_left_out;
+    report["points"] = numbers.pack ? Json(numbers.pack->points) : Json(nullptr);
+    report["tets"] = numbers.pack ? Json(numbers.pack->tets) : Json(nullptr);
+    report["cells_left_out"] = numbers.cells_left_out;
     report["field"] = json_text(numbers.field.name);
     report["range"] = {numbers.field.lower, numbers.field.upper};
     report["no_data_points"] = numbers.field.no_data;
     report["engine"] = numbers.engine;
-    report["method"] = "clusters";
+    report["method"] = numbers.method.name();
+    report["method_why"] = numbers.method.why;
     report["precision"] = numbers.precision == Precision::single ? "float" : "double";
     report["threads"] = numbers.threads;
     report["seconds"] = {{"read", numbers.read_seconds}, {"pack", numbers.pack_seconds}};
     if (numbers.engine == "vulkan") report["seconds"]["upload"] = numbers.upload_seconds;
-    report["bytes"] = {{"packed", numbers.pack.bytes},
-                       {"sources", numbers.pack.source_bytes},
-                       {"normals", numbers.pack.gradient_bytes},
+    const PackReport pack = numbers.pack.value_or(PackReport{});
+    report["bytes"] = {{"packed", pack.bytes},
+                       {"sources", pack.source_bytes},
+                       {"normals", pack.gradient_bytes},
                        {"transient_peak", numbers.transient_peak()}};
     Json list = Json::array();
     for (const SurfaceNumbers& surface : numbers.surfaces) {

@@ -11,6 +11,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
+#include "extract_plan.hpp"
 #include "extractor.hpp"
 #include "json_output.hpp"
 #include "options.hpp"
@@ -33,10 +34,12 @@ struct SurfaceNumbers {
 struct ExtractNumbers {
     std::string grid, format;
     std::size_t cells = 0;
-    PackReport pack;   ///< of the last packing
+    std::optional<PackReport> pack; ///< of the last packing; nothing where nothing is packed
+    std::uint64_t cells_left_out = 0;
     FieldReport field; ///< of the last time step
     bool averaged = false;
     Precision precision = Precision::single;
+    Method method;
     std::string engine = "cpu", engine_text = "cpu"; ///< of the last surface; in words
     unsigned threads = 1;
     double read_seconds = 0, pack_seconds = 0, upload_seconds = 0;

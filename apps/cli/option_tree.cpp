@@ -40,7 +40,8 @@ isovalue; with {value} or {time} in OUT there is one file each, named by the sho
 that were complete when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of
 the range is taken.
 
-A point whose value equals the isovalue counts as above it. Triangles face the side of higher values.
+A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. All methods give the
+same vertices and triangles, but not in the same order.
 
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
@@ -178,6 +179,11 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
     add_choice<Precision>(app, "--precision", extract.precision,
                           {{"float", Precision::single}, {"double", Precision::double_}},
                           "Precision of the packed grid");
+    add_choice<MethodChoice>(
+        app, "--method", extract.method,
+        {{"auto", MethodChoice::automatic}, {"clusters", MethodChoice::clusters}, {"brute", MethodChoice::brute}},
+        "How: clusters packs the grid first, which pays for many surfaces; brute goes through all cells for each surface; auto "
+        "is brute for up to 32 surfaces, isovalues times time steps, and clusters beyond and on devices");
     add_choice<EngineChoice>(
         app, "--engine", extract.engine,
         {{"auto", EngineChoice::automatic},

@@ -52,6 +52,9 @@ struct DeviceChoice {
     std::optional<std::uint64_t> memory; ///< bytes at most
 };
 
+/// Whether the grid is packed first.
+enum class MethodChoice : std::uint8_t { automatic, clusters, brute };
+
 struct ExtractCommand {
     CommonOptions common;
     GridOptions grid;
@@ -67,6 +70,7 @@ struct ExtractCommand {
     bool edge_ends = false;
     bool source_cells = false;
     Precision precision = Precision::single;
+    MethodChoice method = MethodChoice::automatic;
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
 };

@@ -21,7 +21,7 @@ STYLE = {
     "wheel_span_space": dict(color="#cc79a7", dashed=True),
 }
 SHORT = {
-    "clusters": "isotet, packed before", "once": "isotet, pack and extract", "pack": "isotet, pack",
+    "clusters": "isotet, packed before", "once": "isotet, from arrays", "pack": "isotet, pack",
     "vtk_merged": "VTK merged", "vtk_unmerged": "VTK not merged", "vtk_span_space": "VTK, span space",
     "vtk_contour_grid": "VTK contour grid, serial", "wheel_merged": "VTK wheel",
     "wheel_span_space": "VTK wheel, span space",
@@ -71,7 +71,7 @@ def memory_bars(results: list[CaseResult]) -> list[svg.Bar]:
         group = f"{result.case.name}, {result.tets / result.points:.2f} tetrahedra a point"
         kept = result.packed["pack"]["bytes"] / result.packed["pack"]["tets"]
         bars.append(svg.Bar(group, "isotet, packed grid (stays)", kept, STYLE["clusters"]["color"]))
-        for key, label in (("pack", "isotet, packing (peak)"), ("once", "isotet, pack and extract (peak)"),
+        for key, label in (("pack", "isotet, packing (peak)"), ("once", "isotet, one surface from arrays (peak)"),
                            ("clusters", "isotet, one surface (peak)"),
                            ("vtk_merged", "VTK merged, one surface (peak)"), ("vtk_tree", "VTK, span space (peak)"),
                            ("wheel_merged", "VTK wheel, one surface (peak)")):

@@ -138,11 +138,13 @@ class Race:
             if self.tied[isovalue] or ("vtk_merged", isovalue) not in counts:
                 continue
             self.result.compared += 1
-            ours, theirs = counts["clusters", isovalue], counts["vtk_merged", isovalue]
-            if ours != theirs:
-                self.result.differences.append(
-                    f"{self.result.case.name}, isovalue {isovalue}: isotet has {ours[0]} vertices and {ours[1]} "
-                    f"triangles, VTK merged {theirs[0]} and {theirs[1]}")
+            theirs = counts["vtk_merged", isovalue]
+            for method in ("clusters", "once"):
+                ours = counts[method, isovalue]
+                if ours != theirs:
+                    self.result.differences.append(
+                        f"{self.result.case.name}, isovalue {isovalue}: {BY_KEY[method].label} has {ours[0]} vertices "
+                        f"and {ours[1]} triangles, VTK merged {theirs[0]} and {theirs[1]}")
 
     def measure_peak(self, folder: Path, method: Method, before: tuple[str, ...]) -> None:
         if not self.takes_part(method):

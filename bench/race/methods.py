@@ -26,6 +26,7 @@ def _once_a_round(key: str, contestant: str, label: str, *command: str) -> Metho
 
 METHODS = [
     _surface("clusters", "isotet", "isotet, packed before", "extract", "main", "{isovalue}"),
+    _surface("once", "isotet", "isotet, from arrays, nothing kept", "once", "{isovalue}"),
     _surface("face_normals", "isotet", "isotet, face normals", "extract", "main", "{isovalue}", "face_normals"),
     _surface("gradient_normals", "isotet", "isotet, gradient normals",
              "extract", "full", "{isovalue}", "gradient_normals"),
@@ -46,7 +47,6 @@ METHODS = [
     _once_a_round("pack", "isotet", "isotet, pack", "pack", "main"),
     _once_a_round("pack_full", "isotet", "isotet, pack with gradients and source cells",
                   "pack", "full", "gradients", "source_cells"),
-    _once_a_round("once", "isotet", "isotet, pack and extract, nothing kept", "once", "{isovalue}"),
     _once_a_round("new_field", "isotet", "isotet, new field on a packed grid", "set_field", "main"),
     _once_a_round("vtk_tree", "vtk", "VTK span space and one surface", "tree", "{isovalue}"),
     _once_a_round("wheel_tree", "wheel", "VTK wheel, span space and one surface", "tree", "{isovalue}"),

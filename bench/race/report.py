@@ -147,7 +147,7 @@ def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
                      f"{once.speedup_best:.2f} x, {once.speedup_median:.2f} x" if once.speedup_best else "",
                      three(of.get("vtk_tree"))])
     return table(["grid", "pack", "million tets a second", "new field", "million tets a second",
-                  "pack and extract, nothing kept", "against the faster merged VTK (best, median)",
+                  "one surface from arrays, nothing kept", "against the faster merged VTK (best, median)",
                   "VTK span space and one surface"], rows)
 
 
@@ -180,7 +180,7 @@ def memory_table(results: list[CaseResult]) -> str:
                      f"{full['source_bytes'] / full['tets']:.2f}", f"{full['gradient_bytes'] / full['tets']:.2f}",
                      *(peak.get(key, "") for key in MEASURED_FOR_MEMORY)])
     return "Bytes a tetrahedron. Peaks: beyond the input, in a process of its own.\n\n" + table(
-        ["grid", "tets a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: pack and extract",
+        ["grid", "tets a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: one surface from arrays",
          "peak: one surface, packed before", "peak: VTK merged", "peak: VTK span space", "peak: VTK wheel"], rows)
 
 

@@ -30,8 +30,8 @@ const Array* field(const std::vector<SurfaceField>& fields, std::string_view nam
 
 TEST_F(Program, ExtractHasEveryPromisedKey) {
     const json report = json_of({"extract", "make:kuhn:6:sphere", path("s.vtp"), "-i", "0.5"});
-    for (const char* key : {"schema", "points", "tets", "cells_left_out", "field", "engine", "method", "threads",
-                            "seconds", "bytes", "surfaces"}) {
+    for (const char* key : {"schema", "points", "tets", "cells_left_out", "field", "engine", "method", "method_why",
+                            "threads", "seconds", "bytes", "surfaces"}) {
         EXPECT_TRUE(report.contains(key)) << key;
     }
     for (const char* key : {"read", "pack"}) EXPECT_TRUE(report["seconds"][key].is_number()) << key;
@@ -44,10 +44,58 @@ TEST_F(Program, ExtractHasEveryPromisedKey) {
         EXPECT_TRUE(surface.contains(key)) << key;
     }
     for (const char* key : {"extract", "write"}) EXPECT_TRUE(surface["seconds"][key].is_number()) << key;
-    EXPECT_EQ(report["points"], 343);
-    EXPECT_EQ(report["tets"], 1296);
+    EXPECT_EQ(report["cells"], 1296);
     EXPECT_EQ(report["field"], "sphere");
     EXPECT_EQ(surface["file"], path("s.vtp"));
+}
+
+TEST_F(Program, ExtractGivesTheSameSurfaceByEveryMethod) {
+    const auto extracted = [&](const std::string& method, const std::string& out) {
+        return json_of({"extract", "make:mixed:6:integer", path(out), "-i", "2", "-i", "2.5", "--method", method, "--normals", "gradient"});
+    };
+    const json clusters = extracted("clusters", "c.vtp"), brute = extracted("brute", "b.vtp");
+    for (const char* key : {"vertices", "triangles", "tied_points", "false_ties"})
+        for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(clusters["surfaces"][i][key], brute["surfaces"][i][key]) << key;
+    EXPECT_EQ(clusters["range"], brute["range"]);
+    EXPECT_EQ(read_back(path("b.vtp")).surface.triangle_count(), read_back(path("c.vtp")).surface.triangle_count());
+    EXPECT_EQ(clusters["method"], "clusters");
+    EXPECT_EQ(clusters["points"], 451);
+    EXPECT_TRUE(clusters["tets"].is_number_unsigned());
+    EXPECT_GT(clusters["bytes"]["packed"], 0);
+    EXPECT_EQ(brute["method"], "brute");
+    EXPECT_TRUE(brute["points"].is_null());
+    EXPECT_EQ(brute["bytes"]["packed"], 0);
+    for (const json& report : {clusters, brute}) EXPECT_EQ(report["method_why"], "asked for");
+}
+
+TEST_F(Program, ExtractPacksForManySurfacesOnlyAndSaysWhy) {
+    const auto method = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const json report = json_of(arguments);
+        EXPECT_NE(report["method_why"].get<std::string>().find("auto: "), std::string::npos);
+        return report["method"].get<std::string>();
+    };
+    EXPECT_EQ(method({}), "brute");
+    EXPECT_EQ(method({"-i", "0.5"}), "brute");
+    EXPECT_EQ(method({"--levels", "32"}), "brute");
+    EXPECT_EQ(method({"--levels", "33"}), "clusters");
+    EXPECT_EQ(method({"--levels", "33", "--engine", "reference"}), "clusters");
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "0.5"});
+    EXPECT_NE(run.out.find("brute (auto: 1 surface, and packing pays for more than 32)"), std::string::npos) << run.out;
+}
+
+TEST_F(Program, ExtractByBruteTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {
+    std::string grid = small_grid({{"p", {1, 2, 3, 4, 8}}});
+    put_content(path("g.msh"), grid);
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--method", "brute"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("isotet: note: no isovalue was given: 4.5"), std::string::npos) << run.err;
+}
+
+TEST_F(Program, ExtractOnADeviceByBruteIsRefused) {
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "--engine", "vulkan", "--device", "software", "--method", "brute"});
+    EXPECT_EQ(run.status, run.err.find("--method brute") == std::string::npos ? 4 : 2) << run.err;
 }
 
 TEST_F(Program, ExtractWritesTheNumbersThatItTells) {
