@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "core/block.hpp"
+#include "core/block_reuse.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -34,6 +35,8 @@ std::size_t page_size() {
     return size;
 }
 
+std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
+
 std::size_t most_to_keep() {
     static const std::size_t bytes = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) / 64 * page_size();
     return bytes;
@@ -50,7 +53,7 @@ std::byte* map_pages(std::size_t bytes) {
 /// Maps whole pages, from a huge page's size on beginning at one. What is left over behind the last huge page stays in
 /// small ones, so that no more memory is used than was asked for.
 Block map_block(std::size_t bytes) {
-    const std::size_t size = (bytes + page_size() - 1) / page_size() * page_size();
+    const std::size_t size = round_up(bytes, page_size());
     if (size < bytes || size + huge_page < size) throw std::bad_alloc();
     if (size < huge_page) return {map_pages(size), size};
     std::byte* const begin = map_pages(size + huge_page);
@@ -61,33 +64,56 @@ Block map_block(std::size_t bytes) {
     return {begin + before, size};
 }
 
-/// Blocks given back, waiting for the next one who wants about as much.
+/// Blocks given back, waiting for the next one who wants about as much; and what is in use.
 class KeptBlocks {
 public:
-    /// The smallest block that is large enough and not more than a quarter too large.
+    /// The smallest block that is large enough and not more than a quarter too large; with reuse, also a piece of a larger one.
     Block take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
         auto best = blocks_.end();
         for (auto block = blocks_.begin(); block != blocks_.end(); ++block)
-            if (block->bytes >= bytes && block->bytes - bytes <= bytes / 4 && (best == blocks_.end() || block->bytes < best->bytes))
+            if (block->bytes >= bytes && (reuses_ || block->bytes - bytes <= bytes / 4) &&
+                (best == blocks_.end() || block->bytes < best->bytes))
                 best = block;
         if (best == blocks_.end()) return {};
-        const Block taken = *best;
-        blocks_.erase(best);
+        Block taken = *best;
+        const std::size_t piece = round_up(bytes, bytes < huge_page ? page_size() : huge_page);
+        if (taken.bytes > piece + std::max(large_block, bytes / 4)) {
+            taken.bytes = piece;
+            best->data = static_cast<std::byte*>(best->data) + piece;
+            best->bytes -= piece;
+        } else {
+            blocks_.erase(best);
+        }
         bytes_ -= taken.bytes;
+        in_use_ += taken.bytes;
         return taken;
+    }
+
+    /// A new block. With reuse, the oldest kept ones go where both together would raise the peak.
+    Block map(std::size_t bytes) {
+        {
+            const std::lock_guard lock(mutex_);
+            std::size_t old = 0;
+            while (reuses_ && old < blocks_.size() && in_use_ + bytes_ + bytes > peak_) release(blocks_[old++]);
+            forget(old);
+        }
+        const Block block = map_block(bytes);
+        const std::lock_guard lock(mutex_);
+        in_use_ += block.bytes;
+        peak_ = std::max(peak_, in_use_ + bytes_);
+        return block;
     }
 
     /// Keeps the block, and lets the oldest go for it. False when it is larger than all that may be kept.
     bool keep(Block block) {
-        if (block.bytes > most_to_keep()) return false;
         const std::lock_guard lock(mutex_);
+        in_use_ -= block.bytes;
+        if (!reuses_ && block.bytes > most_to_keep()) return false;
         if (blocks_.size() == blocks_.capacity()) blocks_.reserve(2 * blocks_.size() + 16);
-        std::size_t old = 0;
-        for (; bytes_ + block.bytes > most_to_keep(); ++old) release(blocks_[old]);
-        blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(old));
         blocks_.push_back(block);
         bytes_ += block.bytes;
+        let_go_of_too_many();
         return true;
     }
 
@@ -99,15 +125,36 @@ public:
         return dropped;
     }
 
+    void begin_reuse() {
+        const std::lock_guard lock(mutex_);
+        if (++reuses_ == 1) peak_ = in_use_ + bytes_;
+    }
+    void end_reuse() {
+        const std::lock_guard lock(mutex_);
+        --reuses_;
+        let_go_of_too_many();
+    }
+
 private:
     void release(const Block& block) {
         munmap(block.data, block.bytes);
         bytes_ -= block.bytes;
     }
+    void forget(std::size_t oldest) { blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(oldest)); }
+
+    void let_go_of_too_many() {
+        if (reuses_) return;
+        std::size_t old = 0;
+        while (bytes_ > most_to_keep()) release(blocks_[old++]);
+        forget(old);
+    }
 
     std::mutex mutex_;
     std::vector<Block> blocks_; ///< oldest first
-    std::size_t bytes_ = 0;
+    std::size_t bytes_ = 0;     ///< of them
+    std::size_t in_use_ = 0;
+    std::size_t peak_ = 0; ///< of both, since reuse began
+    int reuses_ = 0;       ///< BlockReuse that live
 };
 
 /// Never destroyed: arrays may be given back while the process ends.
@@ -118,10 +165,14 @@ KeptBlocks& kept_blocks() {
 
 } // namespace
 
+BlockReuse::BlockReuse() { kept_blocks().begin_reuse(); }
+BlockReuse::~BlockReuse() { kept_blocks().end_reuse(); }
+
 Block take_block(std::size_t bytes) {
     if (!is_large(bytes)) return {::operator new(bytes), bytes};
-    if (const Block kept = kept_blocks().take(bytes); kept.data) return kept;
-    return map_block(bytes);
+    KeptBlocks& kept = kept_blocks();
+    if (const Block block = kept.take(bytes); block.data) return block;
+    return kept.map(bytes);
 }
 
 void give_back(Block block) noexcept {

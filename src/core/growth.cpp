@@ -18,7 +18,10 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// has those of the others.
 class PointNumbers {
 public:
-    explicit PointNumbers(std::uint32_t lowest) : lowest_(lowest), near_(1 << 16, none) { rehash(1 << 12); }
+    explicit PointNumbers(std::uint32_t lowest) : lowest_(lowest), near_(1 << 16) {
+        std::fill(near_.begin(), near_.end(), none);
+        rehash(1 << 12);
+    }
 
     std::uint32_t number(std::uint32_t point) {
         if (const std::uint32_t at = point - lowest_; at < near_.size()) {
@@ -57,7 +60,7 @@ private:
     }
 
     std::uint32_t lowest_;
-    std::vector<std::uint32_t> near_; ///< by rank from the lowest on: the number, or none
+    Buffer<std::uint32_t> near_; ///< by rank from the lowest on: the number, or none
     std::vector<Slot> slots_;
     std::vector<std::uint32_t> points_;
     std::size_t mask_ = 0, far_ = 0;
@@ -161,7 +164,7 @@ public:
             vertex.first = first;
             first += vertex.left;
         }
-        tets_of_.resize(4 * tets.size());
+        tets_of_ = Buffer<std::uint32_t>(4 * tets.size());
         for (std::uint32_t i = 0; i < corners_.size(); ++i)
             for (const std::uint32_t v : corners_[i]) tets_of_[vertices_[v].first + vertices_[v].listed++] = i;
         for (std::size_t k = 1; k < weight_.size(); ++k) weight_[k] = static_cast<std::uint32_t>(score_one + 20 * score_one / k);
@@ -169,12 +172,12 @@ public:
 
     BlockClusters run() {
         BlockClusters out;
-        out.order.reserve(corners_.size());
-        out.tets.reserve(corners_.size());
+        out.order = Buffer<std::uint32_t>(corners_.size());
+        out.tets = Buffer<StoredTet>(corners_.size());
         out.points.reserve(corners_.size() / 2);
-        while (out.order.size() < corners_.size()) {
+        for (std::size_t first = 0; first < corners_.size();) {
             grow_one();
-            finish_cluster(out);
+            first += finish_cluster(out, first);
         }
         return out;
     }
@@ -269,10 +272,11 @@ private:
         vertex.gain = 0;
     }
 
-    void finish_cluster(BlockClusters& out) {
-        const std::size_t first = out.order.size();
-        tets_.drain([&](std::uint32_t tet) { out.order.push_back(tet); }); // along the curve: tets of a group are close together
-        const std::span<const std::uint32_t> tets(out.order.data() + first, out.order.size() - first);
+    /// `first`: where the cluster's tets go; returns how many they are.
+    std::size_t finish_cluster(BlockClusters& out, std::size_t first) {
+        const std::span<std::uint32_t> tets(out.order.data() + first, tets_.size());
+        std::size_t next = 0;
+        tets_.drain([&](std::uint32_t tet) { tets[next++] = tet; }); // along the curve: tets of a group are close together
 
         // A point that joined for a tet which was not completed is not in the cluster: places go to those that tets use.
         for (const std::uint32_t v : points_) vertices_[v].place = none;
@@ -284,11 +288,9 @@ private:
                 vertices_[v].place = place++;
                 out.points.push_back(numbers_.points()[v]);
             }
-        for (const std::uint32_t tet : tets) {
-            StoredTet stored;
-            for (std::size_t k = 0; k < 4; ++k) stored.corners[k] = static_cast<std::uint8_t>(vertices_[corners_[tet][k]].place);
-            out.tets.push_back(stored);
-        }
+        for (std::size_t i = 0; i < tets.size(); ++i)
+            for (std::size_t k = 0; k < 4; ++k)
+                out.tets[first + i].corners[k] = static_cast<std::uint8_t>(vertices_[corners_[tets[i]][k]].place);
         out.clusters.push_back({static_cast<std::uint32_t>(tets.size()), place});
 
         // Forget what only this cluster knew. Tets that were begun but not completed start from nothing again.
@@ -304,6 +306,7 @@ private:
         last_points_.swap(points_);
         points_.clear();
         full_ = false;
+        return tets.size();
     }
 
     /// Calls f for every tet of the vertex that is in no cluster yet, and drops the others from its list for good.
@@ -327,10 +330,10 @@ private:
     static constexpr std::size_t score_one = 256;
 
     PointNumbers numbers_;
-    std::vector<RankedTet> corners_;
+    Buffer<RankedTet> corners_;
     std::vector<std::uint8_t> inside_;     ///< corners of each tet that are in the growing cluster; or taken
     std::vector<Vertex> vertices_;
-    std::vector<std::uint32_t> tets_of_;
+    Buffer<std::uint32_t> tets_of_;
     Candidates candidates_;
     TetSet tets_;                          ///< of the growing cluster
     std::vector<std::uint32_t> points_, last_points_;

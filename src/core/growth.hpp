@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/buffer.hpp"
 #include "core/packed.hpp"
 #include "core/tet_order.hpp"
 
@@ -22,8 +23,8 @@ struct BlockClusters {
         std::uint32_t tets, points;
     };
     std::vector<Cluster> clusters;
-    std::vector<std::uint32_t> order;  ///< the block's tets, cluster by cluster
-    std::vector<StoredTet> tets;       ///< in that order
+    Buffer<std::uint32_t> order;       ///< the block's tets, cluster by cluster
+    Buffer<StoredTet> tets;            ///< in that order
     std::vector<std::uint32_t> points; ///< ranks, cluster by cluster
 };
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/block.hpp"
+#include "core/block_reuse.hpp"
 #include "core/field_storage.hpp"
 #include "core/guard.hpp"
 #include "core/memory.hpp"
@@ -70,20 +70,18 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     if (counts.tets == 0) return nothing_to_contour(grid, *cells);
     if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid.points.tuples())); !ok) return ok.error();
 
+    const BlockReuse reuse;
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;
     auto order = sort_tets(grid, *cells, std::move(counts), options.source_cells, progress);
     if (!order) return order.error();
-    drop_kept_blocks(); // each stage needs other sizes than the last
     Draft draft;
     if (options.precision == Precision::double_) draft.packed.reals = Values<double>{};
     if (auto ok = form_clusters(*std::move(order), cells->count(), draft, progress); !ok) return ok.error();
-    drop_kept_blocks();
     number_points(grid.points.tuples(), draft);
     progress("pack", 0.7);
     if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
     draft.locals.release();
     draft.point_of.release();
-    drop_kept_blocks();
 
     auto packed = std::make_unique<Packed>(std::move(draft.packed));
     packed->storage_cache = std::make_shared<StorageCache>();

@@ -14,7 +14,7 @@ namespace isotet::core {
 namespace {
 
 /// Puts the origins of a block's tets into the order of its clusters.
-void reorder(std::span<TetOrigin> origins, const std::vector<std::uint32_t>& order) {
+void reorder(std::span<TetOrigin> origins, const Buffer<std::uint32_t>& order) {
     const std::vector<TetOrigin> sorted(origins.begin(), origins.end());
     for (std::size_t i = 0; i < order.size(); ++i) origins[i] = sorted[order[i]];
 }
@@ -35,7 +35,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
         const std::size_t begin = b * tets_a_block, size = std::min(tets_a_block, count - begin);
         blocks[b] = grow_clusters({order.tets.data() + begin, size});
         if (source_cells) reorder({order.origins.data() + begin, size}, blocks[b].order);
-        blocks[b].order = {};
+        blocks[b].order.release();
         const std::size_t done = ++finished;
         if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
             progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));

@@ -12,7 +12,6 @@
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
-#include "core/block.hpp"
 #include "core/hilbert.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
@@ -359,7 +358,6 @@ Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts 
             }
         });
     }
-    drop_kept_blocks();
     if (progress.cancelled()) return cancelled();
     progress("pack", 0.05);
 

@@ -5,8 +5,10 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <vector>
 
 #include "core/block.hpp"
+#include "core/block_reuse.hpp"
 #include "core/buffer.hpp"
 
 namespace isotet::core {
@@ -60,6 +62,63 @@ TEST(Block, ManyGivenBackAreKeptOnlyUpToALimit) {
     }
     EXPECT_LT(drop_kept_blocks(), given);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) // whose allocator keeps nothing
+TEST(BlockReuse, CutsUpWhatWasGivenBack) {
+    drop_kept_blocks();
+    const BlockReuse reuse;
+    const Block first = take_block(64 * megabyte);
+    auto* const begin = static_cast<std::byte*>(first.data);
+    std::memset(begin, 1, first.bytes);
+    give_back(first);
+    std::vector<Block> pieces;
+    for (const std::size_t bytes : {20 * megabyte, 300 * megabyte / 1024, 30 * megabyte, 5 * megabyte}) {
+        const Block piece = take_block(bytes);
+        EXPECT_GE(piece.bytes, bytes);
+        EXPECT_GE(static_cast<std::byte*>(piece.data), begin);
+        EXPECT_LE(static_cast<std::byte*>(piece.data) + piece.bytes, begin + first.bytes);
+        for (const Block& other : pieces)
+            EXPECT_TRUE(static_cast<std::byte*>(piece.data) >= static_cast<std::byte*>(other.data) + other.bytes ||
+                        static_cast<std::byte*>(other.data) >= static_cast<std::byte*>(piece.data) + piece.bytes);
+        std::memset(piece.data, 2, piece.bytes);
+        pieces.push_back(piece);
+    }
+    for (const Block& piece : pieces) give_back(piece);
+    EXPECT_EQ(drop_kept_blocks(), first.bytes);
+}
+
+TEST(BlockReuse, KeepsNothingThatWouldRaiseThePeak) {
+    drop_kept_blocks();
+    const BlockReuse reuse;
+    const Block first = take_block(40 * megabyte);
+    give_back(first);
+    const Block second = take_block(60 * megabyte); // the first is not large enough: both together were more than either
+    EXPECT_EQ(drop_kept_blocks(), 0u);
+    const Block third = take_block(20 * megabyte); // 80 MB is the peak from now on
+    give_back(second);
+    const Block fourth = take_block(40 * megabyte);
+    const Block fifth = take_block(8 * megabyte);
+    EXPECT_EQ(drop_kept_blocks(), 12 * megabyte);
+    for (const Block& block : {third, fourth, fifth}) give_back(block);
+    EXPECT_EQ(drop_kept_blocks(), 68 * megabyte);
+}
+
+TEST(BlockReuse, LeavesNoMoreThanIsKeptWithoutIt) {
+    drop_kept_blocks();
+    std::size_t given = 0;
+    {
+        const BlockReuse outer;
+        const BlockReuse inner;
+        std::vector<Block> blocks;
+        for (int i = 0; i < 100; ++i) blocks.push_back(take_block(256 * megabyte)); // never touched
+        for (const Block& block : blocks) {
+            given += block.bytes;
+            give_back(block);
+        }
+    }
+    EXPECT_LT(drop_kept_blocks(), given);
+}
+#endif
 
 } // namespace
 } // namespace isotet::core

@@ -35,7 +35,7 @@ void expect_clusters(const std::vector<Tet>& tets) {
     std::transform(tets.begin(), tets.end(), ranks.begin(), ranked);
     const core::BlockClusters block = core::grow_clusters(ranks);
     ASSERT_EQ(block.order.size(), tets.size());
-    std::vector<std::uint32_t> sorted = block.order;
+    std::vector<std::uint32_t> sorted(block.order.begin(), block.order.end());
     std::sort(sorted.begin(), sorted.end());
     for (std::uint32_t i = 0; i < sorted.size(); ++i)
         ASSERT_EQ(sorted[i], i) << "a tet is missing or twice in the clusters";
