@@ -97,7 +97,7 @@ public:
     /// Uploads a packed grid.
     ///
     /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages that did
-    ///            not fit, for the user's numbers of points and cells, and for ties. When its field or points are set, but
+    ///            not fit, for the user's numbers of points and cells, and for ties, unless it is given up. When its field or points are set, but
     ///            not by the functions below, it must be uploaded again
     /// Cost       about 11 bytes a tet over the bus
     /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more; out_of_memory,
@@ -125,6 +125,13 @@ public:
     /// Cost     PackedGrid::set_points(), and 12 bytes a point over the bus
     /// Errors   as PackedGrid::set_points(): nothing has changed then; the others as set_field()
     Result<void> set_points(PackedGrid& packed, const Array& points, int threads = 0, const Progress& progress = {});
+
+    /// Lets the packed grid go, which may then be changed or destroyed. Extraction stays, without what its numbers are needed
+    /// for: edge ends, source cells, cell fields, and point fields that are not on the device yet; the report then does not tell
+    /// false ties and near ties, and set_field() and set_points() are errors.
+    ///
+    /// Errors   invalid_argument when not all pages are there
+    Result<void> give_up_packed();
 
     std::uint64_t device_bytes() const noexcept; ///< resident arrays and the pages that are there
     bool complete() const noexcept;              ///< all pages are there

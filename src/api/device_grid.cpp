@@ -1,7 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/device_grid.hpp>
 
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "api/finish.hpp"
 #include "api/fits.hpp"
@@ -26,14 +31,30 @@ struct DeviceSurface::Data {
     std::vector<core::Storage> storages; ///< of the point fields that were interpolated on the device: of all, or of none
     ExtractOptions options;
 
-    Result<Extraction> download(const core::Packed& packed) const;
+    Result<Extraction> download(const core::Packed* packed) const;
 };
 
 using FieldsOnDevice = std::vector<std::shared_ptr<const vulkan::CarriedField>>;
 
+/// What extraction must know of a packed grid, also when that was given up.
+struct GridFacts {
+    core::Storage storage;
+    std::array<double, 3> origin{};
+    std::uint64_t changes = 0, user_points = 0;
+    bool gradients = false;
+
+    explicit GridFacts(const core::Packed& packed)
+        : storage(packed.storage), origin(packed.origin), changes(packed.changes), user_points(packed.user_points),
+          gradients(!packed.gradients.empty()) {}
+};
+
 struct DeviceGrid::Data {
     std::unique_ptr<vulkan::GridOnDevice> grid;
     DeviceWork work;
+    std::optional<GridFacts> given_up; ///< of the packed grid that is gone
+
+    GridFacts facts() const { return given_up ? *given_up : GridFacts(*grid->packed()); }
+    Result<void> check_fit(const ExtractOptions& options) const;
 
     Result<void> extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
                          const FieldsOnDevice& fields, const Progress& progress);
@@ -70,8 +91,8 @@ Result<FieldsOnDevice> carry(vulkan::GridOnDevice& grid, const ExtractOptions& o
     if (!grid.complete()) grid.fields().clear(); // pages need the room
     if (!grid.complete()) return fields;
     for (const Field& field : options.point_fields) {
-        auto carried = grid.fields().get(grid.context(), &grid.packed(), field);
-        if (!carried && carried.error().code == ErrorCode::out_of_memory) {
+        auto carried = grid.fields().get(grid.context(), grid.packed(), field);
+        if (!carried && carried.error().code == ErrorCode::out_of_memory && grid.packed()) {
             grid.fields().clear();
             return FieldsOnDevice();
         }
@@ -79,6 +100,11 @@ Result<FieldsOnDevice> carry(vulkan::GridOnDevice& grid, const ExtractOptions& o
         fields.push_back(*std::move(carried));
     }
     return fields;
+}
+
+Error numbers_are_gone() {
+    return {ErrorCode::invalid_argument,
+            "edge ends, source cells and cell fields need the numbers of points and cells of the packed grid, but it was given up"};
 }
 
 DeviceWork work_of(vulkan::WorkDone&& done) {
@@ -96,7 +122,8 @@ DeviceWork work_of(vulkan::WorkDone&& done) {
 } // namespace
 
 Result<void> DeviceGrid::check_same(const PackedGrid& packed) const {
-    if (&packed.data() != &data_->grid->packed())
+    if (data_->given_up) return Error{ErrorCode::invalid_argument, "the packed grid was given up: nothing can be set on the device"};
+    if (&packed.data() != data_->grid->packed())
         return Error{ErrorCode::invalid_argument, "the packed grid to change is not the one that was uploaded to the device"};
     return data_->grid->check_current();
 }
@@ -115,28 +142,30 @@ Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& pa
         grid_options.reserve = options.surface_bytes.value_or(device.memory_free() / 8);
         auto grid = vulkan::GridOnDevice::upload(device.context(), packed.data(), grid_options, progress);
         if (!grid) return std::move(grid).error();
-        return DeviceGrid(std::make_unique<Data>(Data{*std::move(grid), {}}));
+        return DeviceGrid(std::make_unique<Data>(Data{*std::move(grid), {}, {}}));
     });
 }
 
 /// As the device made it; but cell fields, and point fields that were not interpolated there, as after any engine.
-Result<Extraction> DeviceSurface::Data::download(const core::Packed& packed) const {
-    if (auto ok = api::check_fit(options, packed); !ok) return ok.error();
+Result<Extraction> DeviceSurface::Data::download(const core::Packed* packed) const {
+    if (packed)
+        if (auto ok = api::check_fit(options, *packed); !ok) return ok.error();
     const bool fields_are_there = !buffers.fields.empty();
     const bool ends = options.edge_ends || (!options.point_fields.empty() && !fields_are_there);
-    auto raw = buffers.download(*context, &packed, ends);
+    if (!packed && (ends || buffers.parts().sources)) return numbers_are_gone();
+    auto raw = buffers.download(*context, packed, ends);
     if (!raw) return std::move(raw).error();
     ExtractOptions without_normals = options;
     without_normals.normals = Normals::none;
     std::vector<core::Storage> stored_as = storages;
     if (!fields_are_there)
-        for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field.values, packed));
+        for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field.values, *packed));
     Extraction out;
     out.surface = api::finish<float>(origin, without_normals, stored_as, *raw);
     out.surface.normals_kind = options.normals;
     out.surface.normals = raw->normals;
-    if (packed.changes == changes) {
-        api::report_ties(packed, isovalue, stored, raw->tied_points, out.report);
+    if (packed && packed->changes == changes) {
+        api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report);
     } else {
         out.report.tied_points = raw->tied_points;
         out.report.isovalue_stored = stored_in_unit;
@@ -179,6 +208,24 @@ Result<void> DeviceGrid::set_points(PackedGrid& packed, const Array& points, int
     });
 }
 
+Result<void> DeviceGrid::give_up_packed() {
+    if (data_->given_up) return {};
+    GridFacts facts = data_->facts();
+    if (auto ok = data_->grid->give_up_packed(); !ok) return ok;
+    data_->given_up = std::move(facts);
+    return {};
+}
+
+/// Errors   as api::check_fit(), and for what only the packed grid could give
+Result<void> DeviceGrid::Data::check_fit(const ExtractOptions& options) const {
+    if (!given_up) return api::check_fit(options, *grid->packed());
+    if (options.edge_ends || options.source_cells || !options.cell_fields.empty()) return numbers_are_gone();
+    if (options.normals == Normals::gradient && !given_up->gradients) return api::no_gradients();
+    for (const Field& field : options.point_fields)
+        if (auto ok = api::check_length(field, given_up->user_points); !ok) return ok;
+    return {};
+}
+
 std::uint64_t DeviceGrid::device_bytes() const noexcept { return data_->grid->device_bytes(); }
 bool DeviceGrid::complete() const noexcept { return data_->grid->complete(); }
 const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }
@@ -203,7 +250,7 @@ Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const 
 /// `fields`   of the options, on the device; empty: they are interpolated after the download
 Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
                                        const FieldsOnDevice& fields, const Progress& progress) {
-    const core::Packed& packed = grid->packed();
+    const GridFacts packed = facts();
     std::vector<vulkan::Task> tasks;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         auto& data = surfaces[i].data_;
@@ -231,13 +278,13 @@ Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::sp
     return core::guarded("extraction", [&]() -> Result<void> {
         vulkan::GridOnDevice& grid = *data_->grid;
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok;
-        if (auto ok = api::check_fit(options, grid.packed()); !ok) return ok;
+        if (auto ok = data_->check_fit(options); !ok) return ok;
         if (auto ok = grid.check_current(); !ok) return ok;
         const std::uint64_t up = grid.context().staging().uploaded();
         auto fields = carry(grid, options);
         if (!fields) return fields.error();
         auto done = data_->extract(isovalues, surfaces, options, *fields, progress);
-        if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty()) {
+        if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty() && grid.packed()) {
             // Fields can be interpolated elsewhere, surfaces cannot.
             fields->clear();
             grid.fields().clear();
@@ -254,11 +301,10 @@ Result<Extraction> DeviceGrid::download(const DeviceSurface& surface, const Prog
     return core::guarded("downloading the surface", [&]() -> Result<Extraction> {
         if (!surface.data_) return Error{ErrorCode::invalid_argument, "the surface to download was never extracted"};
         const DeviceSurface::Data& data = *surface.data_;
-        const core::Packed& packed = data_->grid->packed();
         vulkan::Staging& staging = data.context->staging();
         const std::uint64_t down = staging.downloaded();
         Result<Extraction> result = Error{};
-        core::with_threads(data.options.threads, [&] { result = data.download(packed); });
+        core::with_threads(data.options.threads, [&] { result = data.download(data_->grid->packed()); });
         data_->work = {};
         data_->work.downloaded_bytes = staging.downloaded() - down;
         progress("download", 1);

@@ -38,6 +38,7 @@ Result<DeviceGrid> DeviceGrid::upload(const Device&, const PackedGrid&, const De
 Result<void> DeviceGrid::check_same(const PackedGrid&) const { return built_without(); }
 Result<void> DeviceGrid::set_field(PackedGrid&, const PointField&, int, const Progress&) { return built_without(); }
 Result<void> DeviceGrid::set_points(PackedGrid&, const Array&, int, const Progress&) { return built_without(); }
+Result<void> DeviceGrid::give_up_packed() { return built_without(); }
 std::uint64_t DeviceGrid::device_bytes() const noexcept { return 0; }
 bool DeviceGrid::complete() const noexcept { return false; }
 const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }

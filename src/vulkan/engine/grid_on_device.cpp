@@ -108,6 +108,7 @@ Result<void> GridOnDevice::make_room(SurfaceBuffers& surface) {
         auto grown = surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::exact);
         if (grown || grown.error().code != ErrorCode::out_of_memory) return grown;
         if (!surface.parts().fields.empty()) return grown; // fields give way before pages do
+        if (!packed_) return grown; // a page that went could not come back
         auto released = cache_->release_one();
         if (!released) return released.error();
         if (!*released) return grown;
@@ -195,8 +196,18 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
     return run_and_read_heads(recorder, one, done);
 }
 
+Result<void> GridOnDevice::give_up_packed() {
+    if (auto ok = check_current(); !ok) return ok;
+    if (!complete())
+        return Error{ErrorCode::invalid_argument,
+                     "not all of the packed grid is on the device: parts of it are yet to be loaded, so it cannot be given up"};
+    packed_ = nullptr;
+    cache_->give_up_packed();
+    return {};
+}
+
 Result<void> GridOnDevice::check_current() const {
-    if (packed_.changes == changes_) return {};
+    if (!packed_ || packed_->changes == changes_) return {};
     return Error{ErrorCode::invalid_argument,
                  "the packed grid has got another field or other points, but not through the grid on the device: it must be "
                  "uploaded again"};

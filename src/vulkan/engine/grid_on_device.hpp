@@ -74,6 +74,10 @@ public:
     /// Errors   invalid_argument when the packed grid has changed since it was uploaded, but not through the two above
     Result<void> check_current() const;
 
+    /// Lets the packed grid go: no page goes any more, and nothing can be set.
+    /// Errors   invalid_argument when not all pages are there; by check_current()
+    Result<void> give_up_packed();
+
     /// Point fields that surfaces carry, by packed point.
     CarriedFields& fields() noexcept { return fields_; }
 
@@ -81,13 +85,13 @@ public:
     const std::shared_ptr<Context>& shared_context() const noexcept { return context_; }
     std::uint64_t device_bytes() const { return resident_.sizes().cost() + cache_->loaded_bytes(); }
     bool complete() const { return cache_->complete(); }
-    const core::Packed& packed() const noexcept { return packed_; }
+    const core::Packed* packed() const noexcept { return packed_; } ///< null when it was given up
     const PageCache& pages() const noexcept { return *cache_; }
     const Resident& resident() const noexcept { return resident_; }
 
 private:
     GridOnDevice(std::shared_ptr<Context> context, const core::Packed& packed) 
-        : context_(std::move(context)), packed_(packed), changes_(packed.changes) {}
+        : context_(std::move(context)), packed_(&packed), changes_(packed.changes) {}
 
     Result<Passes> make_passes(const SurfaceParts& parts);
     Result<bool> extract_together(std::span<Task> tasks, Passes& passes, WorkDone& done);
@@ -101,7 +105,7 @@ private:
     Result<void> make_room(SurfaceBuffers& surface);
 
     std::shared_ptr<Context> context_;
-    const core::Packed& packed_;
+    const core::Packed* packed_;
     std::uint64_t changes_; ///< of the packed grid that the device knows
     Resident resident_;
     std::optional<PageCache> cache_;

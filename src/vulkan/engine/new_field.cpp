@@ -41,9 +41,9 @@ Result<WorkDone> GridOnDevice::take_points(const Progress& progress) {
     WorkDone done;
     const std::uint64_t up = context_->staging().uploaded();
     if (auto ok = cache_->upload_positions(progress); !ok) return ok.error();
-    if (!packed_.gradients.empty())
+    if (!packed_->gradients.empty())
         if (auto ok = cache_->upload_gradients(progress); !ok) return ok.error();
-    changes_ = packed_.changes;
+    changes_ = packed_->changes;
     done.uploaded = context_->staging().uploaded() - up;
     return done;
 }

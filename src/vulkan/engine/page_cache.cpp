@@ -17,14 +17,14 @@ Error cancelled() { return {ErrorCode::cancelled, "uploading the packed grid was
 } // namespace
 
 PageCache::PageCache(Context& context, const core::Packed& packed, std::vector<PlannedPage> plan, Resident& resident)
-    : context_(context), packed_(packed), resident_(resident), plan_(std::move(plan)), pages_(plan_.size()) {
+    : context_(context), packed_(&packed), resident_(resident), plan_(std::move(plan)), pages_(plan_.size()) {
     for (const PlannedPage& page : plan_) entries_.push_back(page.layout);
     find_ranges();
 }
 
 void PageCache::find_ranges() {
     ranges_.resize(plan_.size());
-    const auto& ranges = packed_.as<float>().ranges;
+    const auto& ranges = packed_->as<float>().ranges;
     core::parallel_each(plan_.size(), 1, [&](std::size_t i) {
         core::Range<float> whole{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
         for (std::uint32_t c = plan_[i].first_cluster; c < plan_[i].end_cluster(); ++c) {
@@ -64,9 +64,9 @@ Result<void> PageCache::load_page(std::uint32_t number) {
     auto buffer = context_.memory().take(page.bytes(), Where::device, "page");
     if (!buffer) return std::move(buffer).error();
     std::vector<layout::Cluster> clusters(page.clusters);
-    place_clusters(packed_, page, number, clusters.data());
+    place_clusters(*packed_, page, number, clusters.data());
     core::Buffer<std::uint32_t> words(page.words);
-    fill_page(packed_, page, clusters.data(), words.data());
+    fill_page(*packed_, page, clusters.data(), words.data());
     if (auto ok = context_.staging().upload(*buffer, 0, std::as_bytes(std::span(words.data(), words.size()))); !ok) return ok;
     pages_[number].buffer = *std::move(buffer);
     entries_[number].data = address_of(pages_[number].buffer);
@@ -162,15 +162,15 @@ Result<void> PageCache::upload_points(const void* from, std::size_t components, 
 }
 
 Result<void> PageCache::upload_values(const Progress& progress) {
-    return upload_points(packed_.as<float>().values.data(), 1, &layout::Page::values, progress);
+    return upload_points(packed_->as<float>().values.data(), 1, &layout::Page::values, progress);
 }
 
 Result<void> PageCache::upload_gradients(const Progress& progress) {
-    return upload_points(packed_.gradients.data(), 1, &layout::Page::gradients, progress);
+    return upload_points(packed_->gradients.data(), 1, &layout::Page::gradients, progress);
 }
 
 Result<void> PageCache::upload_positions(const Progress& progress) {
-    return upload_points(packed_.as<float>().positions.data(), 3, &layout::Page::positions, progress);
+    return upload_points(packed_->as<float>().positions.data(), 3, &layout::Page::positions, progress);
 }
 
 Result<void> PageCache::download_group_ranges(core::Packed& packed) const {

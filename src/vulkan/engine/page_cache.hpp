@@ -61,6 +61,9 @@ public:
     /// Brings the ranges of groups, as the device has worked them out, into the packed grid.
     Result<void> download_group_ranges(core::Packed& packed) const;
 
+    /// Lets the packed grid go: what would need it, loading of pages above all, must not be called any more.
+    void give_up_packed() noexcept { packed_ = nullptr; }
+
     /// Which pages an isovalue hits, after the packed grid got other ranges.
     void find_ranges();
 
@@ -78,7 +81,7 @@ private:
     void release(std::uint32_t page);
 
     Context& context_;
-    const core::Packed& packed_;
+    const core::Packed* packed_; ///< null when it was given up
     Resident& resident_;
     std::vector<PlannedPage> plan_;
     std::vector<Loaded> pages_;
