@@ -19,7 +19,7 @@ fi
 
 # What a sanitizer can say nothing about: these look at the tree, at installing, or at the program. And tests on a Vulkan
 # device: drivers and layers leave memory behind and are unloaded, so that their leaks cannot be told from ours by name.
-readonly not_for_address=(cli docs fuzz gpu_engine headers includes install vulkan)
+readonly not_for_address=(cli docs fuzz gpu_engine headers includes install render vulkan)
 readonly for_thread='determinism;laws'
 
 kinds_for_address() {

@@ -3,6 +3,7 @@
 
 #include "device_choice.hpp"
 #include "option_values.hpp"
+#include "render_options.hpp"
 
 namespace isotet::cli {
 
@@ -200,6 +201,16 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
     return app;
 }
 
+CLI::App& add_render(CLI::App& program, RenderCommand& render) {
+    CLI::App& app = add_render_command(program, render);
+    add_device(app, render.device);
+    add_device_memory(app, render.device);
+    add_time(app, render.grid);
+    add_reading(app, render.grid, "--format");
+    add_common(app, render.common);
+    return app;
+}
+
 CLI::App& add_check(CLI::App& program, CheckCommand& check) {
     CLI::App& app = *program.add_subcommand("check", "Measure a surface and look for what should not be there");
     add_file(app, "SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
@@ -272,8 +283,8 @@ std::unique_ptr<CLI::App> make_option_tree(CommandLine& line) {
     program->add_flag("--version", line.version, "Print the version and the facts of the build");
     program->require_subcommand(0, 1);
     for (CLI::App* command :
-         {&add_info(*program, line.info), &add_extract(*program, line.extract), &add_check(*program, line.check),
-          &add_make(*program, line.make), &add_formats(*program, line.formats),
+         {&add_info(*program, line.info), &add_extract(*program, line.extract), &add_render(*program, line.render),
+          &add_check(*program, line.check), &add_make(*program, line.make), &add_formats(*program, line.formats),
           &add_devices(*program, line.devices), &add_docs(*program, line.docs)}) {
         command->callback([&line, command] { line.command = command->get_name(); });
     }

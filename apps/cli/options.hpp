@@ -10,6 +10,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/render.hpp>
 
 namespace isotet::cli {
 
@@ -75,6 +76,19 @@ struct ExtractCommand {
     DeviceChoice device; ///< `name` is empty without --device
 };
 
+struct RenderCommand {
+    CommonOptions common;
+    GridOptions grid; ///< `file` may be a surface
+    std::string out;  ///< empty: called as FILE is
+    FieldChoice field;
+    std::vector<double> isovalues;
+    std::uint64_t levels = 0; ///< 0: `isovalues` say it, or three
+    PictureOptions picture;   ///< the camera aside
+    View view = View::iso;
+    bool parallel = false;
+    DeviceChoice device;
+};
+
 struct CheckCommand {
     CommonOptions common;
     std::string surface;
@@ -107,10 +121,11 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "check", "make", "formats", "devices" or "docs"
+    std::string command; ///< "info", "extract", "render", "check", "make", "formats", "devices" or "docs"
     bool version = false;
     InfoCommand info;
     ExtractCommand extract;
+    RenderCommand render;
     CheckCommand check;
     MakeCommand make;
     FormatsCommand formats;

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -67,6 +68,7 @@ public:
     ~DeviceSurface();
 
     double isovalue() const noexcept;
+    std::array<double, 3> origin() const noexcept; ///< positions are relative to it
     std::uint64_t vertices() const noexcept;
     std::uint64_t triangle_count() const noexcept;
     std::uint64_t device_bytes() const noexcept; ///< taken, with the room that is kept for the next surface

@@ -66,6 +66,7 @@ DeviceSurface& DeviceSurface::operator=(DeviceSurface&&) noexcept = default;
 DeviceSurface::~DeviceSurface() = default;
 
 double DeviceSurface::isovalue() const noexcept { return data_ ? data_->isovalue : 0; }
+std::array<double, 3> DeviceSurface::origin() const noexcept { return data_ ? data_->origin : std::array<double, 3>{}; }
 std::uint64_t DeviceSurface::vertices() const noexcept { return data_ ? data_->buffers.vertices() : 0; }
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return data_ ? data_->buffers.triangle_count() : 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return data_ ? data_->buffers.bytes() : 0; }

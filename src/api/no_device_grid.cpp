@@ -21,6 +21,7 @@ DeviceSurface& DeviceSurface::operator=(DeviceSurface&&) noexcept = default;
 DeviceSurface::~DeviceSurface() = default;
 
 double DeviceSurface::isovalue() const noexcept { return 0; }
+std::array<double, 3> DeviceSurface::origin() const noexcept { return {}; }
 std::uint64_t DeviceSurface::vertices() const noexcept { return 0; }
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return 0; }

@@ -138,6 +138,7 @@ Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device) {
     features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     features.pNext = &found.features12;
     call.vkGetPhysicalDeviceFeatures2(device, &features);
+    found.features = features.features;
     // The structs are copied from here on; links into the old ones would dangle.
     found.properties11.pNext = found.properties12.pNext = found.features12.pNext = nullptr;
 
@@ -196,6 +197,12 @@ std::string why_unusable(const Capabilities& capabilities) {
         return short_of("its room for push constants in bytes", limits.maxPushConstantsSize, needed_push_bytes);
     for (const auto type : {device_memory_type(capabilities), upload_memory_type(capabilities), download_memory_type(capabilities)})
         if (type == Capabilities::none) return "it has no memory that the processor can reach";
+    return {};
+}
+
+std::string why_unable_to_draw(const Capabilities& capabilities) {
+    if (!(capabilities.queues[capabilities.compute_family].flags & VK_QUEUE_GRAPHICS_BIT)) return "no queue takes both compute and graphics work";
+    if (!capabilities.features.fragmentStoresAndAtomics) return "it lacks the feature fragmentStoresAndAtomics";
     return {};
 }
 

@@ -24,6 +24,7 @@ struct Capabilities {
     VkPhysicalDeviceProperties properties{};
     VkPhysicalDeviceVulkan11Properties properties11{};
     VkPhysicalDeviceVulkan12Properties properties12{}; ///< driver, float controls
+    VkPhysicalDeviceFeatures features{};
     VkPhysicalDeviceVulkan12Features features12{};
     VkPhysicalDeviceMemoryProperties memory{};
     std::array<VkDeviceSize, VK_MAX_MEMORY_HEAPS> heap_free{}; ///< of each heap, for this process; its size where not known
@@ -43,6 +44,9 @@ void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& ca
 
 /// Why isotet cannot use the device; empty: it can. A sentence with what is there and what is needed.
 std::string why_unusable(const Capabilities& capabilities);
+
+/// Why isotet cannot draw on a device that it can otherwise use; empty: it can.
+std::string why_unable_to_draw(const Capabilities& capabilities);
 
 /// The public description. `index` is the device's place in the list.
 DeviceInfo describe(const Capabilities& capabilities, std::size_t index);

@@ -41,32 +41,52 @@ namespace isotet::vulkan {
     X(vkAllocateMemory)                   \
     X(vkBeginCommandBuffer)               \
     X(vkBindBufferMemory)                 \
+    X(vkBindImageMemory)                  \
+    X(vkCmdBeginRenderPass)               \
+    X(vkCmdBindIndexBuffer)               \
     X(vkCmdBindPipeline)                  \
     X(vkCmdCopyBuffer)                    \
+    X(vkCmdCopyImageToBuffer)             \
     X(vkCmdDispatch)                      \
     X(vkCmdDispatchIndirect)              \
+    X(vkCmdDraw)                          \
+    X(vkCmdDrawIndexed)                   \
+    X(vkCmdDrawIndexedIndirect)           \
+    X(vkCmdDrawIndirect)                  \
+    X(vkCmdEndRenderPass)                 \
     X(vkCmdFillBuffer)                    \
     X(vkCmdPipelineBarrier)               \
     X(vkCmdPushConstants)                 \
     X(vkCmdResetQueryPool)                \
+    X(vkCmdSetScissor)                    \
+    X(vkCmdSetViewport)                   \
     X(vkCmdUpdateBuffer)                  \
     X(vkCmdWriteTimestamp)                \
     X(vkCreateBuffer)                     \
     X(vkCreateCommandPool)                \
     X(vkCreateComputePipelines)           \
     X(vkCreateFence)                      \
+    X(vkCreateFramebuffer)                \
+    X(vkCreateGraphicsPipelines)          \
+    X(vkCreateImage)                      \
+    X(vkCreateImageView)                  \
     X(vkCreatePipelineCache)              \
     X(vkCreatePipelineLayout)             \
     X(vkCreateQueryPool)                  \
+    X(vkCreateRenderPass)                 \
     X(vkCreateShaderModule)               \
     X(vkDestroyBuffer)                    \
     X(vkDestroyCommandPool)               \
     X(vkDestroyDevice)                    \
     X(vkDestroyFence)                     \
+    X(vkDestroyFramebuffer)               \
+    X(vkDestroyImage)                     \
+    X(vkDestroyImageView)                 \
     X(vkDestroyPipeline)                  \
     X(vkDestroyPipelineCache)             \
     X(vkDestroyPipelineLayout)            \
     X(vkDestroyQueryPool)                 \
+    X(vkDestroyRenderPass)                \
     X(vkDestroyShaderModule)              \
     X(vkEndCommandBuffer)                 \
     X(vkFreeMemory)                       \
@@ -74,6 +94,7 @@ namespace isotet::vulkan {
     X(vkGetBufferMemoryRequirements)      \
     X(vkGetDeviceQueue)                   \
     X(vkGetFenceStatus)                   \
+    X(vkGetImageMemoryRequirements)       \
     X(vkGetPipelineCacheData)             \
     X(vkGetQueryPoolResults)              \
     X(vkMapMemory)                        \

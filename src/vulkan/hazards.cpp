@@ -20,6 +20,12 @@ Meaning meaning_of(Access access) {
     case Access::copy_read: return {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT, 0};
     case Access::copy_write:
         return {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT};
+    case Access::draw_read:
+        return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+                    VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT, 0};
+    case Access::draw_write:
+        return {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_WRITE_BIT};
     case Access::arguments: break;
     }
     return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT, 0};
@@ -27,6 +33,22 @@ Meaning meaning_of(Access access) {
 
 /// Whether `flags` has all of `wanted`.
 bool covers(VkFlags flags, VkFlags wanted) { return (wanted & ~flags) == 0; }
+
+constexpr Access all_kinds[] = {Access::kernel_read, Access::kernel_write, Access::copy_read, Access::copy_write,
+                                Access::arguments,   Access::draw_read,    Access::draw_write};
+
+std::uint32_t bit_of(Access access) { return 1u << static_cast<unsigned>(access); }
+
+/// The kinds of use that a barrier makes what was written visible to. A kind needs all its stages and accesses: kernels and
+/// fragment shaders have accesses in common, but what is visible to the ones need not be to the others.
+std::uint32_t seen_by(const Barrier& barrier) {
+    std::uint32_t kinds = 0;
+    for (const Access kind : all_kinds) {
+        const Meaning meaning = meaning_of(kind);
+        if (covers(barrier.to, meaning.stage) && covers(barrier.used, meaning.access)) kinds |= bit_of(kind);
+    }
+    return kinds;
+}
 
 } // namespace
 
@@ -37,7 +59,7 @@ Barrier Hazards::before(std::span<const BufferUse> uses) {
         if (found == buffers_.end()) continue;
         const History& history = found->second;
         const Meaning now = meaning_of(use.access);
-        if (history.write_stage && !covers(history.visible, now.access)) {
+        if (history.write_stage && !(history.visible & bit_of(use.access))) {
             barrier.from |= history.write_stage;
             barrier.to |= now.stage;
             barrier.written |= history.write_access;
@@ -52,9 +74,10 @@ Barrier Hazards::before(std::span<const BufferUse> uses) {
 
     // Barriers are global: this one stands between earlier and later uses of every buffer.
     if (barrier.from) {
+        const std::uint32_t kinds = seen_by(barrier);
         for (auto& [buffer, history] : buffers_) {
             if (history.write_stage && covers(barrier.from, history.write_stage) && covers(barrier.written, history.write_access))
-                history.visible |= barrier.used;
+                history.visible |= kinds;
             if (covers(barrier.from, history.read_stages)) history.after_reads |= barrier.to;
         }
     }

@@ -17,6 +17,8 @@ enum class Access : std::uint8_t {
     copy_read,
     copy_write, ///< also fills
     arguments,  ///< of an indirect dispatch
+    draw_read,  ///< by shaders of draws, as indices, or as arguments of indirect draws
+    draw_write, ///< by fragment shaders, which may read as well
 };
 
 struct BufferUse {
@@ -42,7 +44,7 @@ private:
     struct History {
         VkPipelineStageFlags write_stage = 0; ///< of the last write; 0: none yet
         VkAccessFlags write_access = 0;
-        VkAccessFlags visible = 0;            ///< uses that barriers have made the last write visible to
+        std::uint32_t visible = 0;            ///< a bit for each Access that barriers have made the last write visible to
         VkPipelineStageFlags read_stages = 0; ///< that read since the last write
         VkPipelineStageFlags after_reads = 0; ///< that barriers make wait for all these reads
     };

@@ -35,6 +35,9 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     features12.bufferDeviceAddress = VK_TRUE;
     features12.scalarBlockLayout = VK_TRUE;
 
+    VkPhysicalDeviceFeatures features{}; // of these none is needed, but for drawing
+    features.fragmentStoresAndAtomics = capabilities.features.fragmentStoresAndAtomics;
+
     std::vector<const char*> extensions;
     if (capabilities.memory_budget) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
 
@@ -45,6 +48,7 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     create.pQueueCreateInfos = queues.data();
     create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     create.ppEnabledExtensionNames = extensions.data();
+    create.pEnabledFeatures = &features;
     const InstanceFunctions& ask = instance.call();
     if (const VkResult made = ask.vkCreateDevice(physical, &create, nullptr, &device->handle_); made != VK_SUCCESS) {
         device->handle_ = VK_NULL_HANDLE;

@@ -72,8 +72,7 @@ void Recorder::write(const Buffer& buffer, std::uint64_t offset, std::span<const
 
 std::vector<BufferUse> Recorder::uses_of(std::span<const Use> uses) {
     std::vector<BufferUse> out;
-    for (const Use& use : uses)
-        out.push_back({number_of(use.buffer), use.how == Use::How::read ? Access::kernel_read : Access::kernel_write});
+    for (const Use& use : uses) out.push_back({number_of(use.buffer), use.how});
     return out;
 }
 
@@ -96,6 +95,10 @@ void Recorder::add_dispatch_indirect(const Kernel& kernel, std::span<const std::
     add({kernel.name, std::move(all), Dispatch{&kernel, {push.begin(), push.end()}, {}, arguments.handle(), offset}});
 }
 
+void Recorder::add_work(std::string name, const std::vector<Use>& uses, Work work) {
+    add({std::move(name), uses_of(uses), std::move(work)});
+}
+
 void Recorder::record(VkCommandBuffer commands, const Pass& pass) const {
     const DeviceFunctions& call = context_.device().call();
     struct Visitor {
@@ -115,6 +118,7 @@ void Recorder::record(VkCommandBuffer commands, const Pass& pass) const {
             if (dispatch.arguments) call.vkCmdDispatchIndirect(commands, dispatch.arguments, dispatch.offset);
             else call.vkCmdDispatch(commands, dispatch.groups[0], dispatch.groups[1], dispatch.groups[2]);
         }
+        void operator()(const Work& work) const { work(call, commands); }
     };
     VkDebugUtilsLabelEXT label{};
     label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -24,14 +25,16 @@ namespace isotet::vulkan {
 
 class Context;
 
-/// What a kernel does with a buffer that it reaches by address.
+/// What a pass does with a buffer.
 struct Use {
-    enum class How : std::uint8_t { read, write /* or read and write */ };
     const Buffer& buffer;
-    How how;
+    Access how;
 };
-inline Use reads(const Buffer& buffer) { return {buffer, Use::How::read}; }
-inline Use writes(const Buffer& buffer) { return {buffer, Use::How::write}; }
+inline Use reads(const Buffer& buffer) { return {buffer, Access::kernel_read}; }
+inline Use writes(const Buffer& buffer) { return {buffer, Access::kernel_write}; } ///< or reads and writes
+inline Use draws_from(const Buffer& buffer) { return {buffer, Access::draw_read}; }
+inline Use draws_into(const Buffer& buffer) { return {buffer, Access::draw_write}; }
+inline Use copies_into(const Buffer& buffer) { return {buffer, Access::copy_write}; }
 
 /// How long a pass took on the device.
 struct Timing {
@@ -86,6 +89,11 @@ public:
         add_dispatch_indirect(kernel, std::as_bytes(std::span(&push, 1)), arguments, offset, uses);
     }
 
+    /// A pass that `work` records by itself, whenever the list is run: draws, copies of images. What it does to images must be
+    /// ordered by its own render passes; for buffers `uses` speaks. `work` and all that it refers to must live as long.
+    using Work = std::function<void(const DeviceFunctions&, VkCommandBuffer)>;
+    void add_work(std::string name, const std::vector<Use>& uses, Work work);
+
     /// Gives the passes that follow this name in timings and debuggers, until the next call; "": their own (the kernel's, or
     /// "fill", "copy", "write").
     void label(std::string name) { label_ = std::move(name); }
@@ -127,7 +135,7 @@ private:
     struct Pass {
         std::string name;
         std::vector<BufferUse> uses;
-        std::variant<Fill, Copy, Write, Dispatch> work;
+        std::variant<Fill, Copy, Write, Dispatch, Work> work;
     };
 
     static std::vector<BufferUse> uses_of(std::span<const Use> uses);

@@ -20,7 +20,9 @@ using vulkan::BufferUse;
 using vulkan::Hazards;
 
 constexpr VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_TRANSFER_BIT,
-                               indirect = VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
+                               indirect = VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                       draw_stages = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+                                     VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
 
 Barrier next(Hazards& hazards, std::vector<BufferUse> uses) { return hazards.before(uses); }
 
@@ -56,6 +58,16 @@ TEST(Hazards, PassesOnDifferentBuffersDoNotWait) {
         EXPECT_EQ(next(hazards, {{buffer, Access::kernel_write}, {99, Access::kernel_read}}), Barrier{}) << buffer;
 }
 
+TEST(Hazards, WhatKernelsSeeDrawsNeedNotSee) {
+    Hazards hazards;
+    next(hazards, {{1, Access::copy_write}});
+    next(hazards, {{1, Access::kernel_read}});
+    const Barrier barrier = next(hazards, {{1, Access::draw_write}});
+    EXPECT_EQ(barrier.from, transfer | compute);
+    EXPECT_EQ(barrier.to, VkPipelineStageFlags{VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT});
+    EXPECT_EQ(barrier.written, VkAccessFlags{VK_ACCESS_TRANSFER_WRITE_BIT});
+}
+
 TEST(Hazards, OneBarrierServesAllBuffers) {
     Hazards hazards;
     next(hazards, {{1, Access::kernel_write}});
@@ -88,17 +100,24 @@ public:
     }
 
 private:
-    static bool writes(const BufferUse& use) { return use.access == Access::kernel_write || use.access == Access::copy_write; }
+    static bool writes(const BufferUse& use) {
+        return use.access == Access::kernel_write || use.access == Access::copy_write || use.access == Access::draw_write;
+    }
     static VkPipelineStageFlags stage(const BufferUse& use) {
         if (use.access == Access::arguments) return indirect;
+        if (use.access == Access::draw_write) return VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+        if (use.access == Access::draw_read) return indirect | draw_stages;
         return use.access == Access::copy_read || use.access == Access::copy_write ? transfer : compute;
     }
+    static bool covers(VkFlags flags, VkFlags wanted) { return (flags & wanted) == wanted; }
     static VkAccessFlags access(const BufferUse& use) {
         switch (use.access) {
         case Access::kernel_read: return VK_ACCESS_SHADER_READ_BIT;
         case Access::kernel_write: return VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
         case Access::copy_read: return VK_ACCESS_TRANSFER_READ_BIT;
         case Access::copy_write: return VK_ACCESS_TRANSFER_WRITE_BIT;
+        case Access::draw_read: return VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT;
+        case Access::draw_write: return VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
         case Access::arguments: break;
         }
         return VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
@@ -109,10 +128,10 @@ private:
     bool safe(std::size_t early, const BufferUse& a, std::size_t late, const BufferUse& b) const {
         for (std::size_t i = early + 1; i <= late; ++i) {
             const Barrier& between = barriers_[i];
-            if (!(between.from & stage(a)) || !(between.to & stage(b))) continue;
+            if (!covers(between.from, stage(a)) || !covers(between.to, stage(b))) continue;
             if (!writes(a)) return true;
             const VkAccessFlags write = access(a) & (VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
-            if ((between.written & write) && (between.used & access(b)) == access(b)) return true;
+            if ((between.written & write) && covers(between.used, access(b))) return true;
         }
         // An overwritten value: whoever overwrote it is ordered after the first and before the last.
         for (std::size_t middle = early + 1; middle < late; ++middle)
@@ -127,14 +146,15 @@ private:
 
 std::vector<BufferUse> random_uses(std::mt19937& random) {
     std::vector<BufferUse> uses;
-    const bool kernel = random() % 2;
+    const auto kind = random() % 3;
     for (std::uint64_t n = 1 + random() % 3; n > 0; --n) {
         const std::uint64_t buffer = random() % 4;
         const Access of_kernel[] = {Access::kernel_read, Access::kernel_write, Access::arguments};
         const Access of_copy[] = {Access::copy_read, Access::copy_write};
-        const Access access = kernel ? of_kernel[random() % 3] : of_copy[random() % 2];
+        const Access of_draw[] = {Access::draw_read, Access::draw_write};
+        const Access access = kind == 0 ? of_kernel[random() % 3] : kind == 1 ? of_copy[random() % 2] : of_draw[random() % 2];
         const auto same = [&](const BufferUse& use) { return use.buffer == buffer; };
-        if (kernel || std::none_of(uses.begin(), uses.end(), same)) uses.push_back({buffer, access});
+        if (kind != 1 || std::none_of(uses.begin(), uses.end(), same)) uses.push_back({buffer, access});
     }
     return uses;
 }

@@ -1,0 +1,146 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render_input.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "field_choice.hpp"
+#include "grid_source.hpp"
+#include "number_format.hpp"
+#include "stopwatch.hpp"
+#include "varied_field.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr std::uint64_t levels_without_a_word = 3;
+
+/// What the ending of a name can be.
+struct Kinds {
+    bool grid = false, surface = false;
+};
+Kinds kinds_of(const std::string& file) {
+    if (file.starts_with("make:")) return {true, false};
+    std::string ending = std::filesystem::path(file).extension().string();
+    std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    Kinds kinds;
+    for (const Format& format : formats()) {
+        if (std::ranges::find(format.extensions, ending) == format.extensions.end()) continue;
+        kinds.grid = kinds.grid || format.reads_grid;
+        kinds.surface = kinds.surface || format.reads_surface;
+    }
+    return kinds;
+}
+
+Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file, double seconds) {
+    if (!command.isovalues.empty() || command.levels > 0 || !command.field.name.empty()) {
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("{} is a surface: it has no isovalues and no field to contour", command.grid.file)};
+    }
+    RenderInput input;
+    input.format = file.format;
+    input.bounds = bounds_of(file.surface);
+    input.surfaces.push_back(std::move(file.surface));
+    input.read_seconds = seconds;
+    return input;
+}
+
+/// The whole grid where the field is still to be chosen; else what the field needs.
+Result<PointField> read_field(const RenderCommand& command, const GridSource& source, std::size_t step, Console& console, Grid& grid) {
+    FieldsToRead read;
+    std::string name = command.field.name;
+    const std::size_t fields = source.info().fields.size();
+    if (!name.empty() || fields <= 1) {
+        const Result<FoundField> found = choose_field(source, command.field);
+        if (!found) return found.error();
+        name = found->name;
+        read = {found->point, found->cell};
+    }
+    Result<Grid> all = source.read(read, step, console);
+    if (!all) return all.error();
+    grid = *std::move(all);
+    if (name.empty()) {
+        name = most_varied_field(grid);
+        if (name.empty()) {
+            return Error{ErrorCode::invalid_data, fmt::format("none of the {} fields has two different values: there is nothing to contour; "
+                                                              "-f x, y or z contours a coordinate",
+                                                              fields)};
+        }
+        console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
+    }
+    const auto prefer = command.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
+    Result<PointField> field = find_field(grid, name, {.prefer = prefer, .threads = command.common.threads});
+    if (field) console.note(field->note);
+    return field;
+}
+
+Result<std::vector<double>> choose_levels(const RenderCommand& command, const PointField& field) {
+    if (!command.isovalues.empty()) return command.isovalues;
+    const std::uint64_t count = command.levels > 0 ? command.levels : levels_without_a_word;
+    std::vector<double> levels = levels_within(field, count);
+    if (!levels.empty()) return levels;
+    return Error{ErrorCode::invalid_data, fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
+}
+
+Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
+    RenderInput input;
+    input.from_grid = true;
+    const Stopwatch reading;
+    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    if (!source) return source.error();
+    input.format = source->info().format;
+    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
+    if (!steps) return steps.error();
+    Grid grid;
+    const Result<PointField> field = read_field(command, *source, steps->front(), console, grid);
+    if (!field) return field.error();
+    input.read_seconds = reading.seconds();
+
+    const Stopwatch packing;
+    const Result<PackedGrid> packed =
+        pack(grid, *field, {.gradients = true, .threads = command.common.threads}, console.progress());
+    if (!packed) return packed.error();
+    input.pack_seconds = packing.seconds();
+    input.cells = grid.cells.count();
+    input.tets = packed->report().tets;
+    input.field = field->name;
+    input.lower = packed->field().lower;
+    input.upper = packed->field().upper;
+    input.bounds = bounds_of(*packed);
+
+    Result<std::vector<double>> levels = choose_levels(command, *field);
+    if (!levels) return levels.error();
+    input.isovalues = *std::move(levels);
+    const Stopwatch extracting;
+    ExtractOptions options;
+    options.normals = Normals::gradient;
+    options.threads = command.common.threads;
+    Result<std::vector<Extraction>> extractions = extract(*packed, input.isovalues, options, console.progress());
+    if (!extractions) return extractions.error();
+    for (Extraction& extraction : *extractions) input.surfaces.push_back(std::move(extraction.surface));
+    input.extract_seconds = extracting.seconds();
+    for (std::size_t i = 0; i < input.surfaces.size(); ++i) {
+        if (input.surfaces[i].triangle_count() > 0) continue;
+        console.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}", shortest(input.isovalues[i]), input.field,
+                                 shortest(input.lower), shortest(input.upper)));
+    }
+    return input;
+}
+
+} // namespace
+
+Result<RenderInput> read_render_input(const RenderCommand& command, Console& console) {
+    const Kinds kinds = kinds_of(command.grid.file);
+    if (!kinds.surface || !command.grid.format.empty()) return take_grid(command, console);
+    const Stopwatch reading;
+    Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.progress());
+    if (file) return take_surface(command, *std::move(file), reading.seconds());
+    // A name such as grid.vtk can be either.
+    if (kinds.grid && file.error().code == ErrorCode::invalid_data) return take_grid(command, console);
+    return file.error();
+}
+
+} // namespace isotet::cli

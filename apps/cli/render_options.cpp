@@ -1,0 +1,85 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render_options.hpp"
+
+#include "number_format.hpp"
+#include "option_values.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr const char* details = R"(
+FILE is a grid or a surface. With nothing but FILE the field that varies most is taken, with three isovalues between the
+ends of its range (rare values at the ends aside), each in its own colour. FIELD is found as by isotet extract.
+
+The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png; without
+it the picture is called as FILE is, in the current folder.
+
+A graphics card draws, if there is one; otherwise, or with --device software, a software device, which is said. Without
+either nothing can be drawn. On one device the same command gives the same bytes.
+
+Examples:
+  isotet render grid.vtu
+  isotet render grid.vtu -f pressure -i 0.5 -o pressure.png
+  isotet render surface.vtp --view +x --size 800x600 --background transparent
+)";
+
+void add_size(CLI::App& app, PictureOptions& picture) {
+    app.add_option_function<std::string>(
+           "--size",
+           [&picture](const std::string& text) {
+               const std::size_t cross = text.find('x');
+               const auto width = parse_count(text.substr(0, cross));
+               const auto height = cross == std::string::npos ? std::nullopt : parse_count(text.substr(cross + 1));
+               if (!width || !height || *width < 1 || *height < 1 || *width > 32768 || *height > 32768)
+                   throw wrong_value("--size", text, "width x height in pixels, 1 to 32768 each, such as 1200x900");
+               picture.width = static_cast<std::uint32_t>(*width);
+               picture.height = static_cast<std::uint32_t>(*height);
+           },
+           "Width and height of the picture in pixels; without it 1200x900")
+        ->type_name("WxH");
+}
+
+void add_color(CLI::App& app, const std::string& name, Color& color, const std::string& description) {
+    app.add_option_function<std::string>(
+           name,
+           [&color, name](const std::string& text) {
+               const std::optional<Color> parsed = parse_color(text);
+               if (!parsed) throw wrong_value(name, text, "white, black, transparent, another plain colour, or #rrggbb");
+               color = *parsed;
+           },
+           description)
+        ->type_name("COLOR");
+}
+
+} // namespace
+
+CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
+    CLI::App& app = *program.add_subcommand("render", "Draw isosurfaces, or a surface, into a picture");
+    add_file(app, "FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
+    add_file(app, "-o,--output", render.out, "OUT_FILE", "The picture, .png");
+    add_text(app, "-f,--field", render.field.name, "FIELD", "The field to contour; without it the one that varies most");
+    app.add_flag("--cell-field", render.field.cell_field, "Of a name that is both a point and a cell field, the cell field");
+    CLI::Option* isovalues = add_numbers(app, "-i,--isovalue", render.isovalues, "V[,W...]",
+                                         "Isovalues, separated by commas; may be repeated");
+    add_count(
+        app, "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
+        "N isovalues evenly inside the range of the field; without it 3")
+        ->excludes(isovalues);
+    add_size(app, render.picture);
+    add_choice<View>(app, "--view", render.view,
+                     {{"iso", View::iso},
+                      {"+x", View::plus_x},
+                      {"-x", View::minus_x},
+                      {"+y", View::plus_y},
+                      {"-y", View::minus_y},
+                      {"+z", View::plus_z},
+                      {"-z", View::minus_z}},
+                     "From where one looks; without it iso, obliquely from above");
+    app.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
+    add_color(app, "--background", render.picture.background, "Background: white, black, transparent, or #rrggbb; without it white");
+    app.footer(details);
+    return app;
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,71 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <isotet/pack.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+/// A box along the axes; empty while lower > upper.
+struct Box {
+    std::array<double, 3> lower{1, 1, 1}, upper{-1, -1, -1};
+
+    bool empty() const noexcept { return !(lower[0] <= upper[0]); }
+    void add(const std::array<double, 3>& point) noexcept;
+    void add(const Box& other) noexcept;
+};
+
+/// The box of all points that packed tets use, or of all vertices of a surface that are finite.
+/// Cost   one pass
+Box bounds_of(const PackedGrid& packed);
+Box bounds_of(const Surface& surface);
+
+/// From where one looks: obliquely from the front, the right and above; or from the end of an axis. z is up, except that from
+/// +z and -z y is.
+enum class View : std::uint8_t { iso, plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
+
+/// "iso", "+x", "-x" and so on, and back.
+std::string_view name_of(View view) noexcept;
+std::optional<View> parse_view(std::string_view name) noexcept;
+
+enum class Projection : std::uint8_t { perspective, parallel };
+
+/// A camera: what is in the middle of the picture, from which direction it is seen, and how much of it.
+///
+/// `direction`   from the target to the eye, unit
+/// `up`          unit, at right angles to `direction`
+/// `distance`    of the eye from the target
+/// `angle`       of view, in degrees, from the lower to the upper edge of a perspective picture
+/// `height`      of what a parallel picture shows
+struct Camera {
+    Projection projection = Projection::perspective;
+    std::array<double, 3> target{};
+    std::array<double, 3> direction{0, 0, 1};
+    std::array<double, 3> up{0, 1, 0};
+    double distance = 1;
+    double angle = 25;
+    double height = 1;
+
+    /// Sees all of a box as large as possible.
+    ///
+    /// `aspect`   width of the picture / its height
+    /// `margin`   part of the picture that is left free on each side, below 0.5
+    void fit(const Box& box, double aspect, double margin = 0.04);
+
+    /// Goes around the target: `azimuth` degrees to the right about `up`, then `elevation` degrees upwards, as far as just below
+    /// the pole.
+    void orbit(double azimuth, double elevation);
+
+    /// Shows things `factor` times as large.
+    void zoom(double factor);
+};
+
+/// A camera with the direction of a view; fit() does the rest.
+Camera camera_of(View view, Projection projection = Projection::perspective);
+
+} // namespace isotet

@@ -1,0 +1,171 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <isotet/camera.hpp>
+#include <isotet/device.hpp>
+#include <isotet/device_grid.hpp>
+#include <isotet/picture.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/read.hpp>
+#include <isotet/result.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+namespace render {
+class MeshBuffers;
+class FieldBuffer;
+}
+
+/// A colour map, from 0 to 1. All but turbo and cool_warm are perceptually uniform.
+enum class ColorMap : std::uint8_t { viridis, cividis, plasma, turbo, cool_warm };
+
+/// "viridis", "cool-warm" and so on, and back.
+std::string_view name_of(ColorMap map) noexcept;
+std::optional<ColorMap> parse_color_map(std::string_view name) noexcept;
+
+/// The colour at a place of the map; places outside 0 to 1 have those of its ends.
+Color color_at(ColorMap map, double place) noexcept;
+
+/// Which value has which colour.
+///
+/// `lower`, `upper`   values at the ends of the map, lower < upper, both finite; on a logarithmic scale lower > 0
+/// `no_data`          where a value is NaN. Values beyond the ends have the colours of the ends
+struct ColorScale {
+    ColorMap map = ColorMap::viridis;
+    double lower = 0, upper = 1;
+    bool logarithmic = false;
+    Color no_data{0.72F, 0.72F, 0.72F, 1};
+
+    /// The place of a value in the map, not limited to 0 to 1; NaN for what is no number.
+    double place_of(double value) const noexcept;
+};
+
+/// Triangles in a device's memory that were uploaded, ready to be drawn. Moving is cheap; it keeps the device open.
+class DeviceMesh {
+public:
+    /// Uploads positions, triangles and, where there is one a vertex, normals.
+    ///
+    /// Cost     12 to 24 bytes a vertex and 12 a triangle over the bus
+    /// Errors   invalid_argument when the surface has 2^32 vertices or triangles or more, or arrays that do not fit together;
+    ///          invalid_data when a triangle has a vertex that is not there, or a vertex is not finite; out_of_memory; machine
+    static Result<DeviceMesh> upload(const Device& device, const Surface& surface);
+
+    DeviceMesh(DeviceMesh&&) noexcept;
+    DeviceMesh& operator=(DeviceMesh&&) noexcept;
+    ~DeviceMesh();
+
+    std::uint64_t vertices() const noexcept;
+    std::uint64_t triangle_count() const noexcept;
+
+private:
+    friend class Renderer;
+    explicit DeviceMesh(std::unique_ptr<render::MeshBuffers> buffers);
+    std::unique_ptr<render::MeshBuffers> buffers_;
+};
+
+/// Values in a device's memory that colour a mesh, or surfaces of a grid. Moving is cheap; it keeps the device open.
+class DeviceColors {
+public:
+    /// For a mesh: a scalar a vertex, or a triangle.
+    /// Errors   invalid_argument when `values` has several components, or the scale is wrong; out_of_memory; machine
+    static Result<DeviceColors> of_mesh(const Device& device, const Array& values, Association association, const ColorScale& scale);
+
+    /// For surfaces that are extracted on the device: a scalar a point or a cell of the user's grid. Surfaces extracted with
+    /// edge_ends (points) or source_cells (cells) are coloured by it where they are: it is uploaded once, not once a surface.
+    ///
+    /// `packed`   the grid that was uploaded; for cells packed with source_cells
+    /// Errors     as of_mesh(); invalid_argument when the number of values is not that of the grid
+    static Result<DeviceColors> of_grid(const Device& device, const PackedGrid& packed, const Array& values, Association association,
+                                        const ColorScale& scale);
+
+    DeviceColors(DeviceColors&&) noexcept;
+    DeviceColors& operator=(DeviceColors&&) noexcept;
+    ~DeviceColors();
+
+private:
+    friend class Renderer;
+    explicit DeviceColors(std::unique_ptr<render::FieldBuffer> buffer);
+    std::unique_ptr<render::FieldBuffer> buffer_;
+};
+
+/// Something with triangles that is drawn: an uploaded mesh, or a surface where the Vulkan engine left it.
+struct DrawnSurface {
+    const DeviceMesh* mesh = nullptr;       ///< one of the two; borrowed
+    const DeviceSurface* surface = nullptr;
+    const DeviceColors* colors = nullptr;   ///< borrowed; null: `color` everywhere
+    Color color{0.70F, 0.75F, 0.80F, 1};    ///< its opacity does not count
+    double opacity = 1;                     ///< of the sheet seen at a right angle; at a slant it is denser. 0: not drawn
+};
+
+/// Straight lines of one colour, drawn as opaque.
+struct DrawnLines {
+    std::vector<std::array<std::array<double, 3>, 2>> lines; ///< both ends of each
+    Color color{0.25F, 0.25F, 0.25F, 1};
+    double width = 1; ///< pixels
+};
+
+/// The twelve edges of a box.
+DrawnLines outline_of(const Box& box);
+
+/// What is drawn; nothing at all is fine, and gives the background.
+///
+/// `bounds`   everything lies within
+struct Scene {
+    std::vector<DrawnSurface> surfaces;
+    std::vector<DrawnLines> lines;
+    Box bounds;
+};
+
+struct PictureOptions {
+    std::uint32_t width = 1200, height = 900; ///< pixels, 1 to 32768 each
+    std::uint32_t samples = 3;                ///< an axis and pixel, 1 to 8: their mean is the pixel
+    Color background{1, 1, 1, 1};
+    Camera camera;
+};
+
+/// Draws scenes on a device. Nothing is read back but the picture (and a count where something is translucent). Drawing on a
+/// software device works like drawing on any other.
+///
+/// Light comes from the eye: a surface seen at a right angle has just its own colour. Both sides are lit. Gradient normals
+/// shade smoothly, without them every triangle is flat. Translucent surfaces are put in order sample by sample, so that any
+/// number of them may pass through each other. Samples are averaged, and surfaces blended, in linear light.
+///
+/// Guarantees   the same picture every time on one device and driver
+/// Threads      one call at a time on one device
+/// Method       a depth buffer for what is opaque, lists of fragments for what is not; docs/inside/render.md
+class Renderer {
+public:
+    /// Cost     pipelines are built when they are first needed, 5 to 500 ms each
+    /// Errors   machine when the device cannot draw, with the reason
+    static Result<Renderer> make(const Device& device);
+
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+    ~Renderer();
+
+    /// Draws a picture.
+    ///
+    /// Cost     O(triangles) a part of the picture (parts have 16 million samples); device memory 28 bytes a sample of a part and
+    ///          16 a translucent fragment
+    /// Errors   invalid_argument when a size, a camera or an opacity is out of range, or colours do not fit their surface;
+    ///          out_of_memory of the device, with the amount needed; machine; cancelled
+    Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Progress& progress = {});
+
+    /// What the last call of draw() cost.
+    const DeviceWork& work() const noexcept;
+
+private:
+    struct Data;
+    explicit Renderer(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet

@@ -1,0 +1,47 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What stands for renderer.cpp in a build without Vulkan: there is no device, so nothing can be uploaded or drawn.
+#include <isotet/render.hpp>
+
+namespace isotet {
+
+namespace render {
+class MeshBuffers {};
+class FieldBuffer {};
+} // namespace render
+
+struct Renderer::Data {
+    DeviceWork work;
+};
+
+namespace {
+
+Error built_without() { return {ErrorCode::machine, "isotet was built without Vulkan (ISOTET_VULKAN=OFF)"}; }
+
+} // namespace
+
+DeviceMesh::DeviceMesh(std::unique_ptr<render::MeshBuffers> buffers) : buffers_(std::move(buffers)) {}
+DeviceMesh::DeviceMesh(DeviceMesh&&) noexcept = default;
+DeviceMesh& DeviceMesh::operator=(DeviceMesh&&) noexcept = default;
+DeviceMesh::~DeviceMesh() = default;
+std::uint64_t DeviceMesh::vertices() const noexcept { return 0; }
+std::uint64_t DeviceMesh::triangle_count() const noexcept { return 0; }
+Result<DeviceMesh> DeviceMesh::upload(const Device&, const Surface&) { return built_without(); }
+
+DeviceColors::DeviceColors(std::unique_ptr<render::FieldBuffer> buffer) : buffer_(std::move(buffer)) {}
+DeviceColors::DeviceColors(DeviceColors&&) noexcept = default;
+DeviceColors& DeviceColors::operator=(DeviceColors&&) noexcept = default;
+DeviceColors::~DeviceColors() = default;
+Result<DeviceColors> DeviceColors::of_mesh(const Device&, const Array&, Association, const ColorScale&) { return built_without(); }
+Result<DeviceColors> DeviceColors::of_grid(const Device&, const PackedGrid&, const Array&, Association, const ColorScale&) {
+    return built_without();
+}
+
+Renderer::Renderer(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+const DeviceWork& Renderer::work() const noexcept { return data_->work; }
+Result<Renderer> Renderer::make(const Device&) { return built_without(); }
+Result<Picture> Renderer::draw(const Scene&, const PictureOptions&, const Progress&) { return built_without(); }
+
+} // namespace isotet

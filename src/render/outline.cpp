@@ -1,0 +1,20 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/render.hpp>
+
+namespace isotet {
+
+DrawnLines outline_of(const Box& box) {
+    DrawnLines outline;
+    if (box.empty()) return outline;
+    const auto corner = [&](unsigned bits) {
+        std::array<double, 3> point{};
+        for (unsigned axis = 0; axis < 3; ++axis) point[axis] = bits >> axis & 1 ? box.upper[axis] : box.lower[axis];
+        return point;
+    };
+    for (unsigned begin = 0; begin < 8; ++begin)
+        for (unsigned axis = 0; axis < 3; ++axis)
+            if (!(begin >> axis & 1)) outline.lines.push_back({corner(begin), corner(begin | 1U << axis)});
+    return outline;
+}
+
+} // namespace isotet

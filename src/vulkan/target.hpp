@@ -1,0 +1,74 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Images on the device that are drawn into: colour in linear light, four half floats, and depth.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <isotet/result.hpp>
+
+#include "vulkan/context.hpp"
+#include "vulkan/recorder.hpp"
+
+namespace isotet::vulkan {
+
+/// The formats of a target, and what becomes of its images in a pass of draws: both are cleared at the beginning, and the
+/// colour can be copied afterwards. Its dependencies order one use of the images after the other, so that nobody else need.
+class RenderPass {
+public:
+    static Result<std::unique_ptr<RenderPass>> make(Context& context);
+    ~RenderPass();
+    RenderPass(const RenderPass&) = delete;
+    RenderPass& operator=(const RenderPass&) = delete;
+
+    VkRenderPass handle() const noexcept { return handle_; }
+
+private:
+    explicit RenderPass(LogicalDevice& device) : device_(device) {}
+    LogicalDevice& device_;
+    VkRenderPass handle_ = VK_NULL_HANDLE;
+};
+
+/// Threads   one thread at a time; not while the device draws into it
+class Target {
+public:
+    static constexpr std::uint64_t texel_bytes = 8; ///< of the colour
+    static constexpr std::uint64_t bytes_of(std::uint64_t texels) { return texels * (texel_bytes + 4); }
+
+    /// Its memory does not count against the limit on buffers.
+    ///
+    /// Errors   invalid_argument when the device has no images of that size; out_of_memory; machine
+    static Result<std::unique_ptr<Target>> make(Context& context, const RenderPass& pass, std::uint32_t width, std::uint32_t height);
+    ~Target();
+    Target(const Target&) = delete;
+    Target& operator=(const Target&) = delete;
+
+    std::uint32_t width() const noexcept { return width_; }
+    std::uint32_t height() const noexcept { return height_; }
+
+    /// Adds a pass that clears the images (colour to transparent black, depth to 1) and then runs `draws` in the render pass,
+    /// with the lower left `width` x `height` texels as the viewport.
+    void draw(Recorder& recorder, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses, Recorder::Work draws);
+
+    /// Adds a pass that copies these texels, row by row, to the beginning of a buffer.
+    void copy_color(Recorder& recorder, std::uint32_t width, std::uint32_t height, const Buffer& to) const;
+
+private:
+    struct Image {
+        VkImage handle = VK_NULL_HANDLE;
+        VkDeviceMemory memory = VK_NULL_HANDLE;
+        VkImageView view = VK_NULL_HANDLE;
+    };
+    Target(Context& context, const RenderPass& pass, std::uint32_t width, std::uint32_t height)
+        : context_(context), pass_(pass), width_(width), height_(height) {}
+    Result<void> make_image(Image& image, VkFormat format, VkImageUsageFlags usage, VkImageAspectFlags aspect);
+    Result<void> make_framebuffer();
+
+    Context& context_;
+    const RenderPass& pass_;
+    std::uint32_t width_, height_;
+    Image color_, depth_;
+    VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
+};
+
+} // namespace isotet::vulkan

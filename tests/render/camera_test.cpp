@@ -1,0 +1,120 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Cameras: fitting, going around, views. No device.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <isotet/camera.hpp>
+
+#include "render/vector_math.hpp"
+
+namespace isotet::test {
+namespace {
+
+using render::cross;
+using render::dot;
+using render::minus;
+using render::plus;
+
+constexpr View all_views[] = {View::iso,     View::plus_x, View::minus_x, View::plus_y,
+                              View::minus_y, View::plus_z, View::minus_z};
+
+/// How far a point lies from the middle of the picture: 1 at its edges.
+std::array<double, 2> seen(const Camera& camera, double aspect, const std::array<double, 3>& point) {
+    const auto eye = plus(camera.target, camera.direction, camera.distance);
+    const auto from_eye = minus(point, eye);
+    const double depth = -dot(from_eye, camera.direction);
+    const double half =
+        camera.projection == Projection::parallel ? camera.height / 2 : depth * std::tan(camera.angle * std::numbers::pi / 360);
+    return {dot(from_eye, cross(camera.up, camera.direction)) / (half * aspect), dot(from_eye, camera.up) / half};
+}
+
+/// The largest and smallest places of the corners of a box.
+struct Places {
+    double left = 9, right = -9, lower = 9, upper = -9;
+};
+Places places_of(const Camera& camera, double aspect, const Box& box) {
+    Places places;
+    for (int corner = 0; corner < 8; ++corner) {
+        std::array<double, 3> point{};
+        for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = corner >> axis & 1 ? box.upper[axis] : box.lower[axis];
+        const auto [x, y] = seen(camera, aspect, point);
+        places.left = std::min(places.left, x);
+        places.right = std::max(places.right, x);
+        places.lower = std::min(places.lower, y);
+        places.upper = std::max(places.upper, y);
+    }
+    return places;
+}
+
+TEST(Camera, SeesTheWholeBoxAsLargeAsItCan) {
+    const Box box{{-3, 1, 1000}, {4, 2, 1003}};
+    for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+        for (const View view : all_views) {
+            for (const double aspect : {0.5, 1.0, 2.0}) {
+                Camera camera = camera_of(view, projection);
+                camera.fit(box, aspect, 0.05);
+                const Places places = places_of(camera, aspect, box);
+                EXPECT_NEAR(std::max({-places.left, places.right, -places.lower, places.upper}), 0.9, 0.02) << name_of(view) << aspect;
+                EXPECT_NEAR(places.left + places.right, 0, 0.1) << name_of(view);
+                EXPECT_NEAR(places.lower + places.upper, 0, 0.1) << name_of(view);
+            }
+        }
+    }
+}
+
+TEST(Camera, SeesBoxesWithoutSize) {
+    for (const Box& box : {Box{{2, 2, 2}, {2, 2, 2}}, Box{}, Box{{0, 0, 0}, {0, 5, 0}}}) {
+        for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+            Camera camera = camera_of(View::plus_x, projection);
+            camera.fit(box, 1);
+            EXPECT_TRUE(camera.distance > 0 && std::isfinite(camera.distance));
+            EXPECT_TRUE(camera.height > 0 && std::isfinite(camera.height));
+        }
+    }
+}
+
+TEST(Camera, GoesAllTheWayAround) {
+    for (const View view : all_views) {
+        const Camera start = camera_of(view);
+        Camera camera = start;
+        for (int i = 0; i < 36; ++i) camera.orbit(10, 0);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(camera.direction[axis], start.direction[axis], 1e-9) << name_of(view);
+            EXPECT_NEAR(camera.up[axis], start.up[axis], 1e-9) << name_of(view);
+        }
+    }
+}
+
+TEST(Camera, StopsBelowThePole) {
+    Camera camera = camera_of(View::plus_x);
+    camera.orbit(0, 30);
+    EXPECT_NEAR(camera.direction[2], 0.5, 1e-9);
+    camera.orbit(0, 1000);
+    EXPECT_GT(camera.direction[2], 0.999);
+    EXPECT_GT(camera.up[2], 0);
+    EXPECT_NEAR(dot(camera.up, camera.direction), 0, 1e-9);
+    EXPECT_NEAR(dot(camera.up, camera.up), 1, 1e-9);
+}
+
+TEST(Camera, ZoomsByAFactor) {
+    const std::array<double, 3> point{0, 0.3, 0.4};
+    for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+        Camera camera = camera_of(View::plus_x, projection);
+        camera.fit({{-1, -1, -1}, {1, 1, 1}}, 1);
+        camera.target = {};
+        const auto before = seen(camera, 1, point);
+        camera.zoom(2);
+        EXPECT_NEAR(seen(camera, 1, point)[1], 2 * before[1], 1e-9);
+    }
+}
+
+TEST(Views, HaveNamesThatLeadBack) {
+    for (const View view : all_views) EXPECT_EQ(parse_view(name_of(view)), view);
+    EXPECT_FALSE(parse_view("x"));
+}
+
+} // namespace
+} // namespace isotet::test

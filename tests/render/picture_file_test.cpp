@@ -1,0 +1,84 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// PNG files: read back by libpng, pixel by pixel.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <isotet/picture.hpp>
+
+namespace isotet::test {
+namespace {
+
+class PictureFile : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("isotet-picture-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+    static std::string content(const std::string& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    /// What libpng's own reader makes of a file.
+    static Picture read(const std::string& file, bool& alpha) {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        EXPECT_TRUE(png_image_begin_read_from_file(&image, file.c_str())) << image.message;
+        alpha = image.format & PNG_FORMAT_FLAG_ALPHA;
+        image.format = PNG_FORMAT_RGBA;
+        Picture picture{image.width, image.height, {}};
+        picture.pixels.resize(std::size_t{image.width} * image.height);
+        EXPECT_TRUE(png_image_finish_read(&image, nullptr, picture.pixels.data(), 0, nullptr)) << image.message;
+        return picture;
+    }
+
+    static Picture sample(std::uint8_t opacity) {
+        Picture picture{7, 5, {}};
+        for (int i = 0; i < 35; ++i)
+            picture.pixels.push_back({static_cast<std::uint8_t>(7 * i), static_cast<std::uint8_t>(255 - i), 3, i == 12 ? opacity : std::uint8_t{255}});
+        return picture;
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(PictureFile, HoldsEveryPixel) {
+    for (const std::uint8_t opacity : {std::uint8_t{0}, std::uint8_t{255}}) {
+        const Picture picture = sample(opacity);
+        ASSERT_TRUE(write_picture(picture, path("a.png")));
+        bool alpha = false;
+        const Picture back = read(path("a.png"), alpha);
+        EXPECT_EQ(alpha, opacity < 255) << "only where something lets through";
+        EXPECT_EQ(back.width, 7u);
+        EXPECT_TRUE(back.pixels == picture.pixels);
+    }
+}
+
+TEST_F(PictureFile, IsTheSameEveryTime) {
+    ASSERT_TRUE(write_picture(sample(9), path("a.png")));
+    ASSERT_TRUE(write_picture(sample(9), path("b.png")));
+    EXPECT_EQ(content(path("a.png")), content(path("b.png")));
+}
+
+TEST_F(PictureFile, IsRefusedWhereItCannotBe) {
+    EXPECT_EQ(write_picture(sample(0), path("a.jpg")).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(write_picture({}, path("a.png")).error().code, ErrorCode::invalid_argument);
+    Picture short_one = sample(0);
+    short_one.pixels.pop_back();
+    EXPECT_EQ(write_picture(short_one, path("a.png")).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(write_picture(sample(0), path("nowhere/a.png")).error().code, ErrorCode::file);
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+} // namespace
+} // namespace isotet::test
