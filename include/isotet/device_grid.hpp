@@ -23,7 +23,7 @@ class SurfaceBuffers;
 }
 
 struct DeviceGridOptions {
-    std::uint64_t page_bytes = std::uint64_t{32} << 20; ///< of a page: what is moved at once where not all of the grid fits
+    std::uint64_t page_bytes = std::uint64_t{32} << 20; ///< of a page, 1 GiB at most: what is moved at once where not all of the grid fits
     /// Device memory that uploading leaves free for surfaces where not all of the grid fits; nothing: an eighth of what is
     /// free.
     std::optional<std::uint64_t> surface_bytes;

@@ -2,6 +2,7 @@
 // The Vulkan engine beside the CPU engine.
 #pragma once
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,13 @@ namespace isotet::test {
 /// A test with packed grids on the software device.
 class Engines : public OnDevice {
 protected:
+    /// In tests with subgroups of a size that the environment forces, they have that size.
+    void SetUp() override {
+        OnDevice::SetUp();
+        const char* size = std::getenv("ISOTET_EXPECTED_SUBGROUP");
+        ASSERT_TRUE(!size || std::to_string(context().info().subgroup_size) == size) << context().info().subgroup_size;
+    }
+
     Device device() { return Device(shared_context()); }
 
     /// Both engines give the same bytes and the same report, for every isovalue.

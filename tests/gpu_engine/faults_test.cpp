@@ -14,13 +14,18 @@ class EngineFaults : public Engines {
 protected:
     void SetUp() override {
         const Grid grid = made_grid("kuhn", 6, {"gyroid"});
-        packed = pack(grid, point_field(grid)).value();
-        right = bytes_of(isotet::extract(packed, 0.2).value().surface);
+        field = point_field(grid);
+        options.point_fields = {{"place", grid.points}};
+        options.normals = Normals::face;
+        packed = pack(grid, field).value();
+        right = bytes_of(isotet::extract(packed, 0.2, options).value().surface);
     }
 
     /// Everything once, in small pages, with all that grows growing.
-    Result<std::string> work_through(CallPlan& plan) {
+    enum class Copies { direct, staged };
+    Result<std::string> work_through(CallPlan& plan, Copies copies = Copies::direct) {
         vulkan::Settings settings = watched();
+        settings.force_staging = copies == Copies::staged;
         settings.alter_functions = [&plan](vulkan::DeviceFunctions& functions) { make_calls_follow(plan, functions); };
         auto context = vulkan::Context::open({"software", 0}, settings);
         if (!context) return context.error();
@@ -32,7 +37,8 @@ protected:
     Result<std::string> extract_on(const Device& opened) {
         auto grid = DeviceGrid::upload(opened, packed, {.page_bytes = 10'000, .surface_bytes = {}});
         if (!grid) return grid.error();
-        auto surface = grid->extract(0.2);
+        if (auto set = grid->set_field(packed, field); !set) return set.error();
+        auto surface = grid->extract(0.2, options);
         if (!surface) return surface.error();
         auto extraction = grid->download(*surface);
         if (!extraction) return extraction.error();
@@ -40,6 +46,8 @@ protected:
     }
 
     PackedGrid packed;
+    PointField field;
+    ExtractOptions options;
     std::string right;
 };
 
@@ -67,7 +75,39 @@ TEST_F(EngineFaults, AnyCallThatFailsIsAnErrorOrDoneWithout) {
             EXPECT_GT(result.error().message.size(), 20u) << name;
         }
     EXPECT_GT(errors, 20u);
-    EXPECT_EQ(bytes_of(isotet::extract(packed, 0.2).value().surface), right) << "the packed grid is as it was";
+    EXPECT_EQ(bytes_of(isotet::extract(packed, 0.2, options).value().surface), right) << "the packed grid is as it was";
+}
+
+/// What the layer complains about, be it that something was not given back, fails the test.
+TEST_F(EngineFaults, AnyAllocationThatFailsLeavesNothingBehind) {
+    for (const std::string function : {"vkAllocateMemory", "vkCreateBuffer"}) {
+        CallPlan all{.fail_at = 0, .with = VK_ERROR_OUT_OF_DEVICE_MEMORY, .only = function, .calls = {}};
+        ASSERT_EQ(work_through(all).value(), right);
+        const int calls = static_cast<int>(all.calls.size());
+        ASSERT_GE(calls, function == "vkAllocateMemory" ? 2 : 20);
+        for (int i = 1; i <= calls; ++i) {
+            CallPlan plan{.fail_at = i, .with = VK_ERROR_OUT_OF_DEVICE_MEMORY, .only = function, .calls = {}};
+            const auto result = work_through(plan);
+            if (result) EXPECT_EQ(*result, right) << function << " " << i;
+            else EXPECT_EQ(result.error().code, ErrorCode::out_of_memory) << function << " " << i << ": " << result.error().message;
+        }
+    }
+}
+
+/// Whatever it is doing: every wait has an end.
+TEST_F(EngineFaults, ADeviceThatDoesNotAnswerIsGivenUp) {
+    CallPlan all{.fail_at = 0, .with = VK_TIMEOUT, .only = "vkWaitForFences", .calls = {}};
+    ASSERT_EQ(work_through(all, Copies::staged).value(), right);
+    const int waits = static_cast<int>(all.calls.size());
+    ASSERT_GE(waits, 10);
+    for (int i = 1; i <= waits; ++i) {
+        CallPlan plan{.fail_at = i, .with = VK_TIMEOUT, .only = "vkWaitForFences", .calls = {}};
+        const auto result = work_through(plan, Copies::staged);
+        ASSERT_FALSE(result) << i;
+        EXPECT_EQ(result.error().code, ErrorCode::machine) << i;
+        EXPECT_NE(result.error().message.find("did not answer within 30 s"), std::string::npos) << result.error().message;
+        EXPECT_EQ(bytes_of(isotet::extract(packed, 0.2, options).value().surface), right) << i << ": the packed grid is as it should be";
+    }
 }
 
 TEST_F(EngineFaults, ALostDeviceIsAnErrorFromThenOn) {
@@ -97,7 +137,7 @@ TEST_F(EngineFaults, CancellingIsNotAFailure) {
     DeviceGrid grid = DeviceGrid::upload(device(), packed).value();
     EXPECT_EQ(grid.extract(0.2, {}, progress).error().code, ErrorCode::cancelled);
     cancel = false;
-    EXPECT_EQ(bytes_of(grid.download(grid.extract(0.2, {}, progress).value()).value().surface), right);
+    EXPECT_EQ(bytes_of(grid.download(grid.extract(0.2, options, progress).value()).value().surface), right);
 }
 
 } // namespace

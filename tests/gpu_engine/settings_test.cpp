@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The same bytes whatever is forced upon the device, and at odd numbers of clusters, edges and isovalues.
+#include <cstdlib>
 #include <random>
 #include <set>
 
@@ -142,6 +143,46 @@ TEST_F(Forced, ClustersWithManyCrossedEdgesGiveTheSameBytes) {
     const DeviceSurface surface = on_device.extract(0.75).value();
     EXPECT_EQ(surface.buffers()->result.many_edges, 1u) << "no cluster had many";
     EXPECT_EQ(on_device.work().submissions, 2u) << "the kernel for many edges is known by now, room is made";
+}
+
+// Every address that a kernel uses is looked at. Compiling the kernels of an extraction so takes minutes on a software device:
+// with ISOTET_WATCH_EXTRACTION in the environment they are watched, too.
+TEST_F(Forced, WatchedAddressesStayInTheirBuffers) {
+    vulkan::Settings settings = watched();
+    settings.watch.validation = vulkan::Validation::gpu_assisted;
+    reopen(settings);
+    const NastyGrid g = nasty_grid(7, {.side = 6, .values = 3, .no_data = 0.02, .missing = 0.05});
+    PackedGrid packed = pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
+    DeviceGrid on_device = DeviceGrid::upload(device(), packed, {.page_bytes = 10'000, .surface_bytes = {}}).value();
+    on_device.set_field(packed, g.field).value();
+    if (!std::getenv("ISOTET_WATCH_EXTRACTION")) return;
+    ExtractOptions options;
+    options.edge_ends = options.source_cells = true;
+    options.point_fields = {{"place", g.grid.points}};
+    for (const Normals normals : {Normals::gradient, Normals::face}) {
+        options.normals = normals;
+        expect_same(on_device, packed, {0, 0.5}, options);
+    }
+}
+
+TEST_F(Forced, MoreThanCanBeNumberedIsRefusedWithTheNumber) {
+    const Grid grid = made_grid("kuhn", 6, {"sphere"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const Surface expected = isotet::extract(packed, 0.7).value().surface;
+    vulkan::Settings settings = watched();
+    settings.most_items = expected.triangle_count();
+    reopen(settings);
+    EXPECT_TRUE(DeviceGrid::upload(device(), packed).value().extract(0.7));
+    --settings.most_items;
+    reopen(settings);
+    DeviceGrid on_device = DeviceGrid::upload(device(), packed).value();
+    const auto refused = on_device.extract(0.7);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(refused.error().message,
+              "the surface has " + std::to_string(expected.vertices()) + " vertices and " + std::to_string(expected.triangle_count()) +
+                  " triangles, but the vulkan engine can number " + std::to_string(settings.most_items) + " of each");
+    EXPECT_EQ(on_device.extract(5).value().triangle_count(), 0u) << "the grid can still be used";
 }
 
 TEST_F(Forced, WrongCallsAreErrors) {

@@ -99,10 +99,11 @@ Result<void> GridOnDevice::run_and_read_heads(Recorder& recorder, std::span<Task
 Result<void> GridOnDevice::make_room(SurfaceBuffers& surface) {
     const std::uint64_t vertices = wide(surface.result.vertices_low, surface.result.vertices_high);
     const std::uint64_t triangles = wide(surface.result.triangles_low, surface.result.triangles_high);
-    if (std::max(vertices, triangles) >= limit_32)
+    const std::uint64_t most = context_->settings().most_items;
+    if (std::max(vertices, triangles) > most)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("the surface has {} vertices and {} triangles, but the vulkan engine can number {} of each", vertices,
-                                 triangles, limit_32 - 1)};
+                                 triangles, most)};
     if (surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::spare)) return {};
     for (;;) {
         auto grown = surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::exact);

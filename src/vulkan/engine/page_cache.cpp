@@ -126,8 +126,9 @@ Result<std::vector<std::uint32_t>> PageCache::load(std::span<const std::uint32_t
     for (const std::uint32_t page : missing) {
         if (progress.cancelled()) return cancelled();
         if (auto ok = fit_page(page, now); !ok) {
-            if (ok.error().code != ErrorCode::out_of_memory || there.empty()) return ok.error();
-            break;
+            if (ok.error().code == ErrorCode::out_of_memory && !there.empty()) break;
+            static_cast<void>(upload_table()); // others have gone for it
+            return ok.error();
         }
         pages_[page].last_use = now;
         there.push_back(page);

@@ -27,7 +27,10 @@ struct PlannedPage {
     std::uint32_t points() const { return layout.own_points + static_cast<std::uint32_t>(halo.size()); }
 };
 
-/// Pages of about `page_bytes`, each of one cluster at least, halos beside.
+/// Words of a page are numbered by 32 bits, and by signed ones in kernels.
+constexpr std::uint64_t most_page_bytes = std::uint64_t{1} << 30;
+
+/// Pages of about `page_bytes`, most_page_bytes at most, each of one cluster at least, halos beside.
 ///
 /// `packed`     single precision, fewer than 2^32 points
 /// Cost         O(C + foreign points); parallel
