@@ -3,6 +3,7 @@
 // on the same grid on the device.
 #include "golden/golden_files.hpp"
 #include "gpu_engine/engines.hpp"
+#include "vulkan/engine/surface_buffers.hpp"
 
 namespace isotet::test {
 namespace {
@@ -27,6 +28,7 @@ protected:
             on_device.set_field(packed, find_field(grid, name).value()).value();
             const double isovalue = packed.field().lower + 0.375 * (packed.field().upper - packed.field().lower);
             expect_same(on_device, packed, {isovalue}, options_for(grid));
+            EXPECT_EQ(on_device.extract(isovalue).value().buffers()->result.many_edges, 0u) << "docs/decisions/0005 says so";
         }
     }
 
