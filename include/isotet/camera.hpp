@@ -57,6 +57,10 @@ struct Camera {
     /// `margin`   part of the picture that is left free on each side, below 0.5
     void fit(const Box& box, double aspect, double margin = 0.04);
 
+    /// The same of all vertices of a surface that are finite: closer than their box, which has corners where nothing is.
+    /// Cost   one pass
+    void fit(const Surface& surface, double aspect, double margin = 0.04);
+
     /// Goes around the target: `azimuth` degrees to the right about `up`, then `elevation` degrees upwards, as far as just below
     /// the pole.
     void orbit(double azimuth, double elevation);

@@ -40,6 +40,12 @@ std::array<double, 3> upright(const std::array<double, 3>& direction, const std:
     return unit(plus(up, direction, -dot(up, direction)));
 }
 
+std::array<double, 3> middle_of(const Box& box) {
+    std::array<double, 3> middle{};
+    for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = box.lower[axis] / 2 + box.upper[axis] / 2;
+    return middle;
+}
+
 /// Largest and smallest sums that decide how far away a camera must be for an axis of the picture.
 struct Extent {
     double right = -INFINITY, left = -INFINITY;
@@ -70,34 +76,62 @@ Camera camera_of(View view, Projection projection) {
     return camera;
 }
 
-void Camera::fit(const Box& box, double aspect, double margin) {
-    Box around = box;
-    if (around.empty()) around = {{0, 0, 0}, {0, 0, 0}};
-    const std::array<double, 3> right = cross(up, direction);
+namespace {
+
+/// Fits a camera to points, which `each` hands out one by one, relative to the middle of their box.
+template <class EachPoint>
+void fit_to(Camera& camera, const Box& around, const EachPoint& each, double aspect, double margin) {
+    const std::array<double, 3> right = cross(camera.up, camera.direction);
     double widest = 0;
-    std::array<double, 3> middle{};
-    for (int axis = 0; axis < 3; ++axis) {
-        middle[axis] = around.lower[axis] / 2 + around.upper[axis] / 2;
-        widest = std::max(widest, around.upper[axis] - around.lower[axis]);
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis) widest = std::max(widest, around.upper[axis] - around.lower[axis]);
     if (!(widest > 0)) widest = 1; // a single point still has a picture
     const double part = 1 - 2 * margin;
-    const double slope = std::tan(radians(angle) / 2) * part;
+    const double slope = std::tan(radians(camera.angle) / 2) * part;
     Extent across, upwards, flat_across, flat_upwards;
-    for (int corner = 0; corner < 8; ++corner) {
-        std::array<double, 3> p{};
-        for (int axis = 0; axis < 3; ++axis) p[axis] = (corner >> axis & 1 ? around.upper[axis] : around.lower[axis]) - middle[axis];
-        const double x = dot(p, right), y = dot(p, up), z = dot(p, direction);
+    each([&](const std::array<double, 3>& p) {
+        const double x = dot(p, right), y = dot(p, camera.up), z = dot(p, camera.direction);
         across.add(x, z, slope * aspect);
         upwards.add(y, z, slope);
         flat_across.add(x, z, 0);
         flat_upwards.add(y, z, 0);
-    }
-    const bool flat = projection == Projection::parallel;
+    });
+    const bool flat = camera.projection == Projection::parallel;
     const double extent = std::max({flat_upwards.right + flat_upwards.left, (flat_across.right + flat_across.left) / aspect, widest * 1e-3});
-    height = extent / part;
-    distance = flat ? 2 * widest : std::max({across.distance(slope * aspect), upwards.distance(slope), widest * 1e-3});
-    target = plus(plus(middle, right, (flat ? flat_across : across).middle()), up, (flat ? flat_upwards : upwards).middle());
+    camera.height = extent / part;
+    camera.distance = flat ? 2 * widest : std::max({across.distance(slope * aspect), upwards.distance(slope), widest * 1e-3});
+    camera.target = plus(plus(middle_of(around), right, (flat ? flat_across : across).middle()), camera.up, (flat ? flat_upwards : upwards).middle());
+}
+
+} // namespace
+
+void Camera::fit(const Box& box, double aspect, double margin) {
+    const Box around = box.empty() ? Box{{0, 0, 0}, {0, 0, 0}} : box;
+    const std::array<double, 3> middle = middle_of(around);
+    const auto corners = [&](const auto& add) {
+        for (int corner = 0; corner < 8; ++corner) {
+            std::array<double, 3> p{};
+            for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = (corner >> axis & 1 ? around.upper[axis] : around.lower[axis]) - middle[axis];
+            add(p);
+        }
+    };
+    fit_to(*this, around, corners, aspect, margin);
+}
+
+void Camera::fit(const Surface& surface, double aspect, double margin) {
+    const Box around = bounds_of(surface);
+    if (around.empty()) return fit(around, aspect, margin);
+    const std::array<double, 3> middle = middle_of(around);
+    const auto vertices = [&](const auto& add) {
+        surface.positions.visit([&](auto positions) {
+            for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+                std::array<double, 3> p{};
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    p[axis] = static_cast<double>(positions[i + axis]) + (surface.origin[axis] - middle[axis]);
+                if (std::isfinite(p[0] + p[1] + p[2])) add(p);
+            }
+        });
+    };
+    fit_to(*this, around, vertices, aspect, margin);
 }
 
 void Camera::orbit(double azimuth, double elevation) {

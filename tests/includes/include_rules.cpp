@@ -51,6 +51,7 @@ const std::vector<LibraryRule>& library_rules() {
         {"HDF5", {"hdf5", "H5"}, {"src/io/", "tests/"}},
         {"oneTBB", {"tbb/", "oneapi/"}, {"src/", "bench/", "tests/"}},
         {"Vulkan", {"vulkan/vulkan"}, {"src/vulkan/", "tests/"}},
+        {"FreeType", {"ft2build", "freetype"}, {"src/render/"}},
         {"libpng", {"png.h"}, {"src/io/own/", "tests/"}},
         {"fmt", {"fmt/"}, {"src/", "apps/", "bench/", "tests/"}},
         {"CLI11", {"CLI/"}, {"apps/", "tests/"}},

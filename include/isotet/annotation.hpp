@@ -1,0 +1,49 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/picture.hpp>
+#include <isotet/render.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+/// A colour and what it means.
+struct LegendEntry {
+    Color color;
+    std::string text;
+};
+
+/// What is written beside a picture: at the right a colour scale with ticks at round numbers, or a legend, or both, under a
+/// title; below a caption. Text is UTF-8; a font is part of isotet, with Latin and Greek letters, and what it lacks is a box.
+struct Annotation {
+    std::string title;
+    std::optional<ColorScale> scale;
+    std::string no_data; ///< what the scale's colour for no data means; empty: it is not shown
+    std::vector<LegendEntry> legend;
+    std::string caption; ///< cut off with an ellipsis where it is too long
+
+    bool empty() const noexcept { return !scale && legend.empty() && caption.empty(); }
+};
+
+struct PictureSize {
+    std::uint32_t width = 0, height = 0;
+};
+
+/// What an annotation leaves, in a picture of `whole`, for what is drawn; nothing when that would be less than half of its
+/// width or height: then the picture is too small for text.
+/// Errors   internal when the font cannot be opened
+Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole);
+
+/// A picture of `whole`, with a scene of the size that room_beside() says in its upper left corner, and the annotation beside it:
+/// dark on light backgrounds, light on dark ones. An empty background stays empty.
+///
+/// Guarantees   the same bytes for the same version of FreeType
+/// Errors       invalid_argument when the scene has another size; internal when the font cannot be opened
+Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole, const Color& background);
+
+} // namespace isotet

@@ -1,0 +1,21 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <isotet/pack.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+/// The boundary of a packed grid: all faces that its tets do not use equally often in both directions, holes of no data not
+/// counted. Triangles face outwards; a face that is used more than once too often stands there once.
+///
+/// Guarantees   the same bytes for any thread count
+/// Cost         O(T log T); about 5 to 10 bytes a tet while it works, and the surface
+/// Errors       out_of_memory; cancelled
+/// Threads      safe from many threads on one packed grid
+/// Method       faces cancel within each cluster first; those left over are sorted
+Result<Surface> boundary_of(const PackedGrid& packed, const Progress& progress = {});
+
+} // namespace isotet

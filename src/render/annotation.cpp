@@ -1,0 +1,180 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/annotation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/guard.hpp"
+#include "render/text.hpp"
+#include "render/ticks.hpp"
+
+namespace isotet {
+
+namespace {
+
+using render::TextPainter;
+using render::Tick;
+
+constexpr Color dark{0.13F, 0.13F, 0.13F, 1}, light{0.93F, 0.93F, 0.93F, 1};
+
+bool is_light(const Color& color) { return color.opacity < 0.5F || 0.3F * color.red + 0.59F * color.green + 0.11F * color.blue > 0.5F; }
+
+/// The text, or as much of it as is `width` wide, with an ellipsis.
+std::string shortened(const TextPainter& painter, std::string text, double width) {
+    if (painter.width(text) <= width) return text;
+    while (!text.empty() && painter.width(text + "\u2026") > width) {
+        do text.pop_back();
+        while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80); // whole characters
+        if (!text.empty() && static_cast<unsigned char>(text.back()) >= 0xC0) text.pop_back();
+    }
+    return text + "\u2026";
+}
+
+void fill(Picture& picture, double x, double y, double width, double height, const Color& color) {
+    const auto limit = [](double at, std::uint32_t most) { return static_cast<std::uint32_t>(std::clamp(std::round(at), 0.0, static_cast<double>(most))); };
+    for (std::uint32_t row = limit(y, picture.height); row < limit(y + height, picture.height); ++row)
+        for (std::uint32_t column = limit(x, picture.width); column < limit(x + width, picture.width); ++column)
+            render::blend(picture.pixels[std::size_t{row} * picture.width + column], color, 1);
+}
+
+/// Where everything goes, in pixels. All lengths follow from the size of the text.
+class Layout {
+public:
+    static Result<std::unique_ptr<Layout>> make(const Annotation& annotation, PictureSize whole);
+
+    std::optional<PictureSize> room() const;
+    void paint(Picture& picture, const Color& ink) const;
+
+private:
+    Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<TextPainter> text, std::unique_ptr<TextPainter> small);
+    static double text_size(PictureSize whole) { return std::max(11.0, std::min<double>(whole.width, whole.height * 4.0 / 3) / 56); }
+
+    bool has_column() const { return annotation_.scale || !annotation_.legend.empty(); }
+    double column_width() const;
+    double column_height() const;
+    double caption_height() const { return annotation_.caption.empty() ? 0 : 2.2 * size_; }
+    double bar_height() const { return std::round(0.55 * whole_.height); }
+    void paint_bar(Picture& picture, double x, double y, const Color& ink) const;
+    void paint_entry(Picture& picture, double x, double y, const LegendEntry& entry, const Color& ink) const;
+
+    const Annotation& annotation_;
+    PictureSize whole_;
+    double size_;
+    std::unique_ptr<TextPainter> text_, small_;
+    std::vector<Tick> ticks_;
+    std::vector<LegendEntry> entries_; ///< the legend, and what no data means
+    std::string title_;
+    double line_, pad_, swatch_;
+};
+
+Layout::Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<TextPainter> text, std::unique_ptr<TextPainter> small)
+    : annotation_(annotation), whole_(whole), size_(text_size(whole)), text_(std::move(text)), small_(std::move(small)),
+      entries_(annotation.legend), line_(1.45 * size_), pad_(size_), swatch_(std::round(0.95 * size_)) {
+    if (annotation.scale) {
+        ticks_ = render::ticks_of(*annotation.scale, std::max<std::size_t>(2, static_cast<std::size_t>(bar_height() / (3 * size_))));
+        if (!annotation.no_data.empty()) entries_.push_back({annotation.scale->no_data, annotation.no_data});
+    }
+    title_ = shortened(*text_, annotation.title, 0.28 * whole.width);
+}
+
+Result<std::unique_ptr<Layout>> Layout::make(const Annotation& annotation, PictureSize whole) {
+    const double size = text_size(whole);
+    auto text = TextPainter::open(size);
+    if (!text) return text.error();
+    auto small = TextPainter::open(0.85 * size);
+    if (!small) return small.error();
+    return std::unique_ptr<Layout>(new Layout(annotation, whole, *std::move(text), *std::move(small)));
+}
+
+double Layout::column_width() const {
+    if (!has_column()) return 0;
+    double widest = text_->width(title_);
+    for (const Tick& tick : ticks_) widest = std::max(widest, swatch_ + 0.8 * size_ + text_->width(tick.label));
+    for (const LegendEntry& entry : entries_) widest = std::max(widest, swatch_ + 0.5 * size_ + text_->width(entry.text));
+    return widest + 1.5 * pad_;
+}
+
+double Layout::column_height() const {
+    const double bar = annotation_.scale ? bar_height() + line_ : 0;
+    return (title_.empty() ? 0 : 1.3 * line_) + bar + line_ * static_cast<double>(entries_.size());
+}
+
+std::optional<PictureSize> Layout::room() const {
+    const double width = std::floor(whole_.width - column_width()), height = std::floor(whole_.height - caption_height());
+    if (width < 0.5 * whole_.width || height < 0.5 * whole_.height || column_height() > whole_.height) return {};
+    return PictureSize{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+void Layout::paint_entry(Picture& picture, double x, double y, const LegendEntry& entry, const Color& ink) const {
+    fill(picture, x, y, swatch_, swatch_, entry.color);
+    text_->paint(picture, x + swatch_ + 0.5 * size_, std::round(y + (swatch_ + text_->ascent()) / 2), entry.text, ink);
+}
+
+void Layout::paint_bar(Picture& picture, double x, double y, const Color& ink) const {
+    const ColorScale& scale = *annotation_.scale;
+    const double height = bar_height();
+    for (double row = 0; row < height; ++row) fill(picture, x, y + row, swatch_, 1, color_at(scale.map, 1 - (row + 0.5) / height));
+    const double stroke = std::max(1.0, std::round(size_ / 16));
+    for (const Tick& tick : ticks_) {
+        const double at = std::round(y + (1 - std::clamp(scale.place_of(tick.value), 0.0, 1.0)) * (height - stroke));
+        fill(picture, x + swatch_, at, 0.35 * size_, stroke, ink);
+        text_->paint(picture, x + swatch_ + 0.8 * size_, std::round(at + text_->ascent() / 2), tick.label, ink);
+    }
+}
+
+void Layout::paint(Picture& picture, const Color& ink) const {
+    if (has_column()) {
+        const double x = std::round(whole_.width - column_width() + 0.5 * pad_);
+        double y = std::round((whole_.height - caption_height() - column_height()) / 2);
+        if (!title_.empty()) {
+            text_->paint(picture, x, std::round(y + text_->ascent()), title_, ink);
+            y = std::round(y + 1.3 * line_);
+        }
+        if (annotation_.scale) {
+            paint_bar(picture, x, y, ink);
+            y = std::round(y + bar_height() + line_);
+        }
+        for (const LegendEntry& entry : entries_) {
+            paint_entry(picture, x, y, entry, ink);
+            y = std::round(y + line_);
+        }
+    }
+    if (annotation_.caption.empty()) return;
+    const std::string caption = shortened(*small_, annotation_.caption, whole_.width - 2 * pad_);
+    small_->paint(picture, pad_, std::round(whole_.height - 0.9 * size_), caption, ink);
+}
+
+} // namespace
+
+Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole) {
+    return core::guarded("laying out a picture", [&]() -> Result<std::optional<PictureSize>> {
+        const auto layout = Layout::make(annotation, whole);
+        if (!layout) return layout.error();
+        return (*layout)->room();
+    });
+}
+
+Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole, const Color& background) {
+    return core::guarded("annotating a picture", [&]() -> Result<Picture> {
+        const auto layout = Layout::make(annotation, whole);
+        if (!layout) return layout.error();
+        const std::optional<PictureSize> room = (*layout)->room();
+        if (!room || scene.width != room->width || scene.height != room->height) {
+            return Error{ErrorCode::invalid_argument, fmt::format("a scene of {} x {} is to be annotated, but what is left for it is {} x {}", scene.width,
+                                                                  scene.height, room ? room->width : 0, room ? room->height : 0)};
+        }
+        Picture picture{whole.width, whole.height, {}};
+        const auto byte = [](float part) { return static_cast<std::uint8_t>(std::clamp(part, 0.0F, 1.0F) * 255 + 0.5F); };
+        const std::array<std::uint8_t, 4> empty{byte(background.red), byte(background.green), byte(background.blue), byte(background.opacity)};
+        picture.pixels.resize(std::size_t{whole.width} * whole.height, empty);
+        for (std::uint32_t row = 0; row < scene.height; ++row)
+            std::copy_n(scene.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * scene.width), scene.width,
+                        picture.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * whole.width));
+        (*layout)->paint(picture, is_light(background) ? dark : light);
+        return picture;
+    });
+}
+
+} // namespace isotet
