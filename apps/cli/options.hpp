@@ -76,6 +76,9 @@ struct ExtractCommand {
     DeviceChoice device; ///< `name` is empty without --device
 };
 
+/// The opacity of the grid's boundary where none is given.
+constexpr double boundary_without_a_word = 0.1;
+
 struct RenderCommand {
     CommonOptions common;
     GridOptions grid; ///< `file` may be a surface
@@ -86,6 +89,15 @@ struct RenderCommand {
     PictureOptions picture;   ///< the camera aside
     View view = View::iso;
     bool parallel = false;
+    bool outline = false;     ///< the box around
+    bool plain = false;       ///< no text
+    std::string color_by;     ///< a field; empty: each isovalue has its colour
+    ColorScale scale;         ///< the map, the logarithm and the colour for no data
+    std::vector<double> range; ///< both ends of the scale, or none
+    std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
+    EngineChoice engine = EngineChoice::automatic;
+    std::string reference;     ///< a picture to compare with; empty: none
+    double threshold = 0.001;  ///< share of its pixels that may differ
     DeviceChoice device;
 };
 

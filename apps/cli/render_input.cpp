@@ -6,9 +6,12 @@
 
 #include <fmt/format.h>
 
+#include <isotet/boundary.hpp>
+
 #include "field_choice.hpp"
 #include "grid_source.hpp"
 #include "number_format.hpp"
+#include "render_colors.hpp"
 #include "stopwatch.hpp"
 #include "varied_field.hpp"
 
@@ -35,16 +38,22 @@ Kinds kinds_of(const std::string& file) {
     return kinds;
 }
 
-Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file, double seconds) {
-    if (!command.isovalues.empty() || command.levels > 0 || !command.field.name.empty()) {
+Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file, double seconds, Console& console) {
+    if (!command.isovalues.empty() || command.levels > 0 || !command.field.name.empty() || command.boundary) {
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("{} is a surface: it has no isovalues and no field to contour", command.grid.file)};
+                     fmt::format("{} is a surface: it has no isovalues, no field to contour (--color-by colours it) and no boundary",
+                                 command.grid.file)};
     }
     RenderInput input;
     input.format = file.format;
     input.bounds = bounds_of(file.surface);
-    input.surfaces.push_back(std::move(file.surface));
     input.read_seconds = seconds;
+    if (!command.color_by.empty()) {
+        Result<ColorField> colors = colors_of(file.surface, command, console);
+        if (!colors) return colors.error();
+        input.colors = *std::move(colors);
+    }
+    input.surface = std::move(file.surface);
     return input;
 }
 
@@ -58,6 +67,12 @@ Result<PointField> read_field(const RenderCommand& command, const GridSource& so
         if (!found) return found.error();
         name = found->name;
         read = {found->point, found->cell};
+        if (!command.color_by.empty()) {
+            const Result<FoundField> colors = choose_field(source, {command.color_by, false});
+            if (!colors) return colors.error();
+            add_names(*read.point, colors->point);
+            add_names(*read.cell, colors->cell);
+        }
     }
     Result<Grid> all = source.read(read, step, console);
     if (!all) return all.error();
@@ -87,7 +102,6 @@ Result<std::vector<double>> choose_levels(const RenderCommand& command, const Po
 
 Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
     RenderInput input;
-    input.from_grid = true;
     const Stopwatch reading;
     const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
     if (!source) return source.error();
@@ -99,34 +113,34 @@ Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
     if (!field) return field.error();
     input.read_seconds = reading.seconds();
 
+    if (!command.color_by.empty()) {
+        Result<ColorField> colors = colors_of(grid, command, console);
+        if (!colors) return colors.error();
+        input.colors = *std::move(colors);
+    }
+    const bool by_cells = input.colors && input.colors->association == Association::cell;
+    Result<std::vector<double>> levels = choose_levels(command, *field);
+    if (!levels) return levels.error();
+    input.isovalues = *std::move(levels);
+
     const Stopwatch packing;
-    const Result<PackedGrid> packed =
-        pack(grid, *field, {.gradients = true, .threads = command.common.threads}, console.progress());
+    Result<PackedGrid> packed =
+        pack(grid, *field, {.source_cells = by_cells, .gradients = true, .threads = command.common.threads}, console.progress());
     if (!packed) return packed.error();
     input.pack_seconds = packing.seconds();
     input.cells = grid.cells.count();
-    input.tets = packed->report().tets;
     input.field = field->name;
     input.lower = packed->field().lower;
     input.upper = packed->field().upper;
     input.bounds = bounds_of(*packed);
-
-    Result<std::vector<double>> levels = choose_levels(command, *field);
-    if (!levels) return levels.error();
-    input.isovalues = *std::move(levels);
-    const Stopwatch extracting;
-    ExtractOptions options;
-    options.normals = Normals::gradient;
-    options.threads = command.common.threads;
-    Result<std::vector<Extraction>> extractions = extract(*packed, input.isovalues, options, console.progress());
-    if (!extractions) return extractions.error();
-    for (Extraction& extraction : *extractions) input.surfaces.push_back(std::move(extraction.surface));
-    input.extract_seconds = extracting.seconds();
-    for (std::size_t i = 0; i < input.surfaces.size(); ++i) {
-        if (input.surfaces[i].triangle_count() > 0) continue;
-        console.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}", shortest(input.isovalues[i]), input.field,
-                                 shortest(input.lower), shortest(input.upper)));
+    if (command.boundary.value_or(boundary_without_a_word) > 0) {
+        const Stopwatch looking;
+        Result<Surface> boundary = boundary_of(*packed, console.progress());
+        if (!boundary) return boundary.error();
+        input.boundary = *std::move(boundary);
+        input.boundary_seconds = looking.seconds();
     }
+    input.packed = *std::move(packed);
     return input;
 }
 
@@ -137,7 +151,7 @@ Result<RenderInput> read_render_input(const RenderCommand& command, Console& con
     if (!kinds.surface || !command.grid.format.empty()) return take_grid(command, console);
     const Stopwatch reading;
     Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.progress());
-    if (file) return take_surface(command, *std::move(file), reading.seconds());
+    if (file) return take_surface(command, *std::move(file), reading.seconds(), console);
     // A name such as grid.vtk can be either.
     if (kinds.grid && file.error().code == ErrorCode::invalid_data) return take_grid(command, console);
     return file.error();

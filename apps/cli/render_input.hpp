@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What `isotet render` draws: surfaces from a file, or extracted from a grid.
+// What `isotet render` draws, before any isovalue: a surface from a file, or a packed grid; and what it is coloured by.
 #pragma once
 
 #include <optional>
@@ -7,29 +7,41 @@
 #include <vector>
 
 #include <isotet/camera.hpp>
-#include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/read.hpp>
 
 #include "console.hpp"
 #include "options.hpp"
 
 namespace isotet::cli {
 
-struct RenderInput {
-    std::string format;
-    bool from_grid = false;
-    std::string field;              ///< that was contoured; empty for a surface file
-    double lower = 0, upper = 0;    ///< its range
-    std::vector<double> isovalues;  ///< one a surface; none for a surface file
-    std::vector<Surface> surfaces;
-    Box bounds;                     ///< of the grid, or of the surface
-    std::uint64_t cells = 0, tets = 0;
-    double read_seconds = 0, pack_seconds = 0, extract_seconds = 0;
+/// The field that colours: a scalar a point or a cell of the grid, or a vertex or a triangle of the surface.
+struct ColorField {
+    std::string name;
+    Array values;
+    Association association = Association::point;
+    ColorScale scale;
+    bool has_no_data = false;
 };
 
-/// Reads the file, and of a grid extracts what is asked for.
-/// Errors   as of reading, packing and extracting; invalid_argument where options are for grids, but the file is a surface
+struct RenderInput {
+    std::string format;
+    std::optional<Surface> surface;    ///< of a surface file; else there is
+    std::optional<PackedGrid> packed;  ///< with gradients, and with source cells where a cell field colours
+    std::string field;                 ///< that is contoured; empty for a surface file
+    double lower = 0, upper = 0;       ///< its range
+    std::vector<double> isovalues;
+    std::optional<Surface> boundary;   ///< of the grid, if it is wanted
+    std::optional<ColorField> colors;
+    Box bounds;                        ///< of the grid, or of the surface
+    std::uint64_t cells = 0;           ///< of the grid
+    double read_seconds = 0, pack_seconds = 0, boundary_seconds = 0;
+};
+
+/// Reads the file, chooses field and isovalues, and packs.
+/// Errors   as of reading and packing; invalid_argument where options are for grids, but the file is a surface, or a field
+///          to colour by is none
 Result<RenderInput> read_render_input(const RenderCommand& command, Console& console);
 
 } // namespace isotet::cli

@@ -40,6 +40,17 @@ void add_size(CLI::App& app, PictureOptions& picture) {
         ->type_name("WxH");
 }
 
+/// A number from 0 to 1.
+void add_part(CLI::App& app, const std::string& name, std::optional<double>& part, const std::string& description) {
+    add_number(
+        app, name,
+        [&part, name](double number) {
+            if (number < 0 || number > 1) throw wrong_value(name, shortest(number), "a number from 0 to 1");
+            part = number;
+        },
+        "OPACITY", description);
+}
+
 void add_color(CLI::App& app, const std::string& name, Color& color, const std::string& description) {
     app.add_option_function<std::string>(
            name,
@@ -64,8 +75,12 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
                                          "Isovalues, separated by commas; may be repeated");
     add_count(
         app, "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
-        "N isovalues evenly inside the range of the field; without it 3")
+        "N isovalues at round numbers evenly inside the range of the field; without it 3")
         ->excludes(isovalues);
+    add_part(app, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
+    app.add_flag("--outline", render.outline, "Draw the edges of the box around");
+    add_part(app, "--opacity", render.opacity,
+             "Opacity of the surfaces, 0 to 1; without it 1, and of several isosurfaces 0.35 for all but the smallest");
     add_size(app, render.picture);
     add_choice<View>(app, "--view", render.view,
                      {{"iso", View::iso},
@@ -77,6 +92,33 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
                       {"-z", View::minus_z}},
                      "From where one looks; without it iso, obliquely from above");
     app.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
+    add_choice<EngineChoice>(app, "--engine", render.engine,
+                             {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
+                             "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
+                             "CPU");
+    add_text(app, "--color-by", render.color_by, "FIELD", "Colour by this point or cell field; without it each isovalue has its colour");
+    add_choice<ColorMap>(app, "--colormap", render.scale.map,
+                         {{"viridis", ColorMap::viridis},
+                          {"cividis", ColorMap::cividis},
+                          {"plasma", ColorMap::plasma},
+                          {"turbo", ColorMap::turbo},
+                          {"cool-warm", ColorMap::cool_warm}},
+                         "Colour map; without it viridis");
+    CLI::Option* range = add_numbers(app, "--range", render.range, "A,B", "Values at the ends of the colour map; without it those that are seen");
+    CLI::Option* logarithmic = app.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
+    for (CLI::Option* option : {range, logarithmic}) option->needs(app.get_option("--color-by"));
+    add_color(app, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
+    CLI::Option* reference = add_file(app, "--reference", render.reference, "FILE",
+                                      "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
+    add_number(
+        app, "--threshold",
+        [&](double share) {
+            if (share < 0 || share > 1) throw wrong_value("--threshold", shortest(share), "a share of the pixels, from 0 to 1");
+            render.threshold = share;
+        },
+        "SHARE", "Share of the pixels that may differ visibly from --reference; without it 0.001")
+        ->needs(reference);
+    app.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
     add_color(app, "--background", render.picture.background, "Background: white, black, transparent, or #rrggbb; without it white");
     app.footer(details);
     return app;

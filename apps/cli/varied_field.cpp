@@ -34,6 +34,12 @@ Sample sample_of(const Array& array) {
     return sample;
 }
 
+/// The nearest multiple of a power of ten, as its decimal is read: 0.1 and not 0.1000000000000001.
+double rounded_to(double value, double power) {
+    const double count = std::round(value / power);
+    return power < 1 ? count / std::round(1 / power) : count * std::round(power);
+}
+
 double score_of(const Array& array) {
     if (array.components() != 1 && array.components() != 3) return 0;
     const Sample sample = sample_of(array);
@@ -77,10 +83,12 @@ std::vector<double> levels_within(const PointField& field, std::uint64_t count) 
         low = values.front();
         high = values.back();
     }
+    const double step = high / static_cast<double>(count + 1) - low / static_cast<double>(count + 1);
+    const double power = std::pow(10.0, std::floor(std::log10(step)) - 1);
     std::vector<double> levels;
     for (std::uint64_t k = 1; k <= count; ++k) {
-        const double part = static_cast<double>(k) / static_cast<double>(count + 1);
-        levels.push_back(low * (1 - part) + high * part);
+        const double level = low + static_cast<double>(k) * step;
+        levels.push_back(power > 0 && std::isfinite(1 / power) ? rounded_to(level, power) : level);
     }
     levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     return levels;

@@ -17,7 +17,7 @@ namespace isotet::cli {
 std::string most_varied_field(const Grid& grid);
 
 /// `count` values evenly between the ends of the range; the fiftieth part of the values at either end does not count, where that
-/// leaves a range. Ascending; empty when no value is finite.
+/// leaves a range; rounded to a tenth of their distance or better. Ascending; empty when no value is finite.
 std::vector<double> levels_within(const PointField& field, std::uint64_t count);
 
 } // namespace isotet::cli

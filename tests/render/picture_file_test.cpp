@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include <isotet/picture.hpp>
+#include <isotet/compare_pictures.hpp>
 
 namespace isotet::test {
 namespace {
@@ -62,6 +62,28 @@ TEST_F(PictureFile, HoldsEveryPixel) {
         EXPECT_EQ(back.width, 7u);
         EXPECT_TRUE(back.pixels == picture.pixels);
     }
+}
+
+TEST_F(PictureFile, IsReadBack) {
+    ASSERT_TRUE(write_picture(sample(9), path("a.png")));
+    const Picture back = read_picture(path("a.png")).value();
+    EXPECT_TRUE(back.pixels == sample(9).pixels);
+    EXPECT_EQ(difference(back, sample(9)).value(), 0);
+    EXPECT_NEAR(difference(back, sample(200)).value(), 1.0 / 35, 1e-12) << "one pixel has another opacity";
+    EXPECT_FALSE(difference(back, {}));
+}
+
+TEST_F(PictureFile, BrokenOnesAreErrors) {
+    ASSERT_TRUE(write_picture(sample(9), path("a.png")));
+    const std::string whole = content(path("a.png"));
+    for (std::size_t length = 1; length < whole.size(); ++length) {
+        std::ofstream(path("b.png"), std::ios::binary) << whole.substr(0, length);
+        const Result<Picture> picture = read_picture(path("b.png"));
+        ASSERT_TRUE(!picture || length + 16 >= whole.size()) << length; // all pixels may be there before the last chunk
+    }
+    EXPECT_EQ(read_picture(path("none.png")).error().code, ErrorCode::file);
+    std::ofstream(path("b.png")) << "no picture";
+    EXPECT_EQ(read_picture(path("b.png")).error().code, ErrorCode::invalid_data);
 }
 
 TEST_F(PictureFile, IsTheSameEveryTime) {

@@ -21,12 +21,13 @@ protected:
 };
 
 TEST_F(Render, DrawsTheSamePictureEveryTime) {
-    const auto report = json_of(command("make:kuhn:8:sphere,gyroid", "a.png"));
+    const std::vector<std::string> nothing_else{"--plain", "--boundary", "0", "--opacity", "1"};
+    const auto report = json_of(command("make:kuhn:8:sphere,gyroid", "a.png", nothing_else));
     EXPECT_EQ(report["field"], "sphere");
     EXPECT_EQ(report["surfaces"].size(), 3u);
     EXPECT_EQ(report["width"], 80);
     EXPECT_EQ(report["drawing"]["bytes_down"], 80 * 60 * 4) << "nothing but the picture comes back";
-    ASSERT_EQ(isotet(command("make:kuhn:8:sphere,gyroid", "b.png")).status, 0);
+    ASSERT_EQ(isotet(command("make:kuhn:8:sphere,gyroid", "b.png", nothing_else)).status, 0);
     EXPECT_GT(content(path("a.png")).size(), 500u);
     EXPECT_TRUE(content(path("a.png")) == content(path("b.png")));
 }
@@ -39,6 +40,56 @@ TEST_F(Render, DrawsASurfaceFromAFile) {
     const RunResult run = isotet(command(path("s.stl"), "s.png", {"-i", "1", "-q"}));
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "is a surface: it has no isovalues"));
+}
+
+TEST_F(Render, ColoursAndSaysWhatTheColoursMean) {
+    auto words = command("make:kuhn:8:sphere,gyroid", "a.png", {"-f", "sphere", "-i", "0.5", "--color-by", "gyroid", "--colormap", "cool-warm"});
+    auto report = json_of(words);
+    EXPECT_EQ(report["color_by"], "gyroid");
+    EXPECT_LE(report["color_range"][0], -1);
+    EXPECT_EQ(report["boundary_faces"], 6 * 8 * 8 * 2);
+    words.insert(words.end(), {"--range", "-0.5,0.5"});
+    report = json_of(words);
+    EXPECT_EQ(report["color_range"][1], 0.5);
+    words.insert(words.end(), {"--log", "-q"});
+    const RunResult run = isotet(words);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "--range begins with -0.5, but --log takes positive numbers only"));
+}
+
+TEST_F(Render, ExtractsOnEitherEngineTheSamePicture) {
+    const std::vector<std::string> more{"-f", "gyroid", "-i", "0.2", "--color-by", "sphere"};
+    auto on_cpu = command("make:kuhn:8:sphere,gyroid", "cpu.png", more), on_device = command("make:kuhn:8:sphere,gyroid", "device.png", more);
+    on_device.insert(on_device.end(), {"--engine", "vulkan"});
+    EXPECT_EQ(json_of(on_cpu)["engine"], "cpu");
+    const auto report = json_of(on_device);
+    EXPECT_EQ(report["engine"], "vulkan");
+    EXPECT_LT(report["extracting"]["bytes_down"], 1000) << "the surface stays where it is";
+    EXPECT_GT(content(path("device.png")).size(), 1000u);
+}
+
+TEST_F(Render, ComparesWithAReference) {
+    ASSERT_EQ(isotet(command("make:kuhn:8:sphere", "a.png", {"-i", "0.5"})).status, 0);
+    const auto again = [&](const char* isovalue, const char* threshold) {
+        return isotet(command("make:kuhn:8:sphere", "b.png", {"-i", isovalue, "--reference", path("a.png"), "--threshold", threshold}));
+    };
+    EXPECT_EQ(again("0.5", "0").status, 0);
+    const RunResult other = again("0.7", "0.001");
+    EXPECT_EQ(other.status, 1);
+    EXPECT_NE(other.err.find("% of the pixels differ from "), std::string::npos) << other.err;
+    EXPECT_EQ(again("0.7", "1").status, 0);
+    const RunResult missing = isotet({"render", "make:kuhn:8:sphere", "-o", path("b.png"), "--reference", path("none.png")});
+    EXPECT_EQ(missing.status, 3);
+}
+
+TEST_F(Render, WritesTextWhereThereIsRoom) {
+    const auto words = [&](const char* out, const char* size) {
+        return std::vector<std::string>{"render", "make:kuhn:8:sphere", "-o", path(out), "--size", size, "--device", "software"};
+    };
+    RunResult run = isotet(words("a.png", "400x300"));
+    EXPECT_EQ(run.err.find("too small for text"), std::string::npos) << run.err;
+    run = isotet(words("b.png", "40x30"));
+    EXPECT_NE(run.err.find("the picture, 40 x 30, is too small for text"), std::string::npos) << run.err;
 }
 
 TEST_F(Render, SaysThatASoftwareDeviceDraws) {

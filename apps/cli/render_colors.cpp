@@ -1,0 +1,115 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render_colors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "number_format.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+/// The range of what has a colour: finite values, on a logarithmic scale positive ones.
+struct Seen {
+    double lower = INFINITY, upper = -INFINITY;
+    bool no_data = false;
+};
+Seen look_at(const Array& values, bool positive) {
+    Seen seen;
+    values.visit([&](auto scalars) {
+        for (const auto scalar : scalars) {
+            const auto value = static_cast<double>(scalar);
+            seen.no_data = seen.no_data || std::isnan(value);
+            if (!std::isfinite(value) || (positive && value <= 0)) continue;
+            seen.lower = std::min(seen.lower, value);
+            seen.upper = std::max(seen.upper, value);
+        }
+    });
+    return seen;
+}
+
+/// A field with one value, or none, still has a scale: around that value.
+void widen(ColorScale& scale) {
+    if (scale.lower < scale.upper) return;
+    const double value = std::isfinite(scale.lower) ? scale.lower : scale.logarithmic ? 1 : 0;
+    const double half = value == 0 ? 1 : std::abs(value) / 2;
+    scale.lower = value - half;
+    scale.upper = value + half;
+}
+
+Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Console& console) {
+    if (field.values.components() != 1) {
+        return wrong(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
+                                 field.values.components(), field.name));
+    }
+    field.scale = command.scale;
+    const Seen seen = look_at(field.values, command.scale.logarithmic);
+    field.has_no_data = seen.no_data;
+    if (command.range.empty()) {
+        if (!(seen.lower <= seen.upper)) console.note(fmt::format("'{}' has no value that could have a colour", field.name));
+        field.scale.lower = seen.lower;
+        field.scale.upper = seen.upper;
+        widen(field.scale);
+        return field;
+    }
+    if (command.range.size() != 2 || !(command.range[0] < command.range[1]))
+        return wrong("--range takes two numbers, the smaller one first, such as 0,100");
+    if (command.scale.logarithmic && command.range[0] <= 0)
+        return wrong(fmt::format("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0])));
+    field.scale.lower = command.range[0];
+    field.scale.upper = command.range[1];
+    return field;
+}
+
+const Array* find(const std::vector<Field>& fields, const std::string& name) {
+    const auto found = std::ranges::find(fields, name, &Field::name);
+    return found == fields.end() ? nullptr : &found->values;
+}
+
+/// What the user had: values / scale + offset.
+Array in_user_units(const SurfaceField& field) {
+    if (field.offset == 0 && field.scale == 1) return field.values;
+    std::vector<double> values(field.values.size());
+    field.values.visit([&](auto scalars) {
+        std::ranges::transform(scalars, values.begin(), [&](auto scalar) { return static_cast<double>(scalar) / field.scale + field.offset; });
+    });
+    return Array::own(std::move(values), field.values.components());
+}
+
+} // namespace
+
+Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Console& console) {
+    const std::string& name = command.color_by;
+    const Array* cells = find(grid.cell_fields, name);
+    if (cells && !find(grid.point_fields, name)) return with_scale({name, *cells, Association::cell, {}, false}, command, console);
+    const Result<PointField> found = find_field(grid, name, {.threads = command.common.threads});
+    if (!found) return found.error();
+    return with_scale({name, found->values, Association::point, {}, false}, command, console);
+}
+
+Result<ColorField> colors_of(const Surface& surface, const RenderCommand& command, Console& console) {
+    Grid vertices;
+    vertices.points = surface.positions;
+    for (const SurfaceField& field : surface.point_fields) vertices.point_fields.push_back({field.name, in_user_units(field)});
+    std::vector<std::string> names;
+    for (const SurfaceField& field : surface.point_fields) names.push_back(field.name);
+    if (const auto match = match_field_name(command.color_by, names)) {
+        const Result<PointField> found = find_field(vertices, command.color_by, {.threads = command.common.threads});
+        if (!found) return found.error();
+        return with_scale({command.color_by, found->values, Association::point, {}, false}, command, console);
+    }
+    for (const SurfaceField& field : surface.cell_fields) {
+        names.push_back(field.name);
+        if (field.name == command.color_by) return with_scale({field.name, in_user_units(field), Association::cell, {}, false}, command, console);
+    }
+    std::string there;
+    for (const std::string& name : nearest_first(command.color_by, names)) there += fmt::format("{}'{}'", there.empty() ? "" : ", ", name);
+    return wrong(fmt::format("--color-by names '{}', but the surface has {}", command.color_by, there.empty() ? "no fields" : there));
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,95 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render_report.hpp"
+
+#include <fmt/format.h>
+
+#include "number_format.hpp"
+#include "report.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+std::string times_text(const RenderInput& input, const RenderScene& scene, const PictureNumbers& picture) {
+    std::string text = "read " + seconds_text(input.read_seconds);
+    if (input.packed) text += ", pack " + seconds_text(input.pack_seconds);
+    if (input.boundary) text += ", boundary " + seconds_text(input.boundary_seconds);
+    if (input.packed) text += fmt::format(", upload {}, extract {}", seconds_text(scene.upload_seconds()), seconds_text(scene.extract_seconds()));
+    else text += ", upload " + seconds_text(scene.extract_seconds());
+    return text + fmt::format(", draw {}, write {}", seconds_text(picture.draw_seconds), seconds_text(picture.write_seconds));
+}
+
+Json json_of(const DeviceWork& work) {
+    Json passes = Json::array();
+    for (const DevicePass& pass : work.passes) passes.push_back({{"name", pass.name}, {"seconds", pass.seconds}});
+    return {{"passes", std::move(passes)},
+            {"device_seconds", work.device_seconds},
+            {"submissions", work.submissions},
+            {"bytes_up", work.uploaded_bytes},
+            {"bytes_down", work.downloaded_bytes}};
+}
+
+} // namespace
+
+std::string percent_text(double share) { return rounded(100 * share) + " %"; }
+
+std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
+                         const PictureNumbers& picture) {
+    Table table = facts();
+    table.row({input.surface ? "surface" : "grid", fmt::format("{} ({})", command.grid.file, input.format)});
+    if (input.packed) {
+        table.row({"cells", grouped(input.cells)});
+        table.row({"field", fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper))});
+    }
+    if (input.boundary) table.row({"boundary", grouped(input.boundary->triangle_count()) + " faces"});
+    for (const SurfaceCounts& surface : scene.surfaces()) {
+        const std::string what = surface.isovalue ? "isovalue " + rounded(*surface.isovalue) : "surface";
+        table.row({what, grouped(surface.triangles) + " triangles"});
+    }
+    if (input.colors)
+        table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower), rounded(input.colors->scale.upper))});
+    table.row({"device", fmt::format("{} ({})", device.info().name, name_of(device.info().kind))});
+    if (input.packed) table.row({"engine", scene.engine()});
+    table.row({"time", times_text(input, scene, picture)});
+    table.row({"picture", fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height, bytes_text(picture.bytes))});
+    if (picture.differs) table.row({"reference", fmt::format("{}: {} of the pixels differ", command.reference, percent_text(*picture.differs))});
+    return table.text();
+}
+
+Json render_json(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
+                 const PictureNumbers& picture) {
+    Json report = json_report("render");
+    report["input"] = json_text(command.grid.file);
+    report["format"] = input.format;
+    report["field"] = input.packed ? json_text(input.field) : Json(nullptr);
+    report["range"] = input.packed ? Json({input.lower, input.upper}) : Json(nullptr);
+    report["color_by"] = input.colors ? json_text(input.colors->name) : Json(nullptr);
+    report["color_range"] = input.colors ? Json({input.colors->scale.lower, input.colors->scale.upper}) : Json(nullptr);
+    report["boundary_faces"] = input.boundary ? Json(input.boundary->triangle_count()) : Json(nullptr);
+    Json surfaces = Json::array();
+    for (const SurfaceCounts& surface : scene.surfaces()) {
+        surfaces.push_back({{"isovalue", surface.isovalue ? Json(*surface.isovalue) : Json(nullptr)},
+                            {"vertices", surface.vertices},
+                            {"triangles", surface.triangles}});
+    }
+    report["surfaces"] = std::move(surfaces);
+    report["device"] = {{"name", json_text(device.info().name)}, {"kind", name_of(device.info().kind)}};
+    report["engine"] = scene.engine();
+    report["seconds"] = {{"read", input.read_seconds},
+                         {"pack", input.pack_seconds},
+                         {"boundary", input.boundary_seconds},
+                         {"upload", scene.upload_seconds()},
+                         {"extract", scene.extract_seconds()},
+                         {"draw", picture.draw_seconds},
+                         {"write", picture.write_seconds}};
+    report["extracting"] = json_of(scene.extract_work());
+    report["drawing"] = json_of(picture.drawing);
+    report["file"] = json_text(picture.file);
+    report["width"] = command.picture.width;
+    report["height"] = command.picture.height;
+    report["bytes"] = picture.bytes;
+    report["differs"] = picture.differs ? Json(*picture.differs) : Json(nullptr);
+    return report;
+}
+
+} // namespace isotet::cli

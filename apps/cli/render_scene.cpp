@@ -1,0 +1,199 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render_scene.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <isotet/extract.hpp>
+
+#include "number_format.hpp"
+#include "stopwatch.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr double opacity_among_several = 0.35;
+
+/// Isosurfaces have colours of their own: from the dark to the light of the map, in the order of their values.
+Color color_among(const std::vector<SurfaceCounts>& surfaces, std::size_t which, ColorMap map) {
+    if (surfaces.size() < 2) return DrawnSurface{}.color;
+    const auto below = std::ranges::count_if(surfaces, [&](const SurfaceCounts& one) { return one.isovalue < surfaces[which].isovalue; });
+    return color_at(map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(surfaces.size() - 1));
+}
+
+} // namespace
+
+Result<void> RenderScene::load() {
+    const Stopwatch uploading;
+    scene_.bounds = input_.bounds;
+    if (input_.boundary)
+        if (Result<void> done = upload_boundary(); !done) return done;
+    const bool card = device_.info().kind != DeviceKind::software;
+    if (input_.packed && (command_.engine == EngineChoice::vulkan || (command_.engine == EngineChoice::automatic && card))) {
+        if (Result<void> done = upload_grid(); !done) {
+            if (command_.engine == EngineChoice::vulkan || done.error().code == ErrorCode::cancelled) return done;
+            console_.note(fmt::format("{}: the CPU extracts instead", done.error().message));
+            grid_.reset();
+        }
+    }
+    upload_seconds_ = uploading.seconds();
+    return {};
+}
+
+Result<void> RenderScene::upload_boundary() {
+    Result<DeviceMesh> mesh = DeviceMesh::upload(device_, *input_.boundary);
+    if (!mesh) return mesh.error();
+    boundary_ = *std::move(mesh);
+    return {};
+}
+
+Result<void> RenderScene::upload_grid() {
+    Result<DeviceGrid> grid = DeviceGrid::upload(device_, *input_.packed, {}, console_.progress());
+    if (!grid) return grid.error();
+    grid_ = *std::move(grid);
+    if (!input_.colors) return {};
+    const ColorField& field = *input_.colors;
+    Result<DeviceColors> colors = DeviceColors::of_grid(device_, *input_.packed, field.values, field.association, field.scale);
+    if (!colors) return colors.error();
+    grid_colors_ = *std::move(colors);
+    return {};
+}
+
+Result<void> RenderScene::show(const std::vector<double>& isovalues) {
+    scene_.surfaces.clear();
+    scene_.lines.clear();
+    meshes_.clear();
+    mesh_colors_.clear();
+    counts_.clear();
+    const Stopwatch extracting;
+    const Result<void> done = input_.surface ? add_mesh(*input_.surface) : grid_ ? extract_on_device(isovalues) : extract_on_cpu(isovalues);
+    if (!done) return done;
+    extract_seconds_ = extracting.seconds();
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        counts_[i].isovalue = isovalues[i];
+        if (counts_[i].triangles > 0) continue;
+        console_.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}", shortest(isovalues[i]), input_.field,
+                                  shortest(input_.lower), shortest(input_.upper)));
+    }
+    dress();
+    return {};
+}
+
+Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues) {
+    ExtractOptions options;
+    options.normals = Normals::gradient;
+    options.edge_ends = input_.colors && input_.colors->association == Association::point;
+    options.source_cells = input_.colors && input_.colors->association == Association::cell;
+    Result<std::vector<DeviceSurface>> surfaces = grid_->extract(isovalues, options, console_.progress());
+    if (!surfaces) return surfaces.error();
+    surfaces_ = *std::move(surfaces);
+    work_ = grid_->work();
+    for (const DeviceSurface& surface : surfaces_) {
+        DrawnSurface& drawn = scene_.surfaces.emplace_back();
+        drawn.surface = &surface;
+        if (grid_colors_) drawn.colors = &*grid_colors_;
+        counts_.push_back({{}, surface.vertices(), surface.triangle_count()});
+    }
+    return {};
+}
+
+Result<void> RenderScene::extract_on_cpu(const std::vector<double>& isovalues) {
+    ExtractOptions options;
+    options.normals = Normals::gradient;
+    options.threads = command_.common.threads;
+    if (input_.colors) {
+        auto& fields = input_.colors->association == Association::point ? options.point_fields : options.cell_fields;
+        fields.push_back({input_.colors->name, input_.colors->values});
+    }
+    const Result<std::vector<Extraction>> extractions = extract(*input_.packed, isovalues, options, console_.progress());
+    if (!extractions) return extractions.error();
+    for (const Extraction& extraction : *extractions)
+        if (Result<void> added = add_mesh(extraction.surface); !added) return added;
+    return {};
+}
+
+Result<void> RenderScene::add_mesh(const Surface& surface) {
+    Result<DeviceMesh> mesh = DeviceMesh::upload(device_, surface);
+    if (!mesh) return mesh.error();
+    DrawnSurface& drawn = scene_.surfaces.emplace_back();
+    drawn.mesh = &meshes_.emplace_back(*std::move(mesh));
+    counts_.push_back({{}, surface.vertices(), surface.triangle_count()});
+    return input_.colors ? add_colors(drawn, surface) : Result<void>();
+}
+
+Result<void> RenderScene::add_colors(DrawnSurface& drawn, const Surface& surface) {
+    const ColorField& field = *input_.colors;
+    Array values = field.values;
+    ColorScale scale = field.scale;
+    if (!input_.surface) { // interpolated by the engine: values / scale + offset is what the user had
+        const SurfaceField& carried = field.association == Association::point ? surface.point_fields.front() : surface.cell_fields.front();
+        std::vector<double> back(carried.values.size());
+        carried.values.visit([&](auto scalars) {
+            std::ranges::transform(scalars, back.begin(), [&](auto scalar) { return static_cast<double>(scalar) / carried.scale + carried.offset; });
+        });
+        values = Array::own(std::move(back));
+    }
+    Result<DeviceColors> colors = DeviceColors::of_mesh(device_, values, field.association, scale);
+    if (!colors) return colors.error();
+    drawn.colors = &mesh_colors_.emplace_back(*std::move(colors));
+    return {};
+}
+
+/// Colours and opacities, and what is around the surfaces.
+void RenderScene::dress() {
+    std::size_t smallest = 0;
+    for (std::size_t i = 0; i < counts_.size(); ++i)
+        if (counts_[i].triangles > 0 && (counts_[smallest].triangles == 0 || counts_[i].triangles < counts_[smallest].triangles)) smallest = i;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        DrawnSurface& drawn = scene_.surfaces[i];
+        drawn.color = color_among(counts_, i, command_.scale.map);
+        drawn.opacity = command_.opacity.value_or(counts_.size() == 1 || i == smallest ? 1 : opacity_among_several);
+    }
+    if (command_.outline) scene_.lines.push_back(outline_of(input_.bounds));
+    for (DrawnLines& lines : scene_.lines) lines.width = std::max(1.0, command_.picture.height / 600.0);
+    if (!boundary_) return;
+    DrawnSurface& drawn = scene_.surfaces.emplace_back();
+    drawn.mesh = &*boundary_;
+    drawn.color = {0.62F, 0.66F, 0.70F, 1};
+    drawn.opacity = command_.boundary.value_or(boundary_without_a_word);
+}
+
+void RenderScene::fit(Camera& camera, double aspect) const {
+    if (input_.surface) camera.fit(*input_.surface, aspect);
+    else if (input_.boundary && !command_.outline) camera.fit(*input_.boundary, aspect);
+    else camera.fit(input_.bounds, aspect);
+}
+
+Annotation RenderScene::annotation() const {
+    Annotation annotation;
+    if (command_.plain) return annotation;
+    std::uint64_t triangles = 0;
+    for (const SurfaceCounts& surface : counts_) triangles += surface.triangles;
+    const std::string name = std::filesystem::path(command_.grid.file).filename().string();
+    if (input_.surface) annotation.caption = fmt::format("{}  ·  {} triangles", name, grouped(triangles));
+    else if (counts_.size() == 1)
+        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} = {}  ·  {} triangles", name, grouped(input_.cells), input_.field,
+                                         rounded(*counts_.front().isovalue), grouped(triangles));
+    else
+        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} at {} isovalues  ·  {} triangles", name, grouped(input_.cells), input_.field,
+                                         counts_.size(), grouped(triangles));
+    if (input_.colors) {
+        annotation.title = input_.colors->name;
+        annotation.scale = input_.colors->scale;
+        if (input_.colors->has_no_data) annotation.no_data = "no data";
+    } else if (counts_.size() > 1) {
+        annotation.title = input_.field;
+        std::vector<std::size_t> order(counts_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::sort(order, std::greater(), [&](std::size_t i) { return counts_[i].isovalue; }); // large values above
+        for (const std::size_t i : order) annotation.legend.push_back({scene_.surfaces[i].color, rounded(*counts_[i].isovalue)});
+    }
+    return annotation;
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,75 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What `isotet render` draws, in the device's memory: extracted there, or by the CPU and uploaded.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/annotation.hpp>
+#include <isotet/device_grid.hpp>
+#include <isotet/render.hpp>
+
+#include "console.hpp"
+#include "options.hpp"
+#include "render_input.hpp"
+
+namespace isotet::cli {
+
+/// A surface that is drawn.
+struct SurfaceCounts {
+    std::optional<double> isovalue; ///< nothing for a surface file
+    std::uint64_t vertices = 0, triangles = 0;
+};
+
+class RenderScene {
+public:
+    RenderScene(const RenderCommand& command, const RenderInput& input, const Device& device, Console& console)
+        : command_(command), input_(input), device_(device), console_(console) {}
+
+    /// Uploads what is the same for all isovalues, and decides which engine extracts.
+    Result<void> load();
+
+    /// Makes the scene that of these isovalues; of a surface file there are none.
+    Result<void> show(const std::vector<double>& isovalues);
+
+    /// Sees the whole grid, or the whole surface: the same for all isovalues.
+    void fit(Camera& camera, double aspect) const;
+
+    const Scene& scene() const noexcept { return scene_; }
+    const std::vector<SurfaceCounts>& surfaces() const noexcept { return counts_; }
+    Annotation annotation() const;
+
+    /// "vulkan", "cpu", or "none" of a surface file.
+    const char* engine() const { return input_.surface ? "none" : grid_ ? "vulkan" : "cpu"; }
+    double upload_seconds() const noexcept { return upload_seconds_; }
+    double extract_seconds() const noexcept { return extract_seconds_; } ///< of the last isovalues, with uploading by the CPU engine
+    const DeviceWork& extract_work() const noexcept { return work_; }    ///< empty with the CPU engine
+
+private:
+    Result<void> upload_boundary();
+    Result<void> upload_grid();
+    Result<void> extract_on_device(const std::vector<double>& isovalues);
+    Result<void> extract_on_cpu(const std::vector<double>& isovalues);
+    Result<void> add_mesh(const Surface& surface);
+    Result<void> add_colors(DrawnSurface& drawn, const Surface& surface);
+    void dress();
+
+    const RenderCommand& command_;
+    const RenderInput& input_;
+    const Device& device_;
+    Console& console_;
+    std::optional<DeviceMesh> boundary_;
+    std::optional<DeviceGrid> grid_;
+    std::optional<DeviceColors> grid_colors_;
+    std::vector<DeviceSurface> surfaces_;   ///< by the Vulkan engine
+    std::deque<DeviceMesh> meshes_;         ///< uploaded; places that do not move
+    std::deque<DeviceColors> mesh_colors_;
+    Scene scene_;
+    std::vector<SurfaceCounts> counts_;
+    double upload_seconds_ = 0, extract_seconds_ = 0;
+    DeviceWork work_;
+};
+
+} // namespace isotet::cli

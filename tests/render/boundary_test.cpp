@@ -1,0 +1,48 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The boundary of a packed grid: closed, as large as it must be, facing outwards, the same for any number of threads. No device.
+#include <atomic>
+
+#include <gtest/gtest.h>
+
+#include <isotet/boundary.hpp>
+#include <isotet/check.hpp>
+#include <isotet/make.hpp>
+#include <isotet/pack.hpp>
+
+namespace isotet::test {
+namespace {
+
+Surface boundary_of_made(const std::string& shape, std::size_t side, Precision precision = Precision::single) {
+    const Grid grid = make_grid({.shape = shape, .side = side, .fields = {"sphere"}}).value();
+    return boundary_of(pack(grid, find_field(grid, "sphere").value(), {.precision = precision}).value()).value();
+}
+
+TEST(Boundary, OfACubeIsTheCube) {
+    for (const char* shape : {"kuhn", "shuffled", "mixed", "hex"}) {
+        const Surface surface = boundary_of_made(shape, 9);
+        const SurfaceReport report = check(surface, {.closed = true}).value();
+        EXPECT_TRUE(report.closed) << shape;
+        EXPECT_EQ(report.triangles, 6u * 9 * 9 * 2) << shape;
+        EXPECT_EQ(report.euler, 2) << shape;
+        EXPECT_NEAR(report.area, 24, 1e-4) << shape;
+        EXPECT_NEAR(report.volume, 8, 1e-4) << shape << ": faces look outwards";
+    }
+}
+
+TEST(Boundary, OfADoublePackingIsDouble) {
+    const Surface surface = boundary_of_made("kuhn", 4, Precision::double_);
+    EXPECT_EQ(surface.positions.type(), ScalarType::float64);
+    EXPECT_EQ(surface.triangle_count(), 6u * 4 * 4 * 2);
+}
+
+TEST(Boundary, CanBeCancelled) {
+    const Grid grid = make_grid({.shape = "kuhn", .side = 4, .fields = {"sphere"}}).value();
+    const PackedGrid packed = pack(grid, find_field(grid, "sphere").value()).value();
+    const std::atomic<bool> cancel = true;
+    const Result<Surface> surface = boundary_of(packed, {.report = {}, .cancel = &cancel});
+    ASSERT_FALSE(surface);
+    EXPECT_EQ(surface.error().code, ErrorCode::cancelled);
+}
+
+} // namespace
+} // namespace isotet::test
