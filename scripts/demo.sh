@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 # From a fresh clone to isosurfaces of a real grid: installs missing packages, builds the program, extracts surfaces of
-# equal speed from the blood flow in an artery, checks them, and prints a table. A second run skips what is done.
-# Writes into build/ of the tree and nowhere else.
+# equal speed from the blood flow in an artery, checks them, draws one of them, and prints a table. A second run skips what
+# is done. Writes into build/ of the tree and nowhere else.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
+source "$root/scripts/lib/software_vulkan.sh"
 
 # Paths are relative to the tree, so that what is shown can be typed.
 readonly called_from=$PWD
@@ -16,6 +17,7 @@ readonly build=build/demo
 readonly out=$build/out
 readonly program=$build/apps/cli/isotet
 readonly table=$out/table.txt
+readonly picture=$out/artery.png
 
 if (($# > 0)); then
     echo "usage: $0    (no options; writes surfaces into build/demo/out)" >&2
@@ -51,15 +53,32 @@ extract_and_check() {
     mv "$table.unchecked" "$table"
 }
 
+draw() {
+    say "draws where $field is 0.2 m/s, coloured by pressure: $picture"
+    "$program" render "$grid" -o "$picture" -f "$field" -i 0.2 --color-by p >"$out/render.txt" 2>"$out/render.log"
+}
+
+# A graphics card draws, or a software device of this machine; else Mesa's is unpacked, as for the tests. Everything but the
+# picture works without any.
+draw_somehow() {
+    if draw; then return; fi
+    say "no device of this machine can draw: Mesa's software device shall"
+    if install_packages "${packages_for_software_vulkan[@]}" && software_vulkan "$root/$build/mesa" && draw; then return; fi
+    say "there is no picture: $(tail -n 1 "$out/render.log")"
+}
+
 print_what_next() {
+    local look=
+    if [[ -e $picture ]]; then look="look at $picture, "; fi
     cat <<NEXT
 
 Checked: every edge of the surfaces that does not lie on the boundary of the grid is shared by its triangles in both
-directions. Open the files in ParaView, or try:
+directions. Open the files in ParaView, ${look}or try:
 NEXT
     if [[ $called_from != "$root" ]]; then echo "  cd $root"; fi
     cat <<NEXT
   $program $grid
+  $program render $grid -f p -o pressure.png
   $program extract $grid pressure.stl -f p -i 180
   $program extract make:kuhn:128:gyroid gyroid.ply -f gyroid -i 0
   $program extract YOUR_GRID surface.vtp -f FIELD -i VALUE
@@ -68,7 +87,7 @@ NEXT
 NEXT
 }
 
-say "isotet demo: packages, build, extract, check"
+say "isotet demo: packages, build, extract, check, draw"
 install_packages "${packages_to_build[@]}" || exit
 build demo "$build" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF
 if up_to_date; then
@@ -76,6 +95,7 @@ if up_to_date; then
 else
     extract_and_check
 fi
+if [[ ! $picture -nt $program ]]; then draw_somehow; fi
 echo
 cat "$table"
 print_what_next
