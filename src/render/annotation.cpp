@@ -22,14 +22,18 @@ constexpr Color dark{0.13F, 0.13F, 0.13F, 1}, light{0.93F, 0.93F, 0.93F, 1};
 bool is_light(const Color& color) { return color.opacity < 0.5F || 0.3F * color.red + 0.59F * color.green + 0.11F * color.blue > 0.5F; }
 
 /// The text, or as much of it as is `width` wide, with an ellipsis.
-std::string shortened(const TextPainter& painter, std::string text, double width) {
+std::string shortened(const TextPainter& painter, const std::string& text, double width) {
     if (painter.width(text) <= width) return text;
-    while (!text.empty() && painter.width(text + "\u2026") > width) {
-        do text.pop_back();
-        while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80); // whole characters
-        if (!text.empty() && static_cast<unsigned char>(text.back()) >= 0xC0) text.pop_back();
+    const auto beginning = [&](std::size_t bytes) {
+        while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes; // whole characters
+        return text.substr(0, bytes) + "\u2026";
+    };
+    std::size_t fits = 0, too_long = text.size();
+    while (too_long - fits > 1) {
+        const std::size_t middle = fits + (too_long - fits) / 2;
+        (painter.width(beginning(middle)) <= width ? fits : too_long) = middle;
     }
-    return text + "\u2026";
+    return beginning(fits);
 }
 
 void fill(Picture& picture, double x, double y, double width, double height, const Color& color) {
