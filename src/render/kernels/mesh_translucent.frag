@@ -18,7 +18,11 @@ void main() {
 
     FragmentListAt list = FragmentListAt(view.fragments);
     const uint index = atomicAdd(list.list.count, 1u);
-    if (index >= view.fragment_room) return; // the processor sees the count, makes room, and draws again
+    if (index >= view.fragment_room) {
+        // The processor sees the count, makes room, and draws again. So many that the count would begin anew have room nowhere.
+        if (index > 0xf0000000u) atomicExchange(list.list.count, 0xf0000000u);
+        return;
+    }
     const uint row = view.width * view.samples;
     Words head = Words(advance(view.heads, uint(gl_FragCoord.y) * row + uint(gl_FragCoord.x), 4u));
     FragmentAt place = fragment_at(view, index);
