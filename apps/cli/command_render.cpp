@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet render`: a picture of isosurfaces, or of a surface.
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -36,15 +37,13 @@ Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console)
     if (choice.name == "none") return Error{ErrorCode::invalid_argument, "--device is none, but only a device can draw"};
     Result<std::optional<Device>> device = open_device(choice, console);
     if (!device && choice.name.empty() && device.error().code == ErrorCode::machine) {
+        const Result<DeviceList> list = list_devices();
+        const auto draws = [](const DeviceInfo& one) { return one.kind == DeviceKind::software && one.unusable.empty(); };
+        if (!list || std::ranges::none_of(list->devices, draws))
+            return Error{ErrorCode::machine, "nothing can be drawn: " + device.error().message};
         DeviceChoice software = choice;
         software.name = "software";
-        const std::string no_card = device.error().message;
         device = open_device(software, console);
-        if (!device) {
-            const std::string& no_software = device.error().message;
-            return Error{device.error().code,
-                         "nothing can be drawn: " + (no_software == no_card ? no_card : fmt::format("{}; and {}", no_card, no_software))};
-        }
     }
     if (!device) return device.error();
     if ((*device)->info().kind == DeviceKind::software) console.note(fmt::format("a software device draws: {}", (*device)->info().name));
