@@ -20,7 +20,7 @@ usage: bench.sh [--quick] [--threads N] [--max-tets N] [--wheel] [OPTION...]
   --rounds N       how often everything is measured (5)
   --pack-rounds N  how often packing and what goes with it is measured (as --rounds; 3 with --quick)
   --isovalues N    surfaces a round, 1 to 5 (5; 3 with --quick)
-  --only TEXT      only made and shipped grids whose name holds TEXT
+  --only TEXT[,TEXT]  only made and shipped grids whose name holds one of the texts
   --file PATH FIELD   race on this grid, too
   --out FOLDER     where results go (build/bench/results)
   --note TEXT      a sentence about the circumstances, kept with the results

@@ -27,7 +27,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--pack-rounds", type=int,
                         help="how often packing and what goes with it is measured (as --rounds; 3 with --quick)")
     parser.add_argument("--isovalues", type=int, choices=range(1, 6), help="surfaces a round (5; 3 with --quick)")
-    parser.add_argument("--only", default="", metavar="TEXT", help="only made and shipped grids whose name holds TEXT")
+    parser.add_argument("--only", default="", metavar="TEXT[,TEXT]",
+                        help="only made and shipped grids whose name holds one of the texts")
     parser.add_argument("--file", nargs=2, action="append", default=[], metavar=("PATH", "FIELD"),
                         help="race on this grid, too")
     parser.add_argument("--out", type=Path, help="folder of the results (FOLDER OF THE BUILD/results)")
@@ -54,7 +55,7 @@ def main(arguments: list[str]) -> int:
     options = parse(arguments)
     options.build = options.build.resolve()
     cases = made_cases(options.quick, options.max_tets) + shipped_files(ROOT)
-    cases = [case for case in cases if options.only in case.name]
+    cases = [case for case in cases if any(text in case.name for text in options.only.split(","))]
     cases += [file_case(Path(path).resolve(), field) for path, field in options.file]
     found, absent = entrants(options.build, options.wheel_python, options.vtk_ids)
     for name, why in absent.items():
