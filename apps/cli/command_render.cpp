@@ -14,6 +14,7 @@
 #include "device_choice.hpp"
 #include "json_output.hpp"
 #include "output_paths.hpp"
+#include "render_frames.hpp"
 #include "render_input.hpp"
 #include "render_report.hpp"
 #include "render_scene.hpp"
@@ -51,10 +52,11 @@ Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console)
 }
 
 /// Draws the scene, and writes beside it what belongs to it.
-Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, const RenderCommand& command, Console& console) {
+Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, const RenderCommand& command, double azimuth, Console& console) {
     PictureOptions options = command.picture;
     options.camera = camera_of(command.view, command.parallel ? Projection::parallel : Projection::perspective);
     const PictureSize whole{options.width, options.height};
+    options.camera.orbit(azimuth, 0);
     const Annotation annotation = scene.annotation();
     std::optional<PictureSize> room;
     if (!annotation.empty()) {
@@ -73,15 +75,60 @@ Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, con
     return annotate(*picture, annotation, whole, options.background);
 }
 
+/// Extracts, draws and writes one picture after another; returns the last one.
+Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Renderer& renderer, RenderScene& scene,
+                            PictureFiles& files, PictureNumbers& numbers, Console& console) {
+    Result<Picture> picture = Error{};
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (console.progress().cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (frames.size() > 1) console.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
+        if (i == 0 || frames[i].isovalues != frames[i - 1].isovalues)
+            if (Result<void> shown = scene.show(frames[i].isovalues); !shown) return shown.error();
+        const Stopwatch drawing;
+        picture = draw_annotated(renderer, scene, command, frames[i].azimuth, console);
+        if (!picture) return picture;
+        numbers.draw_seconds += drawing.seconds();
+        const Stopwatch writing;
+        if (Result<void> added = files.add(*picture); !added) return added.error();
+        numbers.write_seconds += writing.seconds();
+    }
+    const Stopwatch writing;
+    if (Result<void> finished = files.finish(); !finished) return finished.error();
+    numbers.write_seconds += writing.seconds();
+    numbers.bytes = files.bytes();
+    numbers.drawing = renderer.work();
+    return picture;
+}
+
+/// Compares with --reference.
+Result<void> compare(const Picture& picture, const Picture& reference, const RenderCommand& command, PictureNumbers& numbers, Console& console) {
+    const Result<double> differs = difference(picture, reference);
+    if (!differs) return differs.error();
+    numbers.differs = *differs;
+    if (*differs > command.threshold)
+        console.note(fmt::format("{} of the pixels differ from {}, but {} are allowed", percent_text(*differs), command.reference,
+                                 percent_text(command.threshold)));
+    return {};
+}
+
+/// Looks at the names of all files before anything is done.
+Result<PictureFiles> open_files(const RenderCommand& command) {
+    const Result<std::size_t> pictures = count_frames(command);
+    if (!pictures) return pictures.error();
+    Result<PictureFiles> files = PictureFiles::open(name_of_picture(command), *pictures, command.frames_a_second);
+    if (!files) return files;
+    std::vector<std::string> outputs = files->names();
+    outputs.push_back(command.common.json);
+    if (Result<void> paths = check_output_paths({command.grid.file, command.reference}, outputs); !paths) return paths.error();
+    return files;
+}
+
 } // namespace
 
 Result<ExitCode> run_render(const RenderCommand& command) {
     Console console(command.common);
-    PictureNumbers numbers;
-    numbers.file = name_of_picture(command);
-    if (!numbers.file.ends_with(".png"))
-        return Error{ErrorCode::invalid_argument, fmt::format("the name of the output is '{}', but it must end in .png", numbers.file)};
-    if (Result<void> paths = check_output_paths({command.grid.file, command.reference}, {numbers.file, command.common.json}); !paths) return paths.error();
+    Result<PictureFiles> files = open_files(command);
+    if (!files) return files.error();
     std::optional<Picture> reference;
     if (!command.reference.empty()) {
         Result<Picture> read = read_picture(command.reference);
@@ -94,30 +141,18 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     if (!renderer) return renderer.error();
     const Result<RenderInput> input = read_render_input(command, console);
     if (!input) return input.error();
+    const Result<std::vector<RenderFrame>> frames = frames_of(command, input->isovalues);
+    if (!frames) return frames.error();
     RenderScene scene(command, *input, *device, console);
     if (Result<void> loaded = scene.load(); !loaded) return loaded.error();
-    if (Result<void> shown = scene.show(input->isovalues); !shown) return shown.error();
 
-    const Stopwatch drawing;
-    const Result<Picture> picture = draw_annotated(*renderer, scene, command, console);
-    if (!picture) return picture.error();
-    numbers.draw_seconds = drawing.seconds();
-    numbers.drawing = renderer->work();
-
-    const Stopwatch writing;
-    const Result<std::uint64_t> bytes = write_picture(*picture, numbers.file);
-    if (!bytes) return bytes.error();
-    numbers.bytes = *bytes;
-    numbers.write_seconds = writing.seconds();
-    if (reference) {
-        const Result<double> differs = difference(*picture, *reference);
-        if (!differs) return differs.error();
-        numbers.differs = *differs;
-        if (*differs > command.threshold) {
-            console.note(fmt::format("{} of the pixels differ from {}, but {} are allowed", percent_text(*differs), command.reference,
-                                     percent_text(command.threshold)));
-        }
-    }
+    PictureNumbers numbers;
+    numbers.file = files->out();
+    numbers.pictures = frames->size();
+    const Result<Picture> last = draw_frames(*frames, command, *renderer, scene, *files, numbers, console);
+    if (!last) return last.error();
+    if (reference)
+        if (Result<void> compared = compare(*last, *reference, command, numbers, console); !compared) return compared.error();
     if (Result<void> printed = console.print(render_table(command, *input, scene, *device, numbers)); !printed) return printed.error();
     Json report = render_json(command, *input, scene, *device, numbers);
     report["notes"] = json_texts(console.noted());

@@ -96,6 +96,9 @@ struct RenderCommand {
     std::vector<double> range; ///< both ends of the scale, or none
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
+    std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
+    std::uint64_t orbit = 0;    ///< pictures around; 0: one
+    double frames_a_second = 12;
     std::string reference;     ///< a picture to compare with; empty: none
     double threshold = 0.001;  ///< share of its pixels that may differ
     DeviceChoice device;

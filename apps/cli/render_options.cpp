@@ -13,7 +13,8 @@ FILE is a grid or a surface. With nothing but FILE the field that varies most is
 ends of its range (rare values at the ends aside), each in its own colour. FIELD is found as by isotet extract.
 
 The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png; without
-it the picture is called as FILE is, in the current folder.
+it the picture is called as FILE is, in the current folder. The pictures of --sweep and --orbit are numbered from 1 where
+{frame} stands in OUT, or go into one animated file when OUT ends in .webp.
 
 A graphics card draws, if there is one; otherwise, or with --device software, a software device, which is said. Without
 either nothing can be drawn. On one device the same command gives the same bytes.
@@ -22,6 +23,8 @@ Examples:
   isotet render grid.vtu
   isotet render grid.vtu -f pressure -i 0.5 -o pressure.png
   isotet render surface.vtp --view +x --size 800x600 --background transparent
+  isotet render grid.vtu -f pressure --sweep 0,1,50 -o sweep.webp
+  isotet render grid.vtu -f pressure -i 0.5 --orbit 90 -o 'frame{frame}.png'
 )";
 
 void add_size(CLI::App& app, PictureOptions& picture) {
@@ -68,7 +71,7 @@ void add_color(CLI::App& app, const std::string& name, Color& color, const std::
 CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
     CLI::App& app = *program.add_subcommand("render", "Draw isosurfaces, or a surface, into a picture");
     add_file(app, "FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
-    add_file(app, "-o,--output", render.out, "OUT_FILE", "The picture, .png");
+    add_file(app, "-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
     add_text(app, "-f,--field", render.field.name, "FIELD", "The field to contour; without it the one that varies most");
     app.add_flag("--cell-field", render.field.cell_field, "Of a name that is both a point and a cell field, the cell field");
     CLI::Option* isovalues = add_numbers(app, "-i,--isovalue", render.isovalues, "V[,W...]",
@@ -77,6 +80,18 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
         app, "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
         "N isovalues at round numbers evenly inside the range of the field; without it 3")
         ->excludes(isovalues);
+    CLI::Option* sweep = add_numbers(app, "--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")->excludes(isovalues);
+    sweep->excludes(app.get_option("--levels"));
+    CLI::Option* orbit = add_count(
+        app, "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N", "N pictures, once around from the left to the right");
+    orbit->excludes(sweep);
+    add_number(
+        app, "--fps",
+        [&](double rate) {
+            if (rate <= 0 || rate > 100) throw wrong_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
+            render.frames_a_second = rate;
+        },
+        "RATE", "Pictures a second of an animated OUT; without it 12");
     add_part(app, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
     app.add_flag("--outline", render.outline, "Draw the edges of the box around");
     add_part(app, "--opacity", render.opacity,
@@ -110,6 +125,7 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
     add_color(app, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
     CLI::Option* reference = add_file(app, "--reference", render.reference, "FILE",
                                       "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
+    reference->excludes(sweep)->excludes(orbit);
     add_number(
         app, "--threshold",
         [&](double share) {

@@ -42,7 +42,9 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
         table.row({"field", fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper))});
     }
     if (input.boundary) table.row({"boundary", grouped(input.boundary->triangle_count()) + " faces"});
+    if (!command.sweep.empty()) table.row({"isovalues", fmt::format("{}, {} to {}", picture.pictures, shortest(command.sweep[0]), shortest(command.sweep[1]))});
     for (const SurfaceCounts& surface : scene.surfaces()) {
+        if (!command.sweep.empty()) break;
         const std::string what = surface.isovalue ? "isovalue " + rounded(*surface.isovalue) : "surface";
         table.row({what, grouped(surface.triangles) + " triangles"});
     }
@@ -51,7 +53,8 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
     table.row({"device", fmt::format("{} ({})", device.info().name, name_of(device.info().kind))});
     if (input.packed) table.row({"engine", scene.engine()});
     table.row({"time", times_text(input, scene, picture)});
-    table.row({"picture", fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height, bytes_text(picture.bytes))});
+    const std::string count = picture.pictures == 1 ? "picture" : fmt::format("{} pictures", picture.pictures);
+    table.row({count, fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height, bytes_text(picture.bytes))});
     if (picture.differs) table.row({"reference", fmt::format("{}: {} of the pixels differ", command.reference, percent_text(*picture.differs))});
     return table.text();
 }
@@ -84,6 +87,7 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
                          {"write", picture.write_seconds}};
     report["extracting"] = json_of(scene.extract_work());
     report["drawing"] = json_of(picture.drawing);
+    report["pictures"] = picture.pictures;
     report["file"] = json_text(picture.file);
     report["width"] = command.picture.width;
     report["height"] = command.picture.height;

@@ -15,12 +15,13 @@
 
 namespace isotet::cli {
 
-/// A picture that was drawn and written.
+/// Pictures that were drawn and written: one, or many by --sweep or --orbit.
 struct PictureNumbers {
-    std::string file;
-    std::uint64_t bytes = 0;
-    double draw_seconds = 0, write_seconds = 0;
-    DeviceWork drawing;
+    std::string file;         ///< OUT
+    std::size_t pictures = 1;
+    std::uint64_t bytes = 0;  ///< of all
+    double draw_seconds = 0, write_seconds = 0; ///< for all
+    DeviceWork drawing;       ///< of the last one
     std::optional<double> differs; ///< share of the pixels, with --reference
 };
 

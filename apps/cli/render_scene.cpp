@@ -73,7 +73,7 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     const Stopwatch extracting;
     const Result<void> done = input_.surface ? add_mesh(*input_.surface) : grid_ ? extract_on_device(isovalues) : extract_on_cpu(isovalues);
     if (!done) return done;
-    extract_seconds_ = extracting.seconds();
+    extract_seconds_ += extracting.seconds();
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         counts_[i].isovalue = isovalues[i];
         if (counts_[i].triangles > 0) continue;
@@ -164,7 +164,8 @@ void RenderScene::dress() {
 }
 
 void RenderScene::fit(Camera& camera, double aspect) const {
-    if (input_.surface) camera.fit(*input_.surface, aspect);
+    if (command_.orbit > 0) camera.fit_ball(input_.bounds, aspect);
+    else if (input_.surface) camera.fit(*input_.surface, aspect);
     else if (input_.boundary && !command_.outline) camera.fit(*input_.boundary, aspect);
     else camera.fit(input_.bounds, aspect);
 }

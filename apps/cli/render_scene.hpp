@@ -34,7 +34,7 @@ public:
     /// Makes the scene that of these isovalues; of a surface file there are none.
     Result<void> show(const std::vector<double>& isovalues);
 
-    /// Sees the whole grid, or the whole surface: the same for all isovalues.
+    /// Sees the whole grid, or the whole surface: the same for all isovalues, and from all sides of an orbit at the same distance.
     void fit(Camera& camera, double aspect) const;
 
     const Scene& scene() const noexcept { return scene_; }
@@ -44,7 +44,7 @@ public:
     /// "vulkan", "cpu", or "none" of a surface file.
     const char* engine() const { return input_.surface ? "none" : grid_ ? "vulkan" : "cpu"; }
     double upload_seconds() const noexcept { return upload_seconds_; }
-    double extract_seconds() const noexcept { return extract_seconds_; } ///< of the last isovalues, with uploading by the CPU engine
+    double extract_seconds() const noexcept { return extract_seconds_; } ///< of all isovalues so far, with uploading by the CPU engine
     const DeviceWork& extract_work() const noexcept { return work_; }    ///< empty with the CPU engine
 
 private:

@@ -61,6 +61,9 @@ struct Camera {
     /// Cost   one pass
     void fit(const Surface& surface, double aspect, double margin = 0.04);
 
+    /// Sees the ball around a box, which is as large from all sides: for going around.
+    void fit_ball(const Box& box, double aspect, double margin = 0.04);
+
     /// Goes around the target: `azimuth` degrees to the right about `up`, then `elevation` degrees upwards, as far as just below
     /// the pole.
     void orbit(double azimuth, double elevation);

@@ -134,6 +134,16 @@ void Camera::fit(const Surface& surface, double aspect, double margin) {
     fit_to(*this, around, vertices, aspect, margin);
 }
 
+void Camera::fit_ball(const Box& box, double aspect, double margin) {
+    const Box around = box.empty() ? Box{{0, 0, 0}, {0, 0, 0}} : box;
+    target = middle_of(around);
+    double radius = std::hypot(around.upper[0] - target[0], around.upper[1] - target[1], around.upper[2] - target[2]);
+    if (!(radius > 0)) radius = 0.5; // a single point still has a picture
+    const double part = 1 - 2 * margin, narrow = std::min(aspect, 1.0);
+    height = 2 * radius / (part * narrow);
+    distance = projection == Projection::parallel ? 4 * radius : radius / std::sin(std::atan(std::tan(radians(angle) / 2) * part * narrow));
+}
+
 void Camera::orbit(double azimuth, double elevation) {
     // About the axis of the world that is up the most: a picture whose horizon is level keeps it.
     const auto steepest = std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });

@@ -57,6 +57,7 @@ const std::vector<LibraryRule>& library_rules() {
         {"fmt", {"fmt/"}, {"src/", "apps/", "bench/", "tests/"}},
         {"CLI11", {"CLI/"}, {"apps/", "tests/"}},
         {"nlohmann_json", {"nlohmann/"}, {"apps/", "bench/", "tests/"}},
+        {"libwebp", {"webp/"}, {"src/io/own/", "tests/"}},
         {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
     };
     return rules;

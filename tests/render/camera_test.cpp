@@ -116,5 +116,27 @@ TEST(Views, HaveNamesThatLeadBack) {
     EXPECT_FALSE(parse_view("x"));
 }
 
+TEST(Camera, SeeABallAsLargeFromAllSides) {
+    const Box box{{-3, 1, 0}, {5, 2, 0.5}};
+    for (const Projection projection : {Projection::perspective, Projection::parallel})
+        for (const double aspect : {0.5, 1.0, 2.0}) {
+            Camera first = camera_of(View::iso, projection);
+            first.fit_ball(box, aspect);
+            for (double azimuth = 0; azimuth < 360; azimuth += 30) {
+                Camera camera = camera_of(View::iso, projection);
+                camera.orbit(azimuth, 0);
+                camera.fit_ball(box, aspect);
+                EXPECT_EQ(camera.distance, first.distance);
+                EXPECT_EQ(camera.height, first.height);
+                const Places places = places_of(camera, aspect, box);
+                EXPECT_GE(std::min(places.left, places.lower), -0.93);
+                EXPECT_LE(std::max(places.right, places.upper), 0.93);
+            }
+        }
+    Camera camera;
+    camera.fit_ball({}, 1);
+    EXPECT_GT(camera.distance, 0);
+}
+
 } // namespace
 } // namespace isotet::test

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet render`: pictures of grids and of surfaces, and what it says when there is nothing to draw, or nobody to draw it.
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -127,6 +128,45 @@ TEST_F(Render, SaysWhyNothingCanBeDrawn) {
     const RunResult run = isotet({"render", "make:kuhn:4:sphere", "-i", "0.5", "-o", path("a.png")}, without);
     EXPECT_EQ(run.status, 4);
     EXPECT_TRUE(is_one_error(run, "nothing can be drawn: "));
+}
+
+TEST_F(Render, SweepsThroughIsovaluesIntoNumberedFiles) {
+    auto report = json_of(command("make:kuhn:6:sphere", "s{frame}.png", {"--sweep", "0.2,0.8,11", "--plain"}));
+    EXPECT_EQ(report["pictures"], 11);
+    EXPECT_EQ(report["surfaces"][0]["isovalue"], 0.8);
+    EXPECT_FALSE(std::filesystem::exists(path("s0.png")) || std::filesystem::exists(path("s1.png")));
+    EXPECT_NE(content(path("s01.png")), content(path("s11.png")));
+    // Each is the picture that its isovalue gives alone.
+    report = json_of(command("make:kuhn:6:sphere", "one.png", {"-i", "0.5", "--plain"}));
+    EXPECT_TRUE(content(path("s06.png")) == content(path("one.png")));
+    EXPECT_EQ(report["pictures"], 1);
+}
+
+TEST_F(Render, OrbitsIntoOneAnimatedFile) {
+    const auto report = json_of(command("make:kuhn:6:gyroid", "o.webp", {"--orbit", "4", "-i", "0.1", "--fps", "2"}));
+    EXPECT_EQ(report["pictures"], 4);
+    const std::string file = content(path("o.webp"));
+    EXPECT_EQ(report["bytes"], file.size());
+    EXPECT_EQ(file.substr(8, 4), "WEBP");
+    std::size_t frames = 0;
+    for (std::size_t at = file.find("ANMF"); at != std::string::npos; at = file.find("ANMF", at + 1)) ++frames;
+    EXPECT_EQ(frames, 4u);
+}
+
+TEST_F(Render, RefusesFramesThatFitNoFile) {
+    const auto error = [&](const std::string& out, std::vector<std::string> more) {
+        more.push_back("-q");
+        const RunResult run = isotet(command("make:kuhn:4:sphere", out, std::move(more)));
+        EXPECT_EQ(run.status, 2);
+        return run.err;
+    };
+    EXPECT_NE(error("a.png", {"--orbit", "4"}).find("but 4 pictures need one that ends in .webp, or that holds {frame}"), std::string::npos);
+    EXPECT_NE(error("a{frame}.webp", {"--orbit", "4"}).find("4 pictures need"), std::string::npos);
+    EXPECT_NE(error("a{frame}.png", {}).find("only pictures of --sweep and --orbit have numbers"), std::string::npos);
+    EXPECT_NE(error("a.webp", {}).find("it must end in .png"), std::string::npos);
+    EXPECT_NE(error("a.webp", {"--sweep", "0,1"}).find("--sweep takes three numbers, not 2"), std::string::npos);
+    EXPECT_NE(error("a.webp", {"--sweep", "0,1,1.5"}).find("--sweep ends with 1.5"), std::string::npos);
+    EXPECT_NE(error("a.webp", {"--sweep", "0,1,5", "-i", "1"}).find("--sweep"), std::string::npos);
 }
 
 } // namespace

@@ -1,0 +1,94 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render_frames.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "number_format.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr std::string_view number_stands_here = "{frame}";
+constexpr double most_frames = 100'000;
+
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+} // namespace
+
+Result<std::size_t> count_frames(const RenderCommand& command) {
+    if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
+    if (command.sweep.empty()) return std::size_t{1};
+    if (command.sweep.size() != 3)
+        return wrong(fmt::format("--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such as 0,1,50", command.sweep.size()));
+    const double count = command.sweep[2];
+    if (count < 2 || count > most_frames || count != std::floor(count))
+        return wrong(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count), shortest(most_frames)));
+    return static_cast<std::size_t>(count);
+}
+
+Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues) {
+    const Result<std::size_t> count = count_frames(command);
+    if (!count) return count.error();
+    std::vector<RenderFrame> frames(*count, {isovalues, 0});
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (command.orbit > 0) frames[i].azimuth = 360 * static_cast<double>(i) / static_cast<double>(frames.size());
+        if (command.sweep.empty()) continue;
+        const double part = static_cast<double>(i) / static_cast<double>(frames.size() - 1);
+        frames[i].isovalues = {(1 - part) * command.sweep[0] + part * command.sweep[1]};
+    }
+    return frames;
+}
+
+Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pictures, double pictures_per_second) {
+    PictureFiles files(out, pictures);
+    const bool numbered = out.find(number_stands_here) != std::string::npos;
+    if (pictures == 1) {
+        if (!out.ends_with(".png")) return wrong(fmt::format("the name of the output is '{}', but it must end in .png", out));
+        if (numbered) return wrong(fmt::format("the name of the output is '{}', but only pictures of --sweep and --orbit have numbers", out));
+        return files;
+    }
+    if (out.ends_with(".webp") && !numbered) {
+        Result<Animation> animation = Animation::begin(out, pictures_per_second);
+        if (!animation) return animation.error();
+        files.animation_ = *std::move(animation);
+        return files;
+    }
+    if (out.ends_with(".png") && numbered) return files;
+    return wrong(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} and ends in .png", out,
+                             pictures, number_stands_here));
+}
+
+std::string PictureFiles::name(std::size_t picture) const {
+    std::string name = out_;
+    const std::size_t at = name.find(number_stands_here);
+    if (at == std::string::npos) return name;
+    const std::size_t digits = std::to_string(pictures_).size();
+    return name.replace(at, number_stands_here.size(), fmt::format("{:0{}}", picture + 1, digits));
+}
+
+std::vector<std::string> PictureFiles::names() const {
+    std::vector<std::string> names{name(0)};
+    for (std::size_t i = 1; i < pictures_ && !animation_; ++i) names.push_back(name(i));
+    return names;
+}
+
+Result<void> PictureFiles::add(const Picture& picture) {
+    if (animation_) return animation_->add(picture);
+    const Result<std::uint64_t> written = write_picture(picture, name(added_++));
+    if (!written) return written.error();
+    bytes_ += *written;
+    return {};
+}
+
+Result<void> PictureFiles::finish() {
+    if (!animation_) return {};
+    const Result<std::uint64_t> written = animation_->finish();
+    if (!written) return written.error();
+    bytes_ = *written;
+    return {};
+}
+
+} // namespace isotet::cli

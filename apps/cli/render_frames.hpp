@@ -1,0 +1,52 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The pictures of one `isotet render`: one, or with --sweep and --orbit many; and the files that they go to.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/animation.hpp>
+#include <isotet/picture.hpp>
+
+#include "options.hpp"
+
+namespace isotet::cli {
+
+/// One of the pictures.
+struct RenderFrame {
+    std::vector<double> isovalues;
+    double azimuth = 0; ///< degrees to the right of --view
+};
+
+/// With --sweep a picture for each isovalue, with --orbit one from each side, else one.
+/// Errors   invalid_argument when --sweep does not make sense
+Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues);
+
+/// How many those will be.
+Result<std::size_t> count_frames(const RenderCommand& command);
+
+/// OUT: a PNG file; numbered ones, where it holds {frame}; or one animated WebP file.
+class PictureFiles {
+public:
+    /// Errors   invalid_argument when the name does not fit the number of pictures
+    static Result<PictureFiles> open(const std::string& out, std::size_t pictures, double pictures_per_second);
+
+    const std::string& out() const noexcept { return out_; }
+    std::vector<std::string> names() const; ///< of all files
+
+    Result<void> add(const Picture& picture);
+    Result<void> finish();
+    std::uint64_t bytes() const noexcept { return bytes_; } ///< of all files that are written
+
+private:
+    PictureFiles(std::string out, std::size_t pictures) : out_(std::move(out)), pictures_(pictures) {}
+    std::string name(std::size_t picture) const;
+
+    std::string out_;
+    std::size_t pictures_, added_ = 0;
+    std::optional<Animation> animation_;
+    std::uint64_t bytes_ = 0;
+};
+
+} // namespace isotet::cli
