@@ -8,6 +8,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include "core/orientation.hpp"
+#include "core/value_summary.hpp"
 #include "cpu/brute/points.hpp"
 
 namespace isotet::cpu::brute {
@@ -16,96 +17,40 @@ namespace {
 
 constexpr std::size_t grain = 1 << 15;
 
-template <class Number>
-constexpr Number infinity = std::numeric_limits<Number>::infinity();
-
-struct Summary {
-    core::ValueStatistics statistics;
-    double smallest = infinity<double>, largest = 0; ///< magnitudes of (value - offset) other than 0
-
-    void add(double value, double offset) {
-        statistics.add(value);
-        const double magnitude = std::abs(value - offset);
-        if (!(magnitude > 0) || std::isinf(magnitude)) return; // also NaN
-        smallest = std::min(smallest, magnitude);
-        largest = std::max(largest, magnitude);
-    }
-    void combine(const Summary& other) {
-        statistics.combine(other.statistics);
-        smallest = std::min(smallest, other.smallest);
-        largest = std::max(largest, other.largest);
-    }
-};
-
-/// The same of many values, each lane of every 16th.
-template <class Number>
-class Lanes {
-public:
-    static constexpr std::size_t count = 16;
-
-    Lanes() {
-        lower_.fill(infinity<Number>);
-        upper_.fill(-infinity<Number>);
-        smallest_.fill(infinity<Number>);
-        largest_.fill(0);
-    }
-
-    template <class T>
-    void add(const T* values, Number offset) {
-        for (std::size_t k = 0; k < count; ++k) {
-            const Number value = static_cast<Number>(values[k]), size = std::abs(value), magnitude = std::abs(value - offset);
-            const bool finite = size < infinity<Number>; // false for NaN
-            no_data_[k] += value != value;
-            infinite_[k] += size == infinity<Number>;
-            lower_[k] = finite & (value < lower_[k]) ? value : lower_[k];
-            upper_[k] = finite & (value > upper_[k]) ? value : upper_[k];
-            smallest_[k] = finite & (magnitude > 0) & (magnitude < smallest_[k]) ? magnitude : smallest_[k];
-            largest_[k] = finite & (magnitude > largest_[k]) ? magnitude : largest_[k];
-        }
-    }
-
-    Summary summary() const {
-        Summary all;
-        for (std::size_t k = 0; k < count; ++k)
-            all.combine({{static_cast<double>(lower_[k]), static_cast<double>(upper_[k]), no_data_[k], infinite_[k]},
-                         static_cast<double>(smallest_[k]),
-                         static_cast<double>(largest_[k])});
-        return all;
-    }
-
-private:
-    std::array<Number, count> lower_, upper_, smallest_, largest_;
-    std::array<std::uint32_t, count> no_data_{}, infinite_{};
-};
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of all values of the points [begin, end) that count.
 template <class T>
-Summary summarize(std::span<const T> values, std::size_t components, const Sides* seen, std::size_t begin, std::size_t end, double offset) {
+core::ValueSummary summarize(std::span<const T> values, std::size_t components, const Sides* seen, std::size_t begin, std::size_t end, double offset) {
     using Number = std::conditional_t<std::is_same_v<T, float>, float, double>; // floats have no offset
-    Summary summary;
+    core::ValueSummary summary;
     if (seen) {
         for (std::size_t point = begin; point < end; ++point)
             for (std::size_t k = 0; k < components && !seen->is_unseen(point); ++k)
                 summary.add(static_cast<double>(values[point * components + k]), offset);
         return summary;
     }
-    Lanes<Number> lanes;
+    core::SummaryLanes<Number> lanes;
     std::size_t i = begin * components;
-    for (; i + lanes.count <= end * components; i += lanes.count) lanes.add(values.data() + i, static_cast<Number>(offset));
+    for (; i + lanes.count <= end * components; i += lanes.count) {
+        typename core::SummaryLanes<Number>::Values some;
+        for (std::size_t k = 0; k < lanes.count; ++k) some[k] = static_cast<Number>(values[i + k]);
+        lanes.add(some, static_cast<Number>(offset));
+    }
     for (; i < end * components; ++i) summary.add(static_cast<double>(values[i]), offset);
     summary.combine(lanes.summary());
     return summary;
 }
 
-Summary summarize(const Array& values, const Sides* seen, double offset) {
+core::ValueSummary summarize(const Array& values, const Sides* seen, double offset) {
     return values.visit([&]<class T>(std::span<const T> typed) {
         return tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, values.tuples(), grain), Summary{},
-            [&](const tbb::blocked_range<std::size_t>& range, Summary summary) {
+            tbb::blocked_range<std::size_t>(0, values.tuples(), grain), core::ValueSummary{},
+            [&](const tbb::blocked_range<std::size_t>& range, core::ValueSummary summary) {
                 summary.combine(summarize(typed, values.components(), seen, range.begin(), range.end(), offset));
                 return summary;
             },
-            [](Summary a, const Summary& b) {
+            [](core::ValueSummary a, const core::ValueSummary& b) {
                 a.combine(b);
                 return a;
             });
@@ -130,7 +75,7 @@ std::uint64_t count_flushed(const Array& values, const Sides* seen, const core::
 }
 
 StoredField survey_field(const Array& values, const Sides* seen, Precision precision) {
-    Summary summary = summarize(values, seen, 0);
+    core::ValueSummary summary = summarize(values, seen, 0);
     StoredField out{summary.statistics, core::choose_offset(values.type(), summary.statistics, precision), 0};
     if (out.storage.offset != 0) summary = summarize(values, seen, out.storage.offset);
     core::choose_scale(out.storage, summary.smallest, summary.largest);
@@ -144,8 +89,8 @@ struct Bounds {
     bool has_unsound = false;
 
     Bounds() {
-        lower.fill(infinity<double>);
-        upper.fill(-infinity<double>);
+        lower.fill(infinity);
+        upper.fill(-infinity);
     }
     void add(const core::Point& p) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
