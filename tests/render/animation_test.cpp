@@ -1,36 +1,25 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Animated WebP files: read back by libwebp, picture by picture.
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 #include <webp/demux.h>
 
 #include <isotet/animation.hpp>
 
+#include "support/temporary_folder.hpp"
+
 namespace isotet::test {
 namespace {
 
 class Animations : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() / ("isotet-animation-" + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string path(const std::string& name) const { return folder_.file(name); }
 
-    static std::string content(const std::string& file) {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 Picture plain(std::uint32_t width, std::uint32_t height, std::array<std::uint8_t, 4> color) {
@@ -47,7 +36,7 @@ std::uint64_t write_colors(const std::string& path) {
 
 TEST_F(Animations, HoldTheirPicturesAndTimes) {
     const std::uint64_t bytes = write_colors(path("a.webp"));
-    const std::string file = content(path("a.webp"));
+    const std::string file = content_of(path("a.webp"));
     EXPECT_EQ(file.size(), bytes);
     const WebPData data{reinterpret_cast<const std::uint8_t*>(file.data()), file.size()};
     WebPAnimDecoder* const decoder = WebPAnimDecoderNew(&data, nullptr);
@@ -72,7 +61,7 @@ TEST_F(Animations, HoldTheirPicturesAndTimes) {
 TEST_F(Animations, AreTheSameBytesForTheSamePictures) {
     write_colors(path("a.webp"));
     write_colors(path("b.webp"));
-    EXPECT_TRUE(content(path("a.webp")) == content(path("b.webp")));
+    EXPECT_TRUE(content_of(path("a.webp")) == content_of(path("b.webp")));
 }
 
 TEST_F(Animations, LeaveTheOldFileUntilTheyAreFinished) {
@@ -81,7 +70,7 @@ TEST_F(Animations, LeaveTheOldFileUntilTheyAreFinished) {
         Animation animation = Animation::begin(path("a.webp"), 8).value();
         ASSERT_TRUE(animation.add(plain(8, 8, colors[0])));
     }
-    EXPECT_EQ(content(path("a.webp")), "old");
+    EXPECT_EQ(content_of(path("a.webp")), "old");
 }
 
 TEST_F(Animations, RefuseWhatCannotBeOne) {

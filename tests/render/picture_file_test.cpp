@@ -1,33 +1,21 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // PNG files: read back by libpng, pixel by pixel.
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 #include <png.h>
 
 #include <isotet/compare_pictures.hpp>
 
+#include "support/temporary_folder.hpp"
+
 namespace isotet::test {
 namespace {
 
 class PictureFile : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("isotet-picture-" + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-    static std::string content(const std::string& file) {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
+    std::string path(const std::string& name) const { return folder_.file(name); }
 
     /// What libpng's own reader makes of a file.
     static Picture read(const std::string& file, bool& alpha) {
@@ -49,7 +37,7 @@ protected:
         return picture;
     }
 
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 TEST_F(PictureFile, HoldsEveryPixel) {
@@ -75,7 +63,7 @@ TEST_F(PictureFile, IsReadBack) {
 
 TEST_F(PictureFile, BrokenOnesAreErrors) {
     ASSERT_TRUE(write_picture(sample(9), path("a.png")));
-    const std::string whole = content(path("a.png"));
+    const std::string whole = content_of(path("a.png"));
     for (std::size_t length = 1; length < whole.size(); ++length) {
         std::ofstream(path("b.png"), std::ios::binary) << whole.substr(0, length);
         const Result<Picture> picture = read_picture(path("b.png"));
@@ -89,7 +77,7 @@ TEST_F(PictureFile, BrokenOnesAreErrors) {
 TEST_F(PictureFile, IsTheSameEveryTime) {
     ASSERT_TRUE(write_picture(sample(9), path("a.png")));
     ASSERT_TRUE(write_picture(sample(9), path("b.png")));
-    EXPECT_EQ(content(path("a.png")), content(path("b.png")));
+    EXPECT_EQ(content_of(path("a.png")), content_of(path("b.png")));
 }
 
 TEST_F(PictureFile, IsRefusedWhereItCannotBe) {
@@ -99,7 +87,7 @@ TEST_F(PictureFile, IsRefusedWhereItCannotBe) {
     short_one.pixels.pop_back();
     EXPECT_EQ(write_picture(short_one, path("a.png")).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(write_picture(sample(0), path("nowhere/a.png")).error().code, ErrorCode::file);
-    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    EXPECT_TRUE(std::filesystem::is_empty(path("")));
 }
 
 } // namespace

@@ -9,7 +9,7 @@
 
 #include "vtk_readers/sample_exodus.hpp"
 #include "vtk_readers/sample_grid.hpp"
-#include "vtk_readers/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <isotet/read.hpp>
 
 #include "vtk_readers/sample_grid.hpp"
-#include "vtk_readers/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <vtkPointData.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-#include "vtk_readers/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {
