@@ -132,17 +132,16 @@ template FieldStorage store_field_values<double>(const Array&, const Packed&, co
 std::optional<Storage> StorageCache::find(const Array& values) const {
     const std::lock_guard lock(mutex_);
     for (const Entry& entry : entries_)
-        if (!entry.owner.expired() && entry.data == values.data() && entry.tuples == values.tuples() &&
-            entry.components == values.components() && entry.type == values.type())
-            return entry.storage;
+        if (entry.array.is(values)) return entry.storage;
     return {};
 }
 
 void StorageCache::add(const Array& values, const Storage& storage) {
-    if (values.owner().expired()) return;
+    const ArrayIdentity array(values);
+    if (array.expired()) return;
     const std::lock_guard lock(mutex_);
-    std::erase_if(entries_, [](const Entry& entry) { return entry.owner.expired(); });
-    entries_.push_back({values.owner(), values.data(), values.tuples(), values.components(), values.type(), storage});
+    std::erase_if(entries_, [](const Entry& entry) { return entry.array.expired(); });
+    entries_.push_back({array, storage});
 }
 
 Storage choose_storage(const Array& values, const Packed& packed) {

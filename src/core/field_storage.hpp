@@ -10,6 +10,7 @@
 #include <isotet/array.hpp>
 #include <isotet/progress.hpp>
 
+#include "core/array_identity.hpp"
 #include "core/packed.hpp"
 #include "core/storage.hpp"
 
@@ -36,10 +37,7 @@ public:
 
 private:
     struct Entry {
-        std::weak_ptr<const void> owner;
-        const void* data;
-        std::size_t tuples, components;
-        ScalarType type;
+        ArrayIdentity array;
         Storage storage;
     };
     mutable std::mutex mutex_;

@@ -52,11 +52,9 @@ Result<CarriedField> upload(Context& context, const core::Packed& packed, const 
 
 Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context, const core::Packed* packed, const Field& field) {
     const Array& values = field.values;
-    std::erase_if(entries_, [](const Entry& entry) { return entry.owner.expired(); });
+    std::erase_if(entries_, [](const Entry& entry) { return entry.array.expired(); });
     for (const Entry& entry : entries_)
-        if (entry.data == values.data() && entry.tuples == values.tuples() && entry.components == values.components() &&
-            entry.type == values.type())
-            return entry.field;
+        if (entry.array.is(values)) return entry.field;
     if (!packed)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("point field '{}' is not on the device, and the packed grid, which numbers its points, was given up",
@@ -64,8 +62,7 @@ Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context,
     auto uploaded = upload(context, *packed, values);
     if (!uploaded) return std::move(uploaded).error();
     auto shared = std::make_shared<const CarriedField>(*std::move(uploaded));
-    if (!values.owner().expired())
-        entries_.push_back({values.owner(), values.data(), values.tuples(), values.components(), values.type(), shared});
+    if (const core::ArrayIdentity array(values); !array.expired()) entries_.push_back({array, shared});
     return shared;
 }
 

@@ -9,6 +9,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
+#include "core/array_identity.hpp"
 #include "core/packed.hpp"
 #include "vulkan/context.hpp"
 
@@ -36,10 +37,7 @@ public:
 
 private:
     struct Entry {
-        std::weak_ptr<const void> owner;
-        const void* data;
-        std::size_t tuples, components;
-        ScalarType type;
+        core::ArrayIdentity array;
         std::shared_ptr<const CarriedField> field;
     };
     std::list<Entry> entries_;
