@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/choose.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/extract_once.hpp>
 #include <isotet/write.hpp>
@@ -13,6 +14,7 @@
 #include "cells_left_out.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "core/memory.hpp"
 #include "extract_plan.hpp"
 #include "extract_report.hpp"
 #include "extractor.hpp"
@@ -20,6 +22,7 @@
 #include "output_paths.hpp"
 #include "packed_series.hpp"
 #include "stopwatch.hpp"
+#include "way_choice.hpp"
 
 namespace isotet::cli {
 
@@ -40,6 +43,7 @@ public:
 private:
     Result<void> open();
     Result<void> load(std::size_t step);
+    Result<void> choose(const Grid& grid);
     Result<void> pack(const Grid& grid);
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
@@ -62,6 +66,7 @@ private:
     StepFields fields_;
     std::vector<double> isovalues_;  ///< of the step at hand: levels follow its range
     std::uint64_t coarse_tets_ = 0; ///< of the step at hand, where nothing is packed
+    std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step, when its way was chosen
     ExtractNumbers numbers_;
 };
 
@@ -83,7 +88,6 @@ Result<void> ExtractRun::open() {
     if (!plan) return plan.error();
     plan_ = *std::move(plan);
     series_.emplace(plan_.pack, plan_.steps.size());
-    numbers_.method = plan_.method;
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.precision = command_.precision;
@@ -114,7 +118,9 @@ Result<void> ExtractRun::load(std::size_t step) {
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = grid->cells.count();
     numbers_.averaged = field_.averaged;
-    if (!plan_.method.brute) {
+    if (numbers_.surfaces.empty())
+        if (Result<void> chosen = choose(*grid); !chosen) return chosen;
+    if (!numbers_.choice.brute()) {
         if (Result<void> packed = pack(*grid); !packed) return packed;
     } else {
         grid_ = *std::move(grid);
@@ -123,6 +129,37 @@ Result<void> ExtractRun::load(std::size_t step) {
             if (Result<void> looked = look_at_field(); !looked) return looked;
     }
     return choose_values(step);
+}
+
+/// How all steps are done, from a look at the first.
+Result<void> ExtractRun::choose(const Grid& grid) {
+    const Result<FieldSample> sample = FieldSample::take(grid, field_);
+    if (!sample) return sample.error();
+    const std::vector<double> isovalues =
+        command_.isovalues.empty() ? levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1)) : command_.isovalues;
+    const bool one_file = !plan_.names.none() && !plan_.names.by_value();
+    const std::size_t together = one_file ? isovalues.size() : isovalues_a_pass;
+    double all = 0, most = 0;
+    for (std::size_t i = 0; i < isovalues.size(); i += together) {
+        double pass = 0;
+        for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k) pass += sample->triangles(isovalues[k]);
+        all += pass;
+        most = std::max(most, pass);
+    }
+    const auto count = static_cast<double>(isovalues.size());
+    Task task;
+    task.points = sample->points();
+    task.tets = sample->tets();
+    task.surfaces = count * static_cast<double>(plan_.steps.size());
+    task.triangles = all / count;
+    task.triangles_together = most;
+    task.memory_free = core::free_memory();
+    Result<ChosenWay> choice = choose_way(command_, task, extractor_, console_);
+    if (!choice) return choice.error();
+    numbers_.choice = *std::move(choice);
+    console_.detail(fmt::format("{} ({})", name_of(numbers_.choice.way), numbers_.choice.why));
+    if (core::forget_peak_memory()) resident_before_ = core::resident_memory();
+    return {};
 }
 
 /// For isovalues that are chosen by the range of the field. It counts as reading.
@@ -211,7 +248,7 @@ void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
 }
 
 Result<std::vector<Extraction>> ExtractRun::extract(std::span<const double> isovalues, const ExtractOptions& options) {
-    if (!plan_.method.brute) return extractor_.extract(isovalues, options);
+    if (!numbers_.choice.brute()) return extractor_.extract(isovalues, options);
     Result<ExtractedOnce> once =
         extract_once(grid_, field_, isovalues, {options, command_.precision}, console_.progress());
     if (!once) return once.error();
@@ -282,7 +319,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
             else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
         }
     }
-    if (plan_.method.brute) {
+    if (numbers_.choice.brute()) {
         say_what_the_step_holds(grid_);
         say_what_rounding_moves();
     }
@@ -297,6 +334,8 @@ Result<void> ExtractRun::run() {
         if (Result<void> loaded = load(step); !loaded) return loaded;
         if (Result<void> extracted = extract_step(step); !extracted) return extracted;
     }
+    if (const auto peak = core::peak_resident_memory(); peak && resident_before_)
+        numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
     return {};
 }
 

@@ -9,6 +9,7 @@
 
 #include "number_format.hpp"
 #include "output_paths.hpp"
+#include "way_choice.hpp"
 
 namespace isotet::cli {
 
@@ -62,25 +63,6 @@ Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan,
     return {};
 }
 
-/// Packing takes as long as brute takes for this many surfaces, or somewhat less.
-constexpr std::size_t most_surfaces_by_brute = 32;
-
-Result<Method> choose_method(const ExtractCommand& command, std::size_t steps) {
-    const bool on_device = command.engine == EngineChoice::vulkan ||
-                           (command.engine == EngineChoice::automatic && !command.device.name.empty() && command.device.name != "none");
-    if (command.method == MethodChoice::clusters) return Method{false, "asked for"};
-    if (command.method == MethodChoice::brute) {
-        if (!on_device) return Method{true, "asked for"};
-        return Error{ErrorCode::invalid_argument, "--method brute was asked for, but devices take packed grids only: clusters"};
-    }
-    if (on_device) return Method{false, "auto: devices take packed grids"};
-    const std::size_t isovalues = std::max<std::size_t>({command.isovalues.size(), static_cast<std::size_t>(command.levels), 1});
-    const std::size_t surfaces = isovalues > most_surfaces_by_brute ? isovalues : isovalues * steps; // neither overflows
-    return Method{surfaces <= most_surfaces_by_brute,
-                  fmt::format("auto: {} surface{}, and packing pays for more than {}", surfaces, surfaces == 1 ? "" : "s",
-                              most_surfaces_by_brute)};
-}
-
 /// --with, or all point fields that the format can hold; nothing means all.
 Result<std::optional<CarriedFields>> plan_carried(const ExtractCommand& command, const GridSource& source,
                                                   bool format_holds_fields) {
@@ -113,9 +95,7 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     if (!steps) return steps.error();
     plan.steps = *std::move(steps);
     if (Result<void> names = check_names(command, plan, source.info()); !names) return names.error();
-    Result<Method> method = choose_method(command, plan.steps.size());
-    if (!method) return method.error();
-    plan.method = *std::move(method);
+    if (Result<void> method = check_method(command); !method) return method.error();
 
     Result<FoundField> field = choose_field(source, command.field);
     if (!field) return field.error();
@@ -139,20 +119,16 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     return plan;
 }
 
-namespace {
-
-/// min + k (max - min) / (N + 1), k = 1..N; where max - min is too large for a double, the same sum in another order.
 std::vector<double> levels_of(double lower, double upper, std::uint64_t count) {
     std::vector<double> levels;
     for (std::uint64_t k = 1; k <= count; ++k) {
         const auto part = static_cast<double>(k), parts = static_cast<double>(count + 1);
         const double level = lower + part * (upper - lower) / parts;
+        // Where max - min is too large for a double, the same sum in another order.
         levels.push_back(std::isfinite(level) ? level : lower * (1 - part / parts) + upper * (part / parts));
     }
     return levels;
 }
-
-} // namespace
 
 Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field,
                                              const FieldReport& packed, Console& console) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,18 +20,9 @@
 
 namespace isotet::cli {
 
-/// How surfaces are made.
-struct Method {
-    bool brute = false; ///< straight from the arrays of each step, which are not packed
-    std::string why;
-
-    const char* name() const noexcept { return brute ? "brute" : "clusters"; }
-};
-
 struct ExtractPlan {
     OutputNames names{""};
     std::vector<std::size_t> steps;
-    Method method;
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
     FieldsToRead read;
@@ -40,6 +32,9 @@ struct ExtractPlan {
 
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
 Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource& source, Console& console);
+
+/// min + k (max - min) / (N + 1), k = 1..N: what --levels asks for, or the middle of the range where nothing is asked for.
+std::vector<double> levels_of(double lower, double upper, std::uint64_t count);
 
 /// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
 /// Errors   invalid_data: levels of a field without a finite value

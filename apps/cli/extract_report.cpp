@@ -18,6 +18,12 @@ std::uint64_t ExtractNumbers::transient_peak() const {
     return peak;
 }
 
+double ExtractNumbers::work_seconds() const {
+    double seconds = pack_seconds + upload_seconds;
+    for (const SurfaceNumbers& surface : surfaces) seconds += surface.extract_seconds;
+    return seconds;
+}
+
 namespace {
 
 std::uint64_t process_peak_bytes() {
@@ -81,6 +87,14 @@ std::string time_text(const ExtractNumbers& numbers) {
     return text;
 }
 
+std::string choice_text(const ExtractNumbers& numbers) {
+    std::string text = fmt::format("took {}", seconds_text(numbers.work_seconds()));
+    if (numbers.peak_bytes) text += " and " + bytes_text(*numbers.peak_bytes);
+    if (const Forecast* forecast = numbers.choice.forecast())
+        text = fmt::format("{} and {} predicted, {}", seconds_text(forecast->seconds), bytes_text(forecast->bytes), text);
+    return text;
+}
+
 std::string facts_table(const ExtractNumbers& numbers) {
     Table table = facts();
     table.row({"grid", fmt::format("{} ({})", numbers.grid, numbers.format)});
@@ -88,7 +102,8 @@ std::string facts_table(const ExtractNumbers& numbers) {
     if (numbers.cells_left_out > 0) table.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
     if (numbers.pack) add_pack_rows(*numbers.pack, table);
     table.row({"field", field_text(numbers)});
-    table.row({"method", fmt::format("{} ({})", numbers.method.name(), numbers.method.why)});
+    table.row({"method", fmt::format("{} ({})", numbers.choice.method(), numbers.choice.why)});
+    table.row({"", choice_text(numbers)});
     table.row({"engine", fmt::format("{}, {} precision, {} thread{}", numbers.engine_text,
                                      numbers.precision == Precision::single ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
@@ -102,6 +117,18 @@ std::string ties_text(const ExtractReport& report) {
     std::string text = grouped(report.tied_points);
     if (report.false_ties.value_or(0) > 0) text += fmt::format(" ({} false)", grouped(*report.false_ties));
     return text;
+}
+
+Json choice_json(const ExtractNumbers& numbers) {
+    Json ways = Json::array();
+    for (const Forecast& one : numbers.choice.forecasts)
+        ways.push_back({{"way", name_of(one.way)}, {"seconds", one.seconds}, {"bytes", one.bytes}, {"device_bytes", one.device_bytes}, {"fits", one.fits}});
+    const Forecast* chosen = numbers.choice.forecast();
+    return {{"way", name_of(numbers.choice.way)},
+            {"speeds", chosen ? Json(numbers.choice.measured ? "measured" : "typical") : Json(nullptr)},
+            {"predicted", chosen ? Json({{"seconds", chosen->seconds}, {"bytes", chosen->bytes}}) : Json(nullptr)},
+            {"measured", {{"seconds", numbers.work_seconds()}, {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}}},
+            {"ways", std::move(ways)}};
 }
 
 } // namespace
@@ -137,8 +164,10 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["range"] = {numbers.field.lower, numbers.field.upper};
     report["no_data_points"] = numbers.field.no_data;
     report["engine"] = numbers.engine;
-    report["method"] = numbers.method.name();
-    report["method_why"] = numbers.method.why;
+    report["method"] = numbers.choice.method();
+    report["method_why"] = numbers.choice.why;
+    report["filter"] = numbers.choice.filter();
+    report["choice"] = choice_json(numbers);
     report["precision"] = numbers.precision == Precision::single ? "float" : "double";
     report["threads"] = numbers.threads;
     report["seconds"] = {{"read", numbers.read_seconds}, {"pack", numbers.pack_seconds}};

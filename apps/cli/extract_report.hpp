@@ -15,6 +15,7 @@
 #include "extractor.hpp"
 #include "json_output.hpp"
 #include "options.hpp"
+#include "way_choice.hpp"
 
 namespace isotet::cli {
 
@@ -39,13 +40,15 @@ struct ExtractNumbers {
     FieldReport field; ///< of the last time step
     bool averaged = false;
     Precision precision = Precision::single;
-    Method method;
+    ChosenWay choice;
+    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, from the choice to the end; nothing where the system does not tell
     std::string engine = "cpu", engine_text = "cpu"; ///< of the last surface; in words
     unsigned threads = 1;
     double read_seconds = 0, pack_seconds = 0, upload_seconds = 0;
     std::vector<SurfaceNumbers> surfaces;
 
     std::uint64_t transient_peak() const;
+    double work_seconds() const; ///< packing, uploading, extracting: what is forecast
 };
 
 std::string extract_table(const ExtractNumbers& numbers);

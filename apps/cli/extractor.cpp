@@ -30,6 +30,14 @@ Result<void> Extractor::open() {
     return {};
 }
 
+bool Extractor::open_unasked() {
+    Result<Device> device = Device::open({});
+    if (!device) return false;
+    console_.notes(device->notices());
+    device_ = *std::move(device);
+    return true;
+}
+
 Result<void> Extractor::without_device(const Error& error) {
     if (command_.engine == EngineChoice::vulkan || error.code == ErrorCode::cancelled) return error;
     console_.note(fmt::format("{}: the CPU extracts instead", error.message));

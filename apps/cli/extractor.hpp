@@ -34,6 +34,14 @@ public:
     /// Errors   usage: a device beside an engine that uses none; what Device::open() says
     Result<void> open();
 
+    /// Opens the best graphics card although none was asked for, before anything is loaded; false where there is none.
+    bool open_unasked();
+
+    /// Gives up the device, before anything is loaded.
+    void close() { device_.reset(); }
+
+    const std::optional<Device>& device() const noexcept { return device_; } ///< that is open
+
     /// The packed grid is about to go.
     void unload() { grid_.reset(); }
 

@@ -87,6 +87,16 @@ std::uint64_t free_memory() {
     return least;
 }
 
+std::optional<std::uint64_t> resident_memory() { return proc_bytes("/proc/self/status", "VmRSS:"); }
+
+std::optional<std::uint64_t> peak_resident_memory() { return proc_bytes("/proc/self/status", "VmHWM:"); }
+
+bool forget_peak_memory() {
+    std::ofstream clear("/proc/self/clear_refs");
+    clear << "5\n" << std::flush; // proc(5): resets the peak resident set size
+    return static_cast<bool>(clear);
+}
+
 std::string format_bytes(std::uint64_t bytes) {
     const auto value = static_cast<double>(bytes);
     if (value < 1e3) return fmt::format("{} B", bytes);

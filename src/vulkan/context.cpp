@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cache_folder.hpp"
 #include "core/guard.hpp"
 #include "vulkan/choice.hpp"
 #include "vulkan/found_devices.hpp"
@@ -53,7 +54,7 @@ Result<std::shared_ptr<Context>> Context::open_unguarded(const DeviceOptions& op
     context->memory_ = std::make_unique<Memory>(*context->device_, capabilities,
                                                 Memory::Options{options.memory_limit, settings.force_staging});
     context->cache_ = std::make_unique<PipelineCache>(*context->device_, capabilities,
-                                                      settings.cache_folder.value_or(pipeline_cache_folder()));
+                                                      settings.cache_folder.value_or(core::cache_folder()));
     context->kernels_ = std::make_unique<Kernels>(*context->device_, capabilities, *context->cache_);
     context->staging_ = std::make_unique<Staging>(*context, settings.staging_bytes);
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -110,13 +109,6 @@ void tidy(const fs::path& folder) {
 }
 
 } // namespace
-
-fs::path pipeline_cache_folder() {
-    // As the XDG specification has it, relative paths do not count.
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return fs::path(cache) / "isotet";
-    if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "isotet";
-    return {};
-}
 
 PipelineCache::PipelineCache(LogicalDevice& device, const Capabilities& capabilities, const fs::path& folder)
     : device_(device) {

@@ -10,9 +10,6 @@
 
 namespace isotet::vulkan {
 
-/// $XDG_CACHE_HOME/isotet, or ~/.cache/isotet; empty where neither is set.
-std::filesystem::path pipeline_cache_folder();
-
 /// One file a device, driver version and build of isotet: another driver or another build does not read it. It begins with
 /// a checksum, so that a broken file is never shown to the driver. Whatever goes wrong with the file costs time only, and is
 /// not an error: two processes may write at the same time, the disk may be full, the folder may be missing. Whoever writes

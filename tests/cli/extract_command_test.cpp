@@ -69,20 +69,37 @@ TEST_F(Program, ExtractGivesTheSameSurfaceByEveryMethod) {
 }
 
 TEST_F(Program, ExtractPacksForManySurfacesOnlyAndSaysWhy) {
-    const auto method = [&](const std::vector<std::string>& more) {
+    const auto choice = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const json report = json_of(arguments);
         EXPECT_NE(report["method_why"].get<std::string>().find("auto: "), std::string::npos);
-        return report["method"].get<std::string>();
+        return report;
     };
-    EXPECT_EQ(method({}), "brute");
-    EXPECT_EQ(method({"-i", "0.5"}), "brute");
-    EXPECT_EQ(method({"--levels", "32"}), "brute");
-    EXPECT_EQ(method({"--levels", "33"}), "clusters");
-    EXPECT_EQ(method({"--levels", "33", "--engine", "reference"}), "clusters");
+    EXPECT_EQ(choice({})["method"], "brute");
+    EXPECT_EQ(choice({"-i", "0.5"})["filter"], "none");
+    EXPECT_EQ(choice({"--levels", "5000"})["method"], "clusters");
+    EXPECT_EQ(choice({"--levels", "5000", "--engine", "reference"})["method"], "clusters");
+    const json weighed = choice({"-i", "0.5"})["choice"];
+    ASSERT_EQ(weighed["ways"].size(), 2u);
+    EXPECT_EQ(weighed["ways"][0]["way"], weighed["way"]);
+    EXPECT_EQ(weighed["ways"][0]["seconds"], weighed["predicted"]["seconds"]);
+    EXPECT_LE(weighed["ways"][0]["seconds"], weighed["ways"][1]["seconds"]);
+    EXPECT_GT(weighed["measured"]["seconds"], 0);
     const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "0.5"});
-    EXPECT_NE(run.out.find("brute (auto: 1 surface, and packing pays for more than 32)"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("brute (auto: 1 surface, brute on the CPU "), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find(" predicted, took "), std::string::npos) << run.out;
+}
+
+TEST_F(Program, ExtractForecastsWhatIsAskedFor) {
+    for (const char* method : {"brute", "clusters"}) {
+        const json report = json_of({"extract", "make:hex:6:sphere", "-i", "0.5", "--method", method});
+        EXPECT_EQ(report["method_why"], "asked for");
+        ASSERT_EQ(report["choice"]["ways"].size(), 1u);
+        EXPECT_GT(report["choice"]["predicted"]["seconds"], 0);
+    }
+    const json reference = json_of({"extract", "make:hex:6:sphere", "-i", "0.5", "--engine", "reference"});
+    EXPECT_TRUE(reference["choice"]["predicted"].is_null());
 }
 
 TEST_F(Program, ExtractByBruteTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {

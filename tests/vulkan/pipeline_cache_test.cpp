@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/cache_folder.hpp"
 #include "support/temporary_folder.hpp"
 #include "vulkan/pipeline_cache.hpp"
 #include "vulkan/software_device.hpp"
@@ -121,7 +122,7 @@ TEST(PipelineCacheFolder, FollowsTheXdgSpecification) {
     const auto folder_with = [](const char* cache, const char* home) {
         cache ? setenv("XDG_CACHE_HOME", cache, 1) : unsetenv("XDG_CACHE_HOME");
         home ? setenv("HOME", home, 1) : unsetenv("HOME");
-        return vulkan::pipeline_cache_folder().string();
+        return core::cache_folder().string();
     };
     EXPECT_EQ(folder_with("/some/cache", "/home/me"), "/some/cache/isotet");
     EXPECT_EQ(folder_with(nullptr, "/home/me"), "/home/me/.cache/isotet");

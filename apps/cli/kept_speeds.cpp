@@ -1,0 +1,121 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "kept_speeds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <isotet/version.hpp>
+
+#include "build_facts.hpp"
+#include "core/cache_folder.hpp"
+#include "io/own/output_file.hpp"
+#include "json_output.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr std::size_t most_bytes = 1 << 20;
+
+std::filesystem::path file_of_speeds() {
+    const std::filesystem::path folder = core::cache_folder();
+    return folder.empty() ? folder : folder / "speeds.json";
+}
+
+/// Another build may be faster or slower: its figures are not read.
+constexpr std::string_view build = ISOTET_VERSION " " ISOTET_COMMIT " " ISOTET_BUILD_TYPE " " ISOTET_SANITIZERS;
+
+/// The file as it should be; an empty one of this build otherwise.
+Json read_file() {
+    const Json empty = {{"build", build}, {"speeds", Json::object()}};
+    const std::filesystem::path path = file_of_speeds();
+    std::error_code failed;
+    if (path.empty() || std::filesystem::file_size(path, failed) > most_bytes || failed) return empty;
+    std::ifstream file(path);
+    Json kept = Json::parse(file, nullptr, false);
+    const bool whole = kept.is_object() && kept.contains("build") && kept["build"].is_string() && kept.contains("speeds") &&
+                       kept["speeds"].is_object();
+    return whole && kept["build"].get<std::string>() == build ? kept : empty;
+}
+
+using Numbers = std::vector<std::pair<const char*, double*>>;
+
+Numbers numbers_of(Speeds& speeds) {
+    return {{"pack_call", &speeds.pack_call},
+            {"pack_tet", &speeds.pack_tet},
+            {"brute_call", &speeds.brute_call},
+            {"brute_tet", &speeds.brute_tet},
+            {"brute_triangle", &speeds.brute_triangle},
+            {"clusters_call", &speeds.clusters_call},
+            {"clusters_tet", &speeds.clusters_tet},
+            {"clusters_triangle", &speeds.clusters_triangle}};
+}
+
+Numbers numbers_of(DeviceSpeeds& speeds) {
+    return {{"upload_tet", &speeds.upload_tet}, {"call", &speeds.call}, {"tet", &speeds.tet}, {"triangle", &speeds.triangle}};
+}
+
+template <class AnySpeeds>
+std::optional<AnySpeeds> find(const std::string& key) {
+    const Json kept = read_file()["speeds"];
+    if (!kept.contains(key)) return {};
+    AnySpeeds speeds;
+    for (const auto& [name, number] : numbers_of(speeds)) {
+        if (!kept[key].is_object() || !kept[key].contains(name) || !kept[key][name].is_number()) return {};
+        *number = kept[key][name].template get<double>();
+        if (!std::isfinite(*number) || *number < 0) return {};
+    }
+    return speeds;
+}
+
+template <class AnySpeeds>
+void add(const std::string& key, AnySpeeds speeds) {
+    const std::filesystem::path path = file_of_speeds();
+    if (path.empty()) return;
+    Json kept = read_file();
+    Json entry = Json::object();
+    for (const auto& [name, number] : numbers_of(speeds)) entry[name] = *number;
+    kept["speeds"][key] = std::move(entry);
+    std::error_code failed;
+    std::filesystem::create_directories(path.parent_path(), failed);
+    Result<io::OutputFile> file = io::OutputFile::open(path.string());
+    if (file && file->write(kept.dump(2, ' ', false, Json::error_handler_t::replace) + "\n")) (void)file->commit();
+}
+
+/// As the system calls it; empty where it does not.
+std::string name_of_processor() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t colon = line.find(": ");
+        if (line.starts_with("model name") && colon != line.npos) return line.substr(colon + 2);
+    }
+    return "a processor";
+}
+
+int threads_of(int threads) { return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+} // namespace
+
+std::optional<Speeds> kept_speeds(const std::string& key) { return find<Speeds>(key); }
+std::optional<DeviceSpeeds> kept_device_speeds(const std::string& key) { return find<DeviceSpeeds>(key); }
+
+void keep(const std::string& key, const Speeds& speeds) { add(key, speeds); }
+void keep(const std::string& key, const DeviceSpeeds& speeds) { add(key, speeds); }
+
+std::string processor_key(int threads) {
+    return json_text(fmt::format("{}, {} threads", name_of_processor(), threads_of(threads))).get<std::string>();
+}
+
+std::string device_key(const DeviceInfo& info, int threads) {
+    return json_text(fmt::format("{}, {}, beside {} threads", info.name, info.driver, threads_of(threads))).get<std::string>();
+}
+
+} // namespace isotet::cli

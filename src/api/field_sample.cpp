@@ -1,0 +1,83 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <isotet/choose.hpp>
+
+#include "core/cells.hpp"
+#include "core/guard.hpp"
+
+namespace isotet {
+
+namespace {
+
+/// Triangles for each cut tet: one where one corner is cut off, two where two are on each side. Of smooth fields on regular
+/// grids, on perturbed ones and on those of data/, about 1.3.
+constexpr double triangles_a_cut_tet = 1.3;
+
+/// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does not
+/// replace: it keeps a look at a few cells within the arrays.
+bool is_within(const core::CellReader& cells, std::size_t cell) {
+    const auto corners = static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
+    const std::uint64_t first = cells.first(cell);
+    if (corners == 0 || first > cells.connectivity_size() || cells.connectivity_size() - first < corners) return false;
+    for (std::uint64_t i = 0; i < corners; ++i)
+        if (cells.corner(first + i) >= cells.points()) return false;
+    return true;
+}
+
+} // namespace
+
+Result<FieldSample> FieldSample::take(const Grid& grid, const PointField& field) {
+    return core::guarded("looking at the field", [&]() -> Result<FieldSample> {
+        const auto cells = core::CellReader::open(grid);
+        if (!cells) return cells.error();
+        if (field.values.tuples() != cells->points() || (field.values.components() != 1 && !field.values.empty()))
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("field '{}' has {} values of {} components, but the grid has {} points and the contoured field must have 1 component",
+                                     field.name, field.values.tuples(), field.values.components(), cells->points())};
+        FieldSample sample;
+        const std::uint64_t count = cells->count(), looked_at = std::min(count, most_cells);
+        sample.points_ = cells->points();
+        sample.lower_ = std::numeric_limits<double>::infinity();
+        sample.upper_ = -sample.lower_;
+        std::uint64_t tets = 0;
+        for (std::uint64_t i = 0; i < looked_at; ++i) {
+            // Regular grids repeat themselves from row to row: places between even steps are drawn (Weyl's sequence).
+            const double place = (static_cast<double>(i) + std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0)) /
+                                 static_cast<double>(looked_at);
+            const auto drawn = static_cast<std::uint64_t>(place * static_cast<double>(count));
+            const std::uint64_t cell = looked_at == count ? i : std::min(drawn, count - 1);
+            if (!is_within(*cells, cell)) continue;
+            for (const core::Tet& tet : cells->tets(cell)) {
+                ++tets;
+                Range range{field.values.at(tet[0]), field.values.at(tet[0])};
+                bool data = true;
+                for (const std::uint64_t point : tet) {
+                    const double value = field.values.at(point);
+                    data &= std::isfinite(value);
+                    range.lower = std::min(range.lower, value);
+                    range.upper = std::max(range.upper, value);
+                }
+                if (!data) continue;
+                sample.lower_ = std::min(sample.lower_, range.lower);
+                sample.upper_ = std::max(sample.upper_, range.upper);
+                if (range.lower < range.upper) sample.tets_seen_.push_back(range);
+            }
+        }
+        sample.tets_each_ = looked_at == 0 ? 0 : static_cast<double>(count) / static_cast<double>(looked_at);
+        sample.tets_ = static_cast<std::uint64_t>(sample.tets_each_ * static_cast<double>(tets));
+        if (cells->only_tets()) sample.tets_ = count;
+        return sample;
+    });
+}
+
+double FieldSample::triangles(double isovalue) const noexcept {
+    const auto cut = std::ranges::count_if(tets_seen_, [&](const Range& range) { return range.lower < isovalue && isovalue <= range.upper; });
+    return triangles_a_cut_tet * tets_each_ * static_cast<double>(cut);
+}
+
+} // namespace isotet
