@@ -11,6 +11,7 @@
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/storage.hpp"
+#include "core/tet_table.hpp"
 #include "search/all_tets.hpp"
 #include "search/cluster_ranges.hpp"
 #include "search/interval_tree.hpp"
@@ -24,7 +25,7 @@ namespace search {
 
 class FilteredTets {
 public:
-    TetTable table;
+    core::TetTable table;
     std::unique_ptr<Search> search; ///< borrows the table
     core::Storage storage;
     TetFilterReport report;
@@ -37,7 +38,7 @@ namespace {
 
 using search::FilteredTets;
 
-std::unique_ptr<search::Search> make_search(Filter filter, const search::TetTable& table) {
+std::unique_ptr<search::Search> make_search(Filter filter, const core::TetTable& table) {
     switch (filter) {
     case Filter::none: return std::make_unique<search::AllTets>(table);
     case Filter::interval_tree: return std::make_unique<search::IntervalTree>(table);
@@ -76,7 +77,7 @@ Result<std::unique_ptr<FilteredTets>> build_tets(const core::Packed& packed, Fil
     if (auto ok = core::require_memory("the filter", needed); !ok) return ok.error();
     auto tets = std::make_unique<FilteredTets>();
     const Clock table_clock;
-    auto table = search::make_tet_table(packed);
+    auto table = core::make_tet_table(packed);
     if (!table) return table.error();
     tets->table = *std::move(table);
     tets->report.table_seconds = table_clock.seconds();

@@ -3,15 +3,15 @@
 
 #include <numeric>
 
+#include "core/tet_table.hpp"
 #include "search/search.hpp"
-#include "search/tet_table.hpp"
 
 namespace isotet::search {
 
 /// No filter: finds all tets. What the others are compared with.
 class AllTets final : public Search {
 public:
-    explicit AllTets(const TetTable& table) : table_(table) {}
+    explicit AllTets(const core::TetTable& table) : table_(table) {}
 
     std::uint64_t bytes() const override { return 0; }
     void find(float, TetNumbers& found) const override {
@@ -20,7 +20,7 @@ public:
     }
 
 private:
-    const TetTable& table_;
+    const core::TetTable& table_;
 };
 
 } // namespace isotet::search

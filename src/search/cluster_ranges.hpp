@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/buffer.hpp"
+#include "core/tet_table.hpp"
 #include "search/search.hpp"
-#include "search/tet_table.hpp"
 
 namespace isotet::search {
 
@@ -12,19 +12,19 @@ namespace isotet::search {
 /// Cost   O(n) to build; a look at every cluster, and at the groups of those that may be cut; 0.3 bytes a tet
 class ClusterRanges final : public Search {
 public:
-    explicit ClusterRanges(const TetTable& table);
+    explicit ClusterRanges(const core::TetTable& table);
 
     std::uint64_t bytes() const override { return clusters_.bytes() + groups_.bytes(); }
     void find(float isovalue, TetNumbers& found) const override;
 
 private:
     struct Cluster {
-        CutRange range;
+        core::CutRange range;
         std::uint32_t first_tet, end_tet, first_group;
     };
 
     core::Buffer<Cluster> clusters_;
-    core::Buffer<CutRange> groups_;
+    core::Buffer<core::CutRange> groups_;
 };
 
 } // namespace isotet::search

@@ -24,7 +24,7 @@ struct Face {
 
 /// Calls f(lowest point, face) for the four faces of a tet.
 template <class F>
-void for_faces(const TetTable& table, std::uint32_t tet, const F& f) {
+void for_faces(const core::TetTable& table, std::uint32_t tet, const F& f) {
     std::array<std::uint32_t, 4> v = table.tets[tet];
     std::sort(v.begin(), v.end());
     f(v[0], Face{v[1], v[2], tet});
@@ -46,7 +46,7 @@ std::size_t corner_beside(const std::array<std::uint32_t, 4>& tet, std::uint32_t
 
 } // namespace
 
-FaceNeighbours::FaceNeighbours(const TetTable& table) : neighbours_(table.tets.size()) {
+FaceNeighbours::FaceNeighbours(const core::TetTable& table) : neighbours_(table.tets.size()) {
     constexpr std::size_t grain = 1 << 14;
     const std::size_t tets = table.tets.size(), points = table.points.size();
     // Faces by their lowest point: counted, then each put where the next one goes. next[p] is then where those of p end.

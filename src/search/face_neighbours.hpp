@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/buffer.hpp"
-#include "search/tet_table.hpp"
+#include "core/tet_table.hpp"
 
 namespace isotet::search {
 
@@ -20,7 +20,7 @@ public:
     ///
     /// Guarantees   if a is b's neighbour, b is a's
     /// Cost         O(n), 48 bytes a tet meanwhile; 16 stay
-    explicit FaceNeighbours(const TetTable& table);
+    explicit FaceNeighbours(const core::TetTable& table);
 
     const std::array<std::uint32_t, 4>& of(std::uint32_t tet) const { return neighbours_[tet]; }
     std::uint64_t bytes() const { return neighbours_.bytes(); }

@@ -14,7 +14,7 @@ constexpr std::size_t worth_a_task = 1 << 14;
 } // namespace
 
 struct IntervalTree::Item {
-    CutRange range;
+    core::CutRange range;
     std::uint32_t tet;
 };
 
@@ -27,21 +27,21 @@ struct IntervalTree::Node {
     std::unique_ptr<Node> left, right;
 };
 
-IntervalTree::IntervalTree(const TetTable& table) {
+IntervalTree::IntervalTree(const core::TetTable& table) {
     core::Buffer<std::uint32_t> all(table.tets.size());
     std::iota(all.begin(), all.end(), 0);
     build(table, {all.data(), all.size()});
 }
 
-IntervalTree::IntervalTree(const TetTable& table, std::span<const std::uint32_t> tets) { build(table, tets); }
+IntervalTree::IntervalTree(const core::TetTable& table, std::span<const std::uint32_t> tets) { build(table, tets); }
 
 IntervalTree::~IntervalTree() = default;
 
-void IntervalTree::build(const TetTable& table, std::span<const std::uint32_t> tets) {
+void IntervalTree::build(const core::TetTable& table, std::span<const std::uint32_t> tets) {
     core::Buffer<Item> items(tets.size());
     std::size_t count = 0;
     for (const std::uint32_t tet : tets)
-        if (const CutRange range = table.range(tet); !range.is_empty()) items[count++] = {range, tet};
+        if (const core::CutRange range = table.range(tet); !range.is_empty()) items[count++] = {range, tet};
     for (List* list : {&by_lower_, &by_upper_}) {
         list->ends = core::Buffer<float>(count);
         list->tets = core::Buffer<std::uint32_t>(count);
@@ -54,7 +54,7 @@ void IntervalTree::build(const TetTable& table, std::span<const std::uint32_t> t
 std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> items, std::size_t first) {
     if (items.empty()) return nullptr;
     auto node = std::make_unique<Node>();
-    const auto put = [](List& list, std::size_t at, std::span<const Item> sorted, float CutRange::* end) {
+    const auto put = [](List& list, std::size_t at, std::span<const Item> sorted, float core::CutRange::* end) {
         for (std::size_t i = 0; i < sorted.size(); ++i) {
             list.ends[at + i] = sorted[i].range.*end;
             list.tets[at + i] = sorted[i].tet;
@@ -64,8 +64,8 @@ std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> item
     node->end = static_cast<std::uint32_t>(first + items.size());
     if (items.size() <= leaf_size) {
         node->is_leaf = true;
-        put(by_lower_, first, items, &CutRange::lower);
-        put(by_upper_, first, items, &CutRange::upper);
+        put(by_lower_, first, items, &core::CutRange::lower);
+        put(by_upper_, first, items, &core::CutRange::upper);
         return node;
     }
     // The median of the upper ends: it belongs to a range, which stays here, and halves what is left on either side.
@@ -84,9 +84,9 @@ std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> item
     };
     const auto own_part = [&] {
         std::sort(own.begin(), own.end(), by([](const Item& item) { return item.range.lower; }));
-        put(by_lower_, begin, own, &CutRange::lower);
+        put(by_lower_, begin, own, &core::CutRange::lower);
         std::sort(own.begin(), own.end(), by([](const Item& item) { return -item.range.upper; }));
-        put(by_upper_, begin, own, &CutRange::upper);
+        put(by_upper_, begin, own, &core::CutRange::upper);
     };
     const auto left_part = [&] { node->left = make_node({items.begin(), here}, first); };
     const auto right_part = [&] { node->right = make_node({right, items.end()}, begin + own.size()); };
@@ -117,7 +117,7 @@ void IntervalTree::find(float isovalue, TetNumbers& found) const {
     for (const Node* node = root_.get(); node;) {
         if (node->is_leaf) {
             for (std::uint32_t i = node->begin; i < node->end; ++i)
-                if (CutRange{by_lower_.ends[i], by_upper_.ends[i]}.holds(isovalue)) found.push_back(by_lower_.tets[i]);
+                if (core::CutRange{by_lower_.ends[i], by_upper_.ends[i]}.holds(isovalue)) found.push_back(by_lower_.tets[i]);
             return;
         }
         if (isovalue <= node->split) {

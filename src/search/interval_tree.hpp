@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/buffer.hpp"
+#include "core/tet_table.hpp"
 #include "search/search.hpp"
-#include "search/tet_table.hpp"
 
 namespace isotet::search {
 
@@ -20,9 +20,9 @@ namespace isotet::search {
 /// Cost   O(n log n) to build, 12 bytes a tet meanwhile; O(log n + found) to ask; 16 bytes a tet that can be cut
 class IntervalTree final : public Search {
 public:
-    explicit IntervalTree(const TetTable& table);
+    explicit IntervalTree(const core::TetTable& table);
     /// Of some tets alone.
-    IntervalTree(const TetTable& table, std::span<const std::uint32_t> tets);
+    IntervalTree(const core::TetTable& table, std::span<const std::uint32_t> tets);
     ~IntervalTree() override;
 
     std::uint64_t bytes() const override;
@@ -37,7 +37,7 @@ private:
         core::Buffer<std::uint32_t> tets;
     };
 
-    void build(const TetTable& table, std::span<const std::uint32_t> tets);
+    void build(const core::TetTable& table, std::span<const std::uint32_t> tets);
     std::unique_ptr<Node> make_node(std::span<Item> items, std::size_t first);
 
     List by_lower_, by_upper_;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t most_in_leaf = 32;
 constexpr unsigned levels = 21;
 
-std::array<float, 3> centroid(const TetTable& table, const std::array<std::uint32_t, 4>& tet) {
+std::array<float, 3> centroid(const core::TetTable& table, const std::array<std::uint32_t, 4>& tet) {
     std::array<float, 3> sum{};
     for (const std::uint32_t point : tet)
         for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += 0.25f * table.points[point][axis];
@@ -26,7 +26,7 @@ std::array<float, 3> centroid(const TetTable& table, const std::array<std::uint3
 /// The cube around all points, in 2^21 steps.
 class Cube {
 public:
-    explicit Cube(const TetTable& table) {
+    explicit Cube(const core::TetTable& table) {
         lower_.fill(std::numeric_limits<float>::infinity());
         std::array<float, 3> upper;
         upper.fill(-std::numeric_limits<float>::infinity());
@@ -53,7 +53,7 @@ private:
 
 } // namespace
 
-Octree::Octree(const TetTable& table) : tets_(table.tets.size()) {
+Octree::Octree(const core::TetTable& table) : tets_(table.tets.size()) {
     if (tets_.empty()) return;
     {
         core::Buffer<core::Keyed> sorted(tets_.size()), scratch(tets_.size());

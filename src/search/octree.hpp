@@ -7,8 +7,8 @@
 
 #include "core/buffer.hpp"
 #include "core/radix_sort.hpp"
+#include "core/tet_table.hpp"
 #include "search/search.hpp"
-#include "search/tet_table.hpp"
 
 namespace isotet::search {
 
@@ -21,14 +21,14 @@ namespace isotet::search {
 ///        4 bytes a tet and 24 a node
 class Octree final : public Search {
 public:
-    explicit Octree(const TetTable& table);
+    explicit Octree(const core::TetTable& table);
 
     std::uint64_t bytes() const override { return tets_.bytes() + nodes_.size() * sizeof(Node); }
     void find(float isovalue, TetNumbers& found) const override;
 
 private:
     struct Node {
-        CutRange range;
+        core::CutRange range;
         std::uint32_t begin, end;   ///< in the list of tets
         std::uint32_t first_child = 0, children = 0; ///< they stand together
     };

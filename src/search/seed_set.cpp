@@ -20,7 +20,7 @@ private:
 
 class SeedChoice {
 public:
-    SeedChoice(const TetTable& table, const FaceNeighbours& neighbours)
+    SeedChoice(const core::TetTable& table, const FaceNeighbours& neighbours)
         : table_(table), neighbours_(neighbours), taken_in_(table.tets.size()) {}
 
     TetNumbers choose() {
@@ -48,7 +48,7 @@ private:
     /// Whether every isovalue of a tet is one of some face behind which a tet has been taken in. The faces' isovalues leave
     /// no gap: two faces share two corners, and each has one of the two others at most besides.
     bool is_led_back(std::uint32_t tet) const {
-        CutRange led_back;
+        core::CutRange led_back;
         for (unsigned k = 0; k < 4; ++k) {
             const std::uint32_t neighbour = neighbours_.of(tet)[k];
             if (neighbour != FaceNeighbours::nobody && taken_in_[neighbour]) led_back.take_in(table_.face_range(tet, k));
@@ -56,7 +56,7 @@ private:
         return led_back.covers(table_.range(tet));
     }
 
-    const TetTable& table_;
+    const core::TetTable& table_;
     const FaceNeighbours& neighbours_;
     TetBits taken_in_;
     std::vector<std::uint32_t> open_;
@@ -64,7 +64,7 @@ private:
 
 } // namespace
 
-SeedSet::SeedSet(const TetTable& table) : table_(table), neighbours_(table) {
+SeedSet::SeedSet(const core::TetTable& table) : table_(table), neighbours_(table) {
     const TetNumbers seeds = SeedChoice(table_, neighbours_).choose();
     seeds_ = seeds.size();
     tree_ = std::make_unique<IntervalTree>(table_, seeds);

@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "core/buffer.hpp"
+#include "core/tet_table.hpp"
 #include "search/face_neighbours.hpp"
 #include "search/interval_tree.hpp"
 #include "search/search.hpp"
-#include "search/tet_table.hpp"
 
 namespace isotet::search {
 
@@ -22,14 +22,14 @@ namespace isotet::search {
 /// Cost   O(n) to build, after the neighbours; O(log n + 4 found) to ask, and a bit a tet; 16 bytes a tet and 16 a seed
 class SeedSet final : public Search {
 public:
-    explicit SeedSet(const TetTable& table);
+    explicit SeedSet(const core::TetTable& table);
 
     std::size_t seeds() const { return seeds_; }
     std::uint64_t bytes() const override { return neighbours_.bytes() + tree_->bytes(); }
     void find(float isovalue, TetNumbers& found) const override;
 
 private:
-    const TetTable& table_;
+    const core::TetTable& table_;
     FaceNeighbours neighbours_;
     std::size_t seeds_ = 0;
     std::unique_ptr<IntervalTree> tree_;

@@ -15,11 +15,11 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t few = 16; ///< so many are looked at one by one
 
 struct Item {
-    CutRange range;
+    core::CutRange range;
     std::uint32_t tet;
 };
 
-float key_of(const CutRange& range, bool by_upper) { return by_upper ? range.upper : range.lower; }
+float key_of(const core::CutRange& range, bool by_upper) { return by_upper ? range.upper : range.lower; }
 
 void arrange(std::span<Item> items, bool by_upper) {
     if (items.size() <= few) return;
@@ -38,13 +38,13 @@ void arrange(std::span<Item> items, bool by_upper) {
 
 } // namespace
 
-SpanSpace::SpanSpace(const TetTable& table) {
+SpanSpace::SpanSpace(const core::TetTable& table) {
     core::Buffer<Item> items(table.tets.size());
     std::size_t count = 0;
     for (std::uint32_t tet = 0; tet < items.size(); ++tet)
-        if (const CutRange range = table.range(tet); !range.is_empty()) items[count++] = {range, tet};
+        if (const core::CutRange range = table.range(tet); !range.is_empty()) items[count++] = {range, tet};
     arrange({items.data(), count}, false);
-    ranges_ = core::Buffer<CutRange>(count);
+    ranges_ = core::Buffer<core::CutRange>(count);
     tets_ = core::Buffer<std::uint32_t>(count);
     for (std::size_t i = 0; i < count; ++i) {
         ranges_[i] = items[i].range;

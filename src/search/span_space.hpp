@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/buffer.hpp"
+#include "core/tet_table.hpp"
 #include "search/search.hpp"
-#include "search/tet_table.hpp"
 
 namespace isotet::search {
 
@@ -16,7 +16,7 @@ namespace isotet::search {
 /// Cost   O(n log n) to build; O(sqrt n + found) to ask; 12 bytes a tet that can be cut
 class SpanSpace final : public Search {
 public:
-    explicit SpanSpace(const TetTable& table);
+    explicit SpanSpace(const core::TetTable& table);
 
     std::uint64_t bytes() const override { return ranges_.bytes() + tets_.bytes(); }
     void find(float isovalue, TetNumbers& found) const override;
@@ -30,7 +30,7 @@ private:
     };
     void take(float isovalue, const Stretch& stretch, TetNumbers& found) const;
 
-    core::Buffer<CutRange> ranges_;
+    core::Buffer<core::CutRange> ranges_;
     core::Buffer<std::uint32_t> tets_;
 };
 

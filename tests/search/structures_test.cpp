@@ -9,9 +9,9 @@
 
 #include <isotet/search.hpp>
 
+#include "core/tet_table.hpp"
 #include "search/face_neighbours.hpp"
 #include "search/seed_set.hpp"
-#include "search/tet_table.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"
@@ -19,15 +19,15 @@
 namespace isotet::test {
 namespace {
 
+using core::TetTable;
 using search::FaceNeighbours;
-using search::TetTable;
 
-TetTable table_of(const Grid& grid, const PointField& field) { return search::make_tet_table(pack(grid, field).value().data()).value(); }
+TetTable table_of(const Grid& grid, const PointField& field) { return core::make_tet_table(pack(grid, field).value().data()).value(); }
 
 TEST(TetTables, HoldSixteenBytesATetAndAPoint) {
     const Grid grid = made_grid("mixed", 5, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
-    const TetTable table = search::make_tet_table(packed.data()).value();
+    const TetTable table = core::make_tet_table(packed.data()).value();
     EXPECT_EQ(table.bytes(), 16 * (packed.report().tets + packed.report().points));
     EXPECT_EQ(table.clusters(), packed.report().clusters);
     std::multiset<float> values, expected;

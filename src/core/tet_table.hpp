@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Tets and points in tables, as Buatois, Caumon and Levy (2006) keep them in textures: one texel a tet, its four point
-// numbers; one texel a point, x, y, z and value. What the searches of this folder look through.
+// numbers; one texel a point, x, y, z and value.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "core/buffer.hpp"
 #include "core/packed.hpp"
 
-namespace isotet::search {
+namespace isotet::core {
 
 /// The isovalues that cut a tet or a face: those above `lower`, up to and with `upper`. A tet with a corner without data has
 /// none.
@@ -29,9 +29,9 @@ struct CutRange {
 };
 
 struct TetTable {
-    core::Buffer<std::array<std::uint32_t, 4>> tets; ///< cluster by cluster, as they are packed
-    core::Buffer<std::array<float, 4>> points;       ///< relative to the origin; stored value, NaN without data
-    core::Buffer<std::uint32_t> first_tet;           ///< of each cluster; one more than there are
+    Buffer<std::array<std::uint32_t, 4>> tets; ///< cluster by cluster, as they are packed
+    Buffer<std::array<float, 4>> points;       ///< relative to the origin; stored value, NaN without data
+    Buffer<std::uint32_t> first_tet;           ///< of each cluster; one more than there are
 
     std::size_t clusters() const { return first_tet.size() - 1; }
     std::uint64_t bytes() const { return tets.bytes() + points.bytes(); }
@@ -64,6 +64,6 @@ private:
 
 /// Writes a packed grid out into tables: 16 bytes a tet, 16 a point. Parallel.
 /// Errors   invalid_argument for a grid packed in double; invalid_data with 2^32 - 1 tets or more
-Result<TetTable> make_tet_table(const core::Packed& packed);
+Result<TetTable> make_tet_table(const Packed& packed);
 
-} // namespace isotet::search
+} // namespace isotet::core
