@@ -19,6 +19,8 @@
 
 namespace isotet {
 
+class TetSurface;
+
 namespace render {
 class MeshBuffers;
 class FieldBuffer;
@@ -96,13 +98,15 @@ private:
     std::unique_ptr<render::FieldBuffer> buffer_;
 };
 
-/// Something with triangles that is drawn: an uploaded mesh, or a surface where the Vulkan engine left it.
+/// Something with triangles that is drawn: an uploaded mesh, a surface where the Vulkan engine left it, or tets that give
+/// their triangles while they are drawn (draw_tets.hpp).
 struct DrawnSurface {
-    const DeviceMesh* mesh = nullptr;       ///< one of the two; borrowed
+    const DeviceMesh* mesh = nullptr;       ///< one of `mesh`, `surface` and `tets`; borrowed
     const DeviceSurface* surface = nullptr;
-    const DeviceColors* colors = nullptr;   ///< borrowed; null: `color` everywhere
+    const DeviceColors* colors = nullptr;   ///< borrowed; null: `color` everywhere. Tets have none
     Color color{0.70F, 0.75F, 0.80F, 1};    ///< its opacity does not count
     double opacity = 1;                     ///< of the sheet seen at a right angle; at a slant it is denser. 0: not drawn
+    const TetSurface* tets = nullptr;
 };
 
 /// Straight lines of one colour, drawn as opaque.

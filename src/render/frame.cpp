@@ -22,12 +22,12 @@ constexpr std::uint64_t color_bytes = vulkan::Target::texel_bytes, word = 4;
 std::uint64_t pixels_of(const layout::View& view) { return std::uint64_t{view.width} * view.height; }
 std::uint64_t samples_of(const layout::View& view) { return pixels_of(view) * view.samples * view.samples; }
 
-/// Where the structs of a picture stand in one buffer: the view, then lines, opaque and translucent meshes.
-struct Places {
-    static std::uint64_t lines(std::size_t i) { return sizeof(layout::View) + i * sizeof(layout::Lines); }
-    static std::uint64_t meshes(const Draws& draws, std::size_t i) { return lines(draws.lines.size()) + i * sizeof(layout::Mesh); }
-    static std::uint64_t bytes(const Draws& draws) { return meshes(draws, draws.opaque.size() + draws.translucent.size()); }
-};
+/// Of the view and all items, which stand one after another in one buffer.
+std::uint64_t parameter_bytes(const std::vector<DrawStep>& steps) {
+    return steps.empty() ? sizeof(layout::View) : steps.back().at + steps.back().item.size();
+}
+
+bool any_translucent(const std::vector<DrawStep>& steps) { return std::ranges::any_of(steps, &DrawStep::translucent); }
 
 /// Adds what a run took: passes of one name together.
 void add_timings(DeviceWork& work, const vulkan::Timings& timings) {
@@ -60,7 +60,16 @@ std::uint32_t Frame::most_samples_an_axis() const {
                      limits.maxViewportDimensions[1]});
 }
 
-Result<void> Frame::make_room(const layout::View& view, const Draws& draws) {
+Result<const Buffer*> Frame::quad_corners() {
+    if (!quad_corners_) {
+        Result<Buffer> made = make_quad_corners(*context_);
+        if (!made) return made.error();
+        quad_corners_ = *std::move(made);
+    }
+    return &quad_corners_;
+}
+
+Result<void> Frame::make_room(const layout::View& view, const std::vector<DrawStep>& steps) {
     const std::uint32_t width = view.width * view.samples, height = view.height * view.samples;
     if (!target_ || target_->width() < width || target_->height() < height) {
         target_.reset();
@@ -78,8 +87,8 @@ Result<void> Frame::make_room(const layout::View& view, const Draws& draws) {
     };
     Result<void> made = room_for(colors_, samples_of(view) * color_bytes, "samples of the picture");
     if (made) made = room_for(pixels_, pixels_of(view) * word, "pixels of the picture");
-    if (made) made = room_for(parameters_, Places::bytes(draws), "what is drawn");
-    if (!made || draws.translucent.empty()) return made;
+    if (made) made = room_for(parameters_, parameter_bytes(steps), "what is drawn");
+    if (!made || !any_translucent(steps)) return made;
     // One fragment a sample is a guess: where there are more, they are counted, and drawn again.
     if (fragment_room_ == 0) fragment_room_ = static_cast<std::uint32_t>(samples_of(view));
     made = room_for(heads_, samples_of(view) * word, "lists of translucent fragments");
@@ -97,43 +106,51 @@ void Frame::fill_addresses(layout::View& view) const {
     view.pixels = vulkan::address_of(pixels_);
 }
 
-Result<void> Frame::make_parameters(const layout::View& view, const Draws& draws) {
-    std::vector<std::byte> bytes(Places::bytes(draws));
-    const auto put = [&](std::uint64_t at, const auto& item) { std::memcpy(bytes.data() + at, &item, sizeof item); };
-    put(0, view);
-    for (std::size_t i = 0; i < draws.lines.size(); ++i) put(Places::lines(i), draws.lines[i].lines);
-    std::size_t mesh = 0;
-    for (const auto* list : {&draws.opaque, &draws.translucent})
-        for (const MeshDraw& draw : *list) put(Places::meshes(draws, mesh++), draw.mesh);
+Result<void> Frame::make_parameters(const layout::View& view, const std::vector<DrawStep>& steps) {
+    std::vector<std::byte> bytes(parameter_bytes(steps));
+    std::memcpy(bytes.data(), &view, sizeof view);
+    for (const DrawStep& step : steps) std::ranges::copy(step.item, bytes.begin() + static_cast<std::ptrdiff_t>(step.at));
     return context_->staging().upload(parameters_, 0, bytes);
 }
 
-void Frame::record(Recorder& recorder, const layout::View& view, const Draws& draws, const vulkan::Kernel& resolve) {
+/// Adds one pass of draws.
+void Frame::record_draws(Recorder& recorder, const layout::View& view, std::span<const DrawStep> steps, vulkan::Images images) {
+    std::vector<Use> uses{vulkan::draws_from(parameters_)};
+    for (const DrawStep& step : steps)
+        for (const Use& use : step.uses) uses.push_back(use);
+    if (view.fragment_room > 0) {
+        uses.push_back(vulkan::draws_into(heads_));
+        uses.push_back(vulkan::draws_into(fragments_));
+    }
+    const auto draw = [this, steps](const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
+        for (const DrawStep& step : steps)
+            step.record({vulkan::address_of(parameters_), vulkan::address_of(parameters_, step.at)}, call, commands);
+    };
+    target_->draw(recorder, images, view.width * view.samples, view.height * view.samples, uses, draw);
+}
+
+void Frame::record(Recorder& recorder, const layout::View& view, const std::vector<DrawStep>& steps, const vulkan::Kernel& resolve) {
     const bool translucent = view.fragment_room > 0;
     if (translucent) {
         recorder.fill(heads_, 0, samples_of(view) * word, 0);
         recorder.fill(fragments_, 0, sizeof(layout::FragmentList), 0);
     }
-    std::vector<Use> uses{vulkan::draws_from(parameters_)};
-    for (const LineDraw& draw : draws.lines) uses.push_back(vulkan::draws_from(draw.ends));
-    for (const auto* list : {&draws.opaque, &draws.translucent})
-        for (const MeshDraw& draw : *list)
-            for (const Use& use : draw.uses) uses.push_back(use);
-    if (translucent) {
-        uses.push_back(vulkan::draws_into(heads_));
-        uses.push_back(vulkan::draws_into(fragments_));
-    }
-    const std::uint32_t width = view.width * view.samples, height = view.height * view.samples;
-    target_->draw(recorder, width, height, uses, [this, &draws](const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
-        const auto push = [&](std::uint64_t at) {
-            return layout::DrawPush{vulkan::address_of(parameters_), vulkan::address_of(parameters_, at)};
-        };
-        for (std::size_t i = 0; i < draws.lines.size(); ++i) render::record(draws.lines[i], push(Places::lines(i)), call, commands);
-        std::size_t mesh = 0;
-        for (const auto* list : {&draws.opaque, &draws.translucent})
-            for (const MeshDraw& draw : *list) render::record(draw, push(Places::meshes(draws, mesh++)), call, commands);
-    });
-    target_->copy_color(recorder, width, height, colors_);
+    // Nothing can be copied within a pass of draws: one ends, and another begins, where a page has to be sent.
+    vulkan::Images images = vulkan::Images::cleared;
+    std::size_t begin = 0;
+    do {
+        if (begin < steps.size() && steps[begin].from) {
+            recorder.label("send");
+            recorder.copy(*steps[begin].from, 0, *steps[begin].to, 0, steps[begin].from->size());
+            recorder.label("");
+        }
+        std::size_t end = std::min(begin + 1, steps.size());
+        while (end < steps.size() && !steps[end].from) ++end;
+        record_draws(recorder, view, std::span(steps).subspan(begin, end - begin), images);
+        images = vulkan::Images::kept;
+        begin = end;
+    } while (begin < steps.size());
+    target_->copy_color(recorder, view.width * view.samples, view.height * view.samples, colors_);
     std::vector<Use> resolved{vulkan::reads(parameters_), vulkan::reads(colors_), vulkan::writes(pixels_)};
     if (translucent) {
         resolved.push_back(vulkan::reads(heads_));
@@ -168,13 +185,15 @@ Result<void> Frame::fetch(const Part& part, Picture& picture) {
 Result<void> Frame::draw(const Draws& draws, layout::View view, const Part& part, Picture& picture, DeviceWork& work) {
     const Result<const vulkan::Kernel*> resolve = context_->kernels().get(vulkan::drawing::resolve);
     if (!resolve) return resolve.error();
+    const std::vector<DrawStep> steps = in_order(draws, sizeof(layout::View));
     for (;;) {
-        if (Result<void> made = make_room(view, draws); !made) return made;
+        if (Result<void> made = make_room(view, steps); !made) return made;
         fill_addresses(view);
-        if (draws.translucent.empty()) view.fragment_room = 0;
-        if (Result<void> sent = make_parameters(view, draws); !sent) return sent;
+        if (!any_translucent(steps)) view.fragment_room = 0;
+        if (Result<void> sent = make_parameters(view, steps); !sent) return sent;
         Recorder recorder(*context_);
-        record(recorder, view, draws, **resolve);
+        record(recorder, view, steps, **resolve);
+        for (const DrawStep& step : steps) work.uploaded_bytes += step.from ? step.from->size() : 0;
         const Result<vulkan::Timings> timings = recorder.run();
         if (!timings) return timings.error();
         add_timings(work, *timings);

@@ -4,24 +4,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <isotet/render.hpp>
 
-#include "render/line_pass.hpp"
-#include "render/mesh_pass.hpp"
+#include "render/draws.hpp"
 #include "render/space.hpp"
 #include "vulkan/draw_pipelines.hpp"
 #include "vulkan/recorder.hpp"
 #include "vulkan/target.hpp"
 
 namespace isotet::render {
-
-/// Everything that a picture shows, ready to be drawn.
-struct Draws {
-    std::vector<LineDraw> lines;
-    std::vector<MeshDraw> opaque, translucent;
-};
 
 /// Images and buffers, kept from one picture to the next and made anew only when they are too small.
 ///
@@ -37,6 +31,9 @@ public:
     static constexpr std::uint64_t most_samples = std::uint64_t{1} << 24;
     std::uint32_t most_samples_an_axis() const;
 
+    /// The index buffer that all pages of tets are drawn with, made when it is first asked for.
+    Result<const vulkan::Buffer*> quad_corners();
+
     /// Draws a part and puts its pixels into the picture. Adds to `work`.
     ///
     /// `view`   what Space::look() and the options say; addresses are filled in here
@@ -44,10 +41,12 @@ public:
 
 private:
     Frame(std::shared_ptr<vulkan::Context> context, std::unique_ptr<vulkan::RenderPass> pass);
-    Result<void> make_room(const layout::View& view, const Draws& draws);
-    Result<void> make_parameters(const layout::View& view, const Draws& draws);
+    Result<void> make_room(const layout::View& view, const std::vector<DrawStep>& steps);
+    Result<void> make_parameters(const layout::View& view, const std::vector<DrawStep>& steps);
     void fill_addresses(layout::View& view) const;
-    void record(vulkan::Recorder& recorder, const layout::View& view, const Draws& draws, const vulkan::Kernel& resolve);
+    void record(vulkan::Recorder& recorder, const layout::View& view, const std::vector<DrawStep>& steps,
+                const vulkan::Kernel& resolve);
+    void record_draws(vulkan::Recorder& recorder, const layout::View& view, std::span<const DrawStep> steps, vulkan::Images images);
     Result<bool> fragments_fit(std::uint32_t room);
     Result<void> fetch(const Part& part, Picture& picture);
 
@@ -55,7 +54,7 @@ private:
     std::unique_ptr<vulkan::RenderPass> pass_;
     vulkan::DrawPipelines pipelines_;
     std::unique_ptr<vulkan::Target> target_;
-    vulkan::Buffer colors_, heads_, fragments_, pixels_, parameters_;
+    vulkan::Buffer colors_, heads_, fragments_, pixels_, parameters_, quad_corners_;
     std::uint32_t fragment_room_ = 0;
 };
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include <isotet/picture.hpp>
 
+#include "core/case_table.hpp"
 #include "render/kernels/scene.h"
 #include "vulkan/engine/layout.hpp"
 
@@ -16,7 +18,33 @@ namespace layout {
 static_assert(sizeof(View) == 64 + 12 + 4 + 12 + 4 * 4 + 4 * 8 + 12 + 4);
 static_assert(sizeof(Mesh) == 8 * 8 + 3 * 12 + 3 * 4 && sizeof(Lines) == 8 + 12 + 4);
 static_assert(sizeof(FragmentList) == 4 && sizeof(Fragment) == 16);
+static_assert(sizeof(TetRegisters) == 68 && sizeof(TetTables) == 176 && sizeof(TetPage) == sizeof(Mesh) + 5 * 8 + 4);
+static_assert(sizeof(TwinPush) == 20);
 static_assert(sizeof(DrawPush) == 16 && sizeof(ResolvePush) == 8);
+
+/// What marching tetrahedra looks up, by the same numbers in C++ and in shaders.
+inline constexpr TetTables tet_tables{{ISOTET_HALF_CASES}, {ISOTET_TET_EDGES}};
+
+/// Whether the row of a case, or of its complement, is the polygon of the table of the engines: the same edges, from the same
+/// one on, so that the same diagonal cuts a quad; one way around or the other.
+constexpr bool row_agrees(unsigned index) {
+    const core::TetCase& whole = core::case_table[index];
+    const uint* row = tet_tables.cases + std::size_t{4} * (index < 8 ? index : 15 - index);
+    const auto is = [&](unsigned k, unsigned place) {
+        const core::CrossedEdge& edge = whole.polygon[place];
+        const uint lower = edge.above < edge.below ? edge.above : edge.below;
+        const uint higher = edge.above < edge.below ? edge.below : edge.above;
+        return tet_tables.edges[2 * row[k]] == lower && tet_tables.edges[2 * row[k] + 1] == higher;
+    };
+    if (whole.edges == 4) return is(0, 0) && is(2, 2) && ((is(1, 1) && is(3, 3)) || (is(1, 3) && is(3, 1)));
+    return is(0, 0) && row[3] == row[2] && ((is(1, 1) && is(2, 2)) || (is(1, 2) && is(2, 1)));
+}
+constexpr bool half_cases_agree() {
+    for (unsigned index = 1; index < 15; ++index)
+        if (!row_agrees(index)) return false;
+    return true;
+}
+static_assert(half_cases_agree());
 
 inline vec3 vector(const std::array<double, 3>& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // What stands for renderer.cpp in a build without Vulkan: there is no device, so nothing can be uploaded or drawn.
+#include <isotet/draw_tets.hpp>
 #include <isotet/render.hpp>
 
 namespace isotet {
@@ -7,6 +8,11 @@ namespace isotet {
 namespace render {
 class MeshBuffers {};
 class FieldBuffer {};
+class ChosenTets {};
+class TetPages {
+public:
+    TetStoreReport report;
+};
 } // namespace render
 
 struct Renderer::Data {
@@ -43,5 +49,27 @@ Renderer::~Renderer() = default;
 const DeviceWork& Renderer::work() const noexcept { return data_->work; }
 Result<Renderer> Renderer::make(const Device&) { return built_without(); }
 Result<Picture> Renderer::draw(const Scene&, const PictureOptions&, const Progress&) { return built_without(); }
+
+
+TetSurface::TetSurface(std::unique_ptr<render::ChosenTets> tets) : tets_(std::move(tets)) {}
+TetSurface::TetSurface(TetSurface&&) noexcept = default;
+TetSurface& TetSurface::operator=(TetSurface&&) noexcept = default;
+TetSurface::~TetSurface() = default;
+double TetSurface::isovalue() const noexcept { return 0; }
+std::uint64_t TetSurface::tets() const noexcept { return 0; }
+std::uint64_t TetSurface::sent_bytes() const noexcept { return 0; }
+std::uint64_t TetSurface::bytes_a_picture() const noexcept { return 0; }
+Result<std::vector<std::array<std::array<double, 3>, 3>>> TetSurface::triangles() const { return built_without(); }
+
+TetStore::TetStore(std::shared_ptr<render::TetPages> pages) : pages_(std::move(pages)) {}
+TetStore::TetStore(TetStore&&) noexcept = default;
+TetStore& TetStore::operator=(TetStore&&) noexcept = default;
+TetStore::~TetStore() = default;
+const TetStoreReport& TetStore::report() const noexcept { return pages_->report; }
+Result<TetStore> TetStore::upload(const Device&, const PackedGrid&, DrawMethod, const TetStoreOptions&, int, const Progress&) {
+    return built_without();
+}
+Result<TetSurface> TetStore::at(double) { return built_without(); }
+Result<TetSurface> TetStore::at(double, std::span<const std::uint32_t>) { return built_without(); }
 
 } // namespace isotet

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/draw_tets.hpp>
 #include <isotet/render.hpp>
 
 #include "core/guard.hpp"
@@ -47,9 +48,10 @@ Result<void> check_options(const PictureOptions& options) {
     return check_camera(options.camera);
 }
 
-/// Whether there is anything to draw: a mesh, or a surface that was extracted.
+/// Whether there is anything to draw: tets, a mesh, or a surface that was extracted.
 bool has_triangles(const DrawnSurface& drawn) {
     if (drawn.opacity == 0) return false;
+    if (drawn.tets) return drawn.tets->tets() > 0;
     if (drawn.mesh) return drawn.mesh->triangle_count() > 0;
     return drawn.surface && drawn.surface->triangle_count() > 0;
 }
@@ -121,11 +123,18 @@ Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOpti
     }
     for (const DrawnSurface& drawn : scene.surfaces) {
         if (!has_triangles(drawn)) continue;
+        if (drawn.tets) {
+            const Result<const vulkan::Buffer*> corners = frame->quad_corners();
+            if (!corners) return corners.error();
+            const Result<void> added = render::add_tet_draws(frame->pipelines(), space, drawn, *drawn.tets->tets_, **corners, draws.tets);
+            if (!added) return added.error();
+            continue;
+        }
         Result<render::MeshDraw> draw =
             render::make_mesh_draw(frame->pipelines(), space, drawn, drawn.mesh ? drawn.mesh->buffers_.get() : nullptr,
                                    drawn.colors ? drawn.colors->buffer_.get() : nullptr);
         if (!draw) return draw.error();
-        (draw->translucent ? draws.translucent : draws.opaque).push_back(*std::move(draw));
+        draws.meshes.push_back(*std::move(draw));
     }
     return draws;
 }
@@ -160,7 +169,7 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
         }
         progress("draw", static_cast<double>(part.y + part.height) / options.height);
     }
-    work.uploaded_bytes = staging.uploaded() - up;
+    work.uploaded_bytes += staging.uploaded() - up;
     work.downloaded_bytes = staging.downloaded() - down;
     return picture;
 }

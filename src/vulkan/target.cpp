@@ -21,15 +21,15 @@ constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
 constexpr VkPipelineStageFlags depth_stages = VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
 constexpr VkAccessFlags attachment_writes = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
-VkAttachmentDescription attachment(VkFormat format, VkAttachmentStoreOp store, VkImageLayout final) {
+VkAttachmentDescription attachment(VkFormat format, Images images, VkImageLayout final) {
     VkAttachmentDescription description{};
     description.format = format;
     description.samples = VK_SAMPLE_COUNT_1_BIT;
-    description.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    description.storeOp = store;
+    description.loadOp = images == Images::kept ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
+    description.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     description.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
     description.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    description.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    description.initialLayout = images == Images::kept ? final : VK_IMAGE_LAYOUT_UNDEFINED;
     description.finalLayout = final;
     return description;
 }
@@ -37,9 +37,17 @@ VkAttachmentDescription attachment(VkFormat format, VkAttachmentStoreOp store, V
 } // namespace
 
 Result<std::unique_ptr<RenderPass>> RenderPass::make(Context& context) {
+    std::unique_ptr<RenderPass> pass(new RenderPass(context.device()));
+    if (Result<void> lives = context.device().alive(); !lives) return lives.error();
+    for (const Images images : {Images::cleared, Images::kept})
+        if (Result<void> made = pass->make(images); !made) return made.error();
+    return pass;
+}
+
+Result<void> RenderPass::make(Images images) {
     const std::array<VkAttachmentDescription, 2> attachments = {
-        attachment(color_format, VK_ATTACHMENT_STORE_OP_STORE, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
-        attachment(depth_format, VK_ATTACHMENT_STORE_OP_DONT_CARE, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL)};
+        attachment(color_format, images, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
+        attachment(depth_format, images, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL)};
     const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
     const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
     VkSubpassDescription subpass{};
@@ -54,7 +62,8 @@ Result<std::unique_ptr<RenderPass>> RenderPass::make(Context& context) {
     dependencies[0].srcStageMask = VK_PIPELINE_STAGE_TRANSFER_BIT | attachment_stages;
     dependencies[0].dstStageMask = attachment_stages;
     dependencies[0].srcAccessMask = attachment_writes;
-    dependencies[0].dstAccessMask = attachment_writes | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+    dependencies[0].dstAccessMask =
+        attachment_writes | VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
     // What is drawn can be copied.
     dependencies[1].dstSubpass = VK_SUBPASS_EXTERNAL;
     dependencies[1].srcStageMask = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
@@ -70,18 +79,17 @@ Result<std::unique_ptr<RenderPass>> RenderPass::make(Context& context) {
     create.dependencyCount = 2;
     create.pDependencies = dependencies.data();
 
-    std::unique_ptr<RenderPass> pass(new RenderPass(context.device()));
-    LogicalDevice& device = context.device();
-    if (Result<void> lives = device.alive(); !lives) return lives.error();
-    if (const VkResult made = device.call().vkCreateRenderPass(device.handle(), &create, nullptr, &pass->handle_); made != VK_SUCCESS) {
-        pass->handle_ = VK_NULL_HANDLE;
+    VkRenderPass& handle = handles_[static_cast<std::size_t>(images)];
+    if (const VkResult made = device_.call().vkCreateRenderPass(device_.handle(), &create, nullptr, &handle); made != VK_SUCCESS) {
+        handle = VK_NULL_HANDLE;
         return failure("making a render pass", made);
     }
-    return pass;
+    return {};
 }
 
 RenderPass::~RenderPass() {
-    if (handle_ && !device_.hung()) device_.call().vkDestroyRenderPass(device_.handle(), handle_, nullptr);
+    for (const VkRenderPass handle : handles_)
+        if (handle && !device_.hung()) device_.call().vkDestroyRenderPass(device_.handle(), handle, nullptr);
 }
 
 Result<std::unique_ptr<Target>> Target::make(Context& context, const RenderPass& pass, std::uint32_t width, std::uint32_t height) {
@@ -178,13 +186,14 @@ Target::~Target() {
     }
 }
 
-void Target::draw(Recorder& recorder, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses, Recorder::Work draws) {
-    recorder.add_work("draw", uses, [this, width, height, draws = std::move(draws)](const DeviceFunctions& call, VkCommandBuffer commands) {
+void Target::draw(Recorder& recorder, Images images, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses,
+                  Recorder::Work draws) {
+    recorder.add_work("draw", uses, [this, images, width, height, draws = std::move(draws)](const DeviceFunctions& call, VkCommandBuffer commands) {
         std::array<VkClearValue, 2> clear{};
         clear[1].depthStencil.depth = 1;
         VkRenderPassBeginInfo begin{};
         begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-        begin.renderPass = pass_.handle();
+        begin.renderPass = pass_.handle(images);
         begin.framebuffer = framebuffer_;
         begin.renderArea = {{0, 0}, {width, height}};
         begin.clearValueCount = 2;

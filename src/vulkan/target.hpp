@@ -2,6 +2,8 @@
 // Images on the device that are drawn into: colour in linear light, four half floats, and depth.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -12,8 +14,14 @@
 
 namespace isotet::vulkan {
 
-/// The formats of a target, and what becomes of its images in a pass of draws: both are cleared at the beginning, and the
-/// colour can be copied afterwards. Its dependencies order one use of the images after the other, so that nobody else need.
+/// What a pass of draws finds in the images.
+enum class Images : std::uint8_t {
+    cleared, ///< colour transparent black, depth 1
+    kept,    ///< what the pass before drew
+};
+
+/// The formats of a target, and what becomes of its images in a pass of draws: both are cleared or kept at the beginning, and
+/// the colour can be copied afterwards. Its dependencies order one use of the images after the other, so that nobody else need.
 class RenderPass {
 public:
     static Result<std::unique_ptr<RenderPass>> make(Context& context);
@@ -21,12 +29,14 @@ public:
     RenderPass(const RenderPass&) = delete;
     RenderPass& operator=(const RenderPass&) = delete;
 
-    VkRenderPass handle() const noexcept { return handle_; }
+    /// Pipelines and framebuffers of one fit the other.
+    VkRenderPass handle(Images images = Images::cleared) const noexcept { return handles_[static_cast<std::size_t>(images)]; }
 
 private:
     explicit RenderPass(LogicalDevice& device) : device_(device) {}
+    Result<void> make(Images images);
     LogicalDevice& device_;
-    VkRenderPass handle_ = VK_NULL_HANDLE;
+    std::array<VkRenderPass, 2> handles_{};
 };
 
 /// Threads   one thread at a time; not while the device draws into it
@@ -46,9 +56,9 @@ public:
     std::uint32_t width() const noexcept { return width_; }
     std::uint32_t height() const noexcept { return height_; }
 
-    /// Adds a pass that clears the images (colour to transparent black, depth to 1) and then runs `draws` in the render pass,
-    /// with the lower left `width` x `height` texels as the viewport.
-    void draw(Recorder& recorder, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses, Recorder::Work draws);
+    /// Adds a pass that runs `draws` in the render pass, with the lower left `width` x `height` texels as the viewport.
+    void draw(Recorder& recorder, Images images, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses,
+              Recorder::Work draws);
 
     /// Adds a pass that copies these texels, row by row, to the beginning of a buffer.
     void copy_color(Recorder& recorder, std::uint32_t width, std::uint32_t height, const Buffer& to) const;

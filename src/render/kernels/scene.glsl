@@ -12,6 +12,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vie
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MeshAt {
     Mesh mesh;
 };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TetPageAt {
+    TetPage page;
+};
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LinesAt {
     Lines lines;
 };

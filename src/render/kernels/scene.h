@@ -79,6 +79,52 @@ struct Lines {
     float half_width;     ///< samples
 };
 
+/// How a store holds its tets (TetPage::records).
+ISOTET_CONSTANT registers_method = 0u;  ///< TetRegisters, one for each of the four vertices of a tet
+ISOTET_CONSTANT instanced_method = 1u;  ///< four corners a tet, x, y, z and value
+ISOTET_CONSTANT textures_method = 2u;   ///< four point numbers a tet
+
+ISOTET_CONSTANT page_tets = 65536u;     ///< of a store, but for its last page
+ISOTET_CONSTANT twin_size = 64u;        ///< invocations of a workgroup, a vertex of a tet each
+
+/// Half the table of marching tetrahedra: by which corners are above (1, 2, 4, 8), four crossed edges around. An index of 8 or
+/// more has the row of 15 - index. Where three edges are crossed the last stands twice, and with it the vertices.
+#define ISOTET_HALF_CASES                                                                           \
+    0u, 0u, 0u, 0u, 0u, 2u, 1u, 1u, 0u, 3u, 4u, 4u, 1u, 3u, 4u, 2u, 1u, 5u, 3u, 3u, 0u, 2u, 5u, 3u, \
+    0u, 1u, 5u, 4u, 2u, 5u, 4u, 4u
+/// Both corners of the six edges of a tet.
+#define ISOTET_TET_EDGES 0u, 1u, 0u, 2u, 0u, 3u, 1u, 2u, 1u, 3u, 2u, 3u
+
+/// The tables, in the store of textures.
+struct TetTables {
+    uint cases[32];
+    uint edges[12];
+};
+
+/// A vertex of the paper's GPU(R): it knows its whole tet.
+struct TetRegisters {
+    vec4 corners[4];      ///< x, y, z and value
+    uint number;          ///< 0 to 3
+};
+
+/// Tets of one page of a store that are drawn. Begins as a mesh does, so that fragments are those of meshes.
+struct TetPage {
+    Mesh mesh;            ///< of which only place and look count
+    Address records;      ///< of all tets of the page
+    Address numbers;      ///< uint each: which tets of the page; not read where all are drawn
+    Address points;       ///< of textures: x, y, z and value each
+    Address gradients;    ///< of textures: unit direction and 0, or zero, each
+    Address tables;       ///< of textures: TetTables
+    float isovalue;
+};
+
+/// What the compute twin of the vertex shader works on.
+struct TwinPush {
+    Address page;         ///< TetPage
+    Address vertices;     ///< float x 3 each: a place, or NaN where the tet is not cut
+    uint count;           ///< of vertices, four a tet
+};
+
 struct FragmentList {
     uint count;           ///< fragments that there are, more perhaps than there is room for
 };
@@ -93,7 +139,7 @@ struct Fragment {
 
 struct DrawPush {
     Address view;
-    Address item;         ///< Mesh or Lines
+    Address item;         ///< Mesh, TetPage or Lines
 };
 
 struct ResolvePush {

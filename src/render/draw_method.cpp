@@ -1,0 +1,33 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include <isotet/draw_tets.hpp>
+
+namespace isotet {
+
+std::string_view name_of(DrawMethod method) noexcept {
+    switch (method) {
+    case DrawMethod::registers: return "registers";
+    case DrawMethod::registers_instanced: return "registers_instanced";
+    case DrawMethod::textures: return "textures";
+    }
+    return "";
+}
+
+std::optional<DrawMethod> parse_draw_method(std::string_view name) noexcept {
+    const auto* found = std::ranges::find(all_draw_methods, name, [](DrawMethod method) { return name_of(method); });
+    return found == all_draw_methods.end() ? std::nullopt : std::optional(*found);
+}
+
+std::uint64_t tet_store_bytes(DrawMethod method, std::uint64_t tets, std::uint64_t points, bool gradients) noexcept {
+    constexpr std::uint64_t texel = 16, vertices = 4, number = 4, corners = 4;
+    constexpr std::uint64_t tables = (8 * 4 + 6 * 2) * number; // cases, edges
+    switch (method) {
+    case DrawMethod::registers: return tets * vertices * (corners * texel + number);
+    case DrawMethod::registers_instanced: return tets * corners * texel;
+    case DrawMethod::textures: return texel * (tets + points + (gradients ? points : 0)) + tables;
+    }
+    return 0;
+}
+
+} // namespace isotet

@@ -1,0 +1,155 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render/tet_pages.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/memory.hpp"
+#include "core/normal_code.hpp"
+#include "core/parallel.hpp"
+#include "render/send.hpp"
+#include "render/tet_records.hpp"
+
+namespace isotet::render {
+
+namespace {
+
+using vulkan::Buffer;
+using vulkan::Memory;
+using vulkan::Where;
+
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+Result<void> check_options(const core::Packed& packed, DrawMethod method, const TetStoreOptions& options) {
+    if (!options.gradients) return {};
+    if (method != DrawMethod::textures)
+        return wrong(fmt::format("the method {} was asked for gradients, but only textures keeps them", name_of(method)));
+    if (packed.gradients.empty()) return wrong("shading by gradients needs a grid that was packed with gradients");
+    return {};
+}
+
+/// The direction of the gradient at every point, of unit length, and 0; zero where there is none.
+core::Buffer<std::array<float, 4>> directions_of(const core::Packed& packed) {
+    core::Buffer<std::array<float, 4>> directions(packed.gradients.size());
+    core::parallel_each(directions.size(), std::size_t{1} << 16, [&](std::size_t p) {
+        const std::array<int, 3> n = core::decode_normal(packed.gradients[p]);
+        const double x = n[0], y = n[1], z = n[2], squares = x * x + y * y + z * z;
+        const double factor = squares > 0 ? 1 / std::sqrt(squares) : 0;
+        directions[p] = {static_cast<float>(x * factor), static_cast<float>(y * factor), static_cast<float>(z * factor), 0};
+    });
+    return directions;
+}
+
+} // namespace
+
+Result<std::shared_ptr<TetPages>> TetPages::upload(std::shared_ptr<vulkan::Context> context, const core::Packed& packed,
+                                                   DrawMethod method, const TetStoreOptions& options,
+                                                   const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    if (Result<void> right = check_options(packed, method, options); !right) return right.error();
+    const std::uint64_t table_bytes = 16 * (packed.report.tets + packed.points());
+    if (Result<void> there = core::require_memory("making the tables of tets and points", table_bytes); !there)
+        return there.error();
+    const Result<core::TetTable> table = core::make_tet_table(packed);
+    if (!table) return table.error();
+
+    auto pages = std::make_shared<TetPages>();
+    pages->context = std::move(context);
+    pages->method = method;
+    pages->gradients = options.gradients;
+    pages->origin = packed.origin;
+    pages->storage = packed.storage;
+    pages->report.tets = table->tets.size();
+    pages->report.points = table->points.size();
+    const std::uint64_t spared = options.picture_bytes.value_or(pages->context->memory().free() / 8);
+    if (method == DrawMethod::textures)
+        if (Result<void> done = pages->upload_points(*table, packed); !done) return done.error();
+    if (Result<void> done = pages->upload_tets(*table, spared, progress); !done) return done.error();
+    pages->report.stored_bytes = pages->report.device_bytes + pages->report.host_bytes;
+    pages->report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return pages;
+}
+
+Result<void> TetPages::upload_points(const core::TetTable& table, const core::Packed& packed) {
+    const auto keep = [&](Result<Buffer> sent, Buffer& buffer) -> Result<void> {
+        if (!sent) return sent.error();
+        buffer = *std::move(sent);
+        report.device_bytes += buffer.size();
+        return {};
+    };
+    Result<void> done = keep(send(*context, std::as_bytes(std::span(&layout::tet_tables, 1)), "tables of cases and edges"), tables);
+    if (done) done = keep(send(*context, table.points, "points of tets"), points);
+    if (done && gradients) done = keep(send(*context, directions_of(packed), "gradients of tets"), directions);
+    return done;
+}
+
+/// Decides which pages lie on the device: the first ones, as many as there is room for.
+Result<void> TetPages::plan(std::uint64_t tets, std::uint64_t spared) {
+    const auto page_bytes = [&](std::uint64_t page_tets) { return page_tets * record_bytes(method); };
+    for (std::uint64_t first = 0; first < tets; first += layout::page_tets)
+        pages.push_back({{}, static_cast<std::uint32_t>(std::min<std::uint64_t>(layout::page_tets, tets - first)), false});
+    std::uint64_t needed = 0;
+    for (const Page& page : pages) needed += Memory::cost(page_bytes(page.tets));
+    std::uint64_t room = context->memory().free();
+    room -= std::min(room, spared);
+    if (needed > room) {
+        Result<Buffer> taken = context->memory().take(page_bytes(pages.front().tets), Where::device, "one page of tets");
+        if (!taken) return taken.error();
+        room -= std::min(room, Memory::cost(taken->size()));
+        guest = *std::move(taken);
+    }
+    std::uint64_t elsewhere = 0;
+    for (Page& page : pages) {
+        const std::uint64_t cost = Memory::cost(page_bytes(page.tets));
+        page.on_device = cost <= room;
+        if (page.on_device) room -= cost;
+        else {
+            room = 0;
+            elsewhere += cost;
+        }
+    }
+    return core::require_memory("the part of the store for which the device has no room", elsewhere);
+}
+
+Result<void> TetPages::upload_tets(const core::TetTable& table, std::uint64_t spared, const Progress& progress) {
+    if (Result<void> planned = plan(table.tets.size(), spared); !planned) return planned;
+    std::uint64_t first = 0;
+    for (Page& page : pages) {
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "uploading tets was cancelled"};
+        if (Result<void> filled = fill(page, first, table); !filled) return filled;
+        (page.on_device ? report.device_bytes : report.host_bytes) += page.records.size();
+        first += page.tets;
+        progress("upload", static_cast<double>(first) / static_cast<double>(table.tets.size()));
+    }
+    return {};
+}
+
+Result<void> TetPages::fill(Page& page, std::uint64_t first, const core::TetTable& table) {
+    const std::uint64_t bytes = page.tets * record_bytes(method);
+    Result<Buffer> taken = context->memory().take(bytes, page.on_device ? Where::device : Where::upload, "tets");
+    if (!taken) return taken.error();
+    page.records = *std::move(taken);
+    if (!page.on_device) {
+        write_records(method, table, first, page.records.mapped());
+        return {};
+    }
+    core::Buffer<std::byte> records(bytes);
+    write_records(method, table, first, {records.data(), records.size()});
+    return context->staging().upload(page.records, 0, {records.data(), records.size()});
+}
+
+std::array<std::uint32_t, 5> TetPages::constants(bool has_list) const {
+    const std::uint32_t shading = gradients;
+    switch (method) {
+    case DrawMethod::registers: return {layout::one_color, shading, layout::registers_method, has_list, shading};
+    case DrawMethod::registers_instanced: return {layout::one_color, shading, layout::instanced_method, has_list, shading};
+    case DrawMethod::textures: return {layout::one_color, shading, layout::textures_method, has_list, shading};
+    }
+    return {};
+}
+
+} // namespace isotet::render

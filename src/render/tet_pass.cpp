@@ -1,0 +1,66 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render/tet_pass.hpp"
+
+#include <fmt/format.h>
+
+#include "render/send.hpp"
+#include "render_shaders.hpp"
+
+namespace isotet::render {
+
+namespace {
+
+constexpr std::uint32_t corners_a_quad = 6, vertices_a_quad = 4;
+
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+} // namespace
+
+Result<vulkan::Buffer> make_quad_corners(vulkan::Context& context) {
+    constexpr std::uint32_t corners[corners_a_quad] = {0, 1, 2, 0, 2, 3};
+    core::Buffer<std::uint32_t> numbers(std::size_t{layout::page_tets} * corners_a_quad);
+    for (std::uint32_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = i / corners_a_quad * vertices_a_quad + corners[i % corners_a_quad];
+    return send(context, numbers, "corners of quads");
+}
+
+Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn, const ChosenTets& tets,
+                           const vulkan::Buffer& quad_corners, std::vector<TetDraw>& draws) {
+    if (!(drawn.opacity >= 0 && drawn.opacity <= 1))
+        return wrong(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
+    if (drawn.colors) return wrong("tets that are cut while they are drawn have one colour: a field cannot colour them");
+    TetDraw draw;
+    draw.translucent = drawn.opacity < 1;
+    draw.quad_corners = quad_corners.handle();
+    const auto constants = tets.store().constants(tets.has_list());
+    namespace shaders = vulkan::drawing;
+    const auto pipeline =
+        draw.translucent ? pipelines.get(shaders::tet_corners, shaders::mesh_translucent, vulkan::Surfaces::translucent, constants)
+                         : pipelines.get(shaders::tet_corners, shaders::mesh_opaque, vulkan::Surfaces::opaque, constants);
+    if (!pipeline) return pipeline.error();
+    draw.pipeline = *pipeline;
+    for (const ChosenTets::Part& part : tets.parts()) {
+        TetDraw& one = draws.emplace_back(draw);
+        one.page = tets.describe(part);
+        one.page.mesh.offset = layout::vector(space.place(tets.store().origin));
+        one.page.mesh.scale = static_cast<float>(space.scale());
+        one.page.mesh.color = linear_light(drawn.color);
+        one.page.mesh.opacity = static_cast<float>(drawn.opacity);
+        one.tets = part.tets;
+        tets.add_uses(part, vulkan::Access::draw_read, one.uses);
+        one.uses.push_back(vulkan::draws_from(quad_corners));
+        if (part.page->on_device) continue;
+        one.from = &part.page->records;
+        one.to = &tets.store().guest;
+    }
+    return {};
+}
+
+void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
+    call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
+    call.vkCmdPushConstants(commands, draw.pipeline->layout, vulkan::DrawPipelines::stages, 0, sizeof push, &push);
+    call.vkCmdBindIndexBuffer(commands, draw.quad_corners, 0, VK_INDEX_TYPE_UINT32);
+    call.vkCmdDrawIndexed(commands, corners_a_quad * draw.tets, 1, 0, 0, 0);
+}
+
+} // namespace isotet::render
