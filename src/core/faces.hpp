@@ -11,7 +11,7 @@
 
 #include "core/cells.hpp"
 #include "core/orientation.hpp"
-#include "core/tet_order.hpp"
+#include "core/tet_survey.hpp"
 
 namespace isotet::core {
 

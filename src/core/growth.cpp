@@ -145,10 +145,6 @@ private:
     std::array<std::uint64_t, tets_a_block / 4096> full_words_{}; ///< which words are not 0
 };
 
-std::uint32_t lowest_rank(std::span<const RankedTet> tets) {
-    return tets.empty() ? 0 : *std::min_element(tets[0].begin(), tets[0].end());
-}
-
 /// How far a tet is from completion, in one word that a joining corner changes without looking at the others: how many of
 /// its corners are in the growing cluster, and the exclusive or of the numbers of those that are not. So when three are in,
 /// the word says which one is missing.
@@ -176,10 +172,11 @@ private:
 
 class Grower {
 public:
-    explicit Grower(std::span<const RankedTet> tets)
-        : numbers_(lowest_rank(tets)), corners_(tets.size()), states_(tets.size()), tets_of_(4 * tets.size()) {
-        for (std::size_t i = 0; i < tets.size(); ++i)
-            for (std::size_t k = 0; k < 4; ++k) corners_[i][k] = numbers_.number(tets[i][k]);
+    explicit Grower(Buffer<RankedTet> tets)
+        : numbers_(tets.empty() ? 0 : lowest_rank(tets[0])), corners_(std::move(tets)), states_(corners_.size()),
+          tets_of_(4 * corners_.size()) {
+        for (RankedTet& tet : corners_)
+            for (std::uint32_t& corner : tet) corner = numbers_.number(corner);
         vertices_.resize(numbers_.points().size());
         places_.resize(vertices_.size(), outside);
         for (std::size_t i = 0; i < corners_.size(); ++i) {
@@ -376,7 +373,7 @@ private:
     static_assert(max_cluster_points <= inside);
 
     PointNumbers numbers_;
-    Buffer<RankedTet> corners_;
+    Buffer<RankedTet> corners_;            ///< by the points' numbers in this block
     Buffer<TetState> states_;            ///< of each tet
     std::vector<Vertex> vertices_;
     std::vector<std::uint8_t> places_;     ///< of each vertex: whether it is in the growing cluster, in the end also where
@@ -394,6 +391,6 @@ static_assert(tets_a_block <= 65536, "tets of points are numbers of 16 bits");
 
 } // namespace
 
-BlockClusters grow_clusters(std::span<const RankedTet> tets) { return Grower(tets).run(); }
+BlockClusters grow_clusters(Buffer<RankedTet> tets) { return Grower(std::move(tets)).run(); }
 
 } // namespace isotet::core

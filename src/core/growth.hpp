@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/buffer.hpp"
 #include "core/packed.hpp"
-#include "core/tet_order.hpp"
+#include "core/ranked_tet.hpp"
 
 namespace isotet::core {
 
@@ -34,7 +33,8 @@ struct BlockClusters {
 /// gain(v) * (1 + 20 / left(v)): gain = tets that v completes, left = tets of v not yet in a cluster. The second factor
 /// favours points that are nearly used up: without it, leftovers become tiny clusters.
 ///
-/// Cost   O(n) for n tets, about 100 candidates looked at for each point that joins
-BlockClusters grow_clusters(std::span<const RankedTet> tets);
+/// `tets`   at most tets_a_block
+/// Cost     O(n) for n tets, about 100 candidates looked at for each point that joins
+BlockClusters grow_clusters(Buffer<RankedTet> tets);
 
 } // namespace isotet::core

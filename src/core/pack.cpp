@@ -29,8 +29,8 @@ Result<void> check_field(const PointField& field, std::uint64_t points) {
 
 namespace {
 
-/// At the peak: the sorted tets (16 B) and, beside them, what blocks return, or later the packed grid with the candidate
-/// seams; and 5 bytes a user's point for owners and places.
+/// At the peak: the packed grid with the candidate seams; and 5 bytes a user's point for owners and places. The sorted tets
+/// (16 B, 24 with source cells) and, beside them, what blocks return take less.
 std::uint64_t packing_memory(std::uint64_t tets, std::uint64_t points) { return 36 * tets + 6 * points; }
 
 void measure(Packed& packed) {

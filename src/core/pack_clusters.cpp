@@ -13,10 +13,25 @@ namespace isotet::core {
 
 namespace {
 
-/// Puts the origins of a block's tets into the order of its clusters.
-void reorder(std::span<TetOrigin> origins, const Buffer<std::uint32_t>& order) {
-    const std::vector<TetOrigin> sorted(origins.begin(), origins.end());
-    for (std::size_t i = 0; i < order.size(); ++i) origins[i] = sorted[order[i]];
+/// The clusters of a block, and the user's cells of its tets in their order, where they are wanted.
+struct GrownBlock {
+    BlockClusters clusters;
+    Buffer<std::uint64_t> cells;
+};
+
+GrownBlock grow_block(const TetBuckets& tets, std::uint64_t first, std::size_t size) {
+    GrownBlock block;
+    Buffer<RankedTet> own(size);
+    tets.copy_tets(first, {own.data(), size});
+    block.clusters = grow_clusters(std::move(own));
+    if (tets.has_origins()) {
+        Buffer<TetOrigin> origins(size);
+        tets.copy_origins(first, {origins.data(), size});
+        block.cells = Buffer<std::uint64_t>(size);
+        for (std::size_t i = 0; i < size; ++i) block.cells[i] = origins[block.clusters.order[i]].cell();
+    }
+    block.clusters.order.release();
+    return block;
 }
 
 std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / group_size; }
@@ -24,24 +39,21 @@ std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / grou
 } // namespace
 
 Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, const Progress& progress) {
-    const bool source_cells = !order.origins.empty();
+    const bool source_cells = order.tets.has_origins();
     const std::size_t count = order.tets.size();
     const std::size_t block_count = (count + tets_a_block - 1) / tets_a_block;
-    std::vector<BlockClusters> blocks(block_count);
+    std::vector<GrownBlock> blocks(block_count);
     std::atomic<std::size_t> finished{0};
     std::mutex reporting;
     parallel_each(block_count, 1, [&](std::size_t b) {
         if (progress.cancelled()) return;
-        const std::size_t begin = b * tets_a_block, size = std::min(tets_a_block, count - begin);
-        blocks[b] = grow_clusters({order.tets.data() + begin, size});
-        if (source_cells) reorder({order.origins.data() + begin, size}, blocks[b].order);
-        blocks[b].order.release();
+        blocks[b] = grow_block(order.tets, b * tets_a_block, std::min(tets_a_block, count - b * tets_a_block));
         const std::size_t done = ++finished;
         if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
             progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};
-    order.tets.release();
+    order.tets = {};
 
     // Where each block's clusters, groups and points start.
     struct Start {
@@ -50,9 +62,10 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     std::vector<Start> starts(block_count + 1);
     for (std::size_t b = 0; b < block_count; ++b) {
         Start next = starts[b];
-        next.cluster += blocks[b].clusters.size();
-        next.local += blocks[b].points.size();
-        for (const auto& cluster : blocks[b].clusters) next.group += groups_for(cluster.tets);
+        const BlockClusters& block = blocks[b].clusters;
+        next.cluster += block.clusters.size();
+        next.local += block.points.size();
+        for (const auto& cluster : block.clusters) next.group += groups_for(cluster.tets);
         starts[b + 1] = next;
     }
     const Start total = starts[block_count];
@@ -72,7 +85,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     if (source_cells && wide_cells) packed.wide_cell_ids = Buffer<std::uint64_t>(packed.tets.size());
     else if (source_cells) packed.cell_ids = Buffer<std::uint32_t>(packed.tets.size());
     parallel_each(block_count, 1, [&](std::size_t b) {
-        BlockClusters block = std::move(blocks[b]);
+        const auto [block, cells_of_tets] = std::move(blocks[b]);
         Start at = starts[b];
         std::copy(block.points.begin(), block.points.end(), draft.locals.begin() + at.local);
         std::size_t tet = 0;
@@ -88,7 +101,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
                 const std::size_t to = at.group * group_size + i;
                 packed.tets[to] = block.tets[from];
                 if (!source_cells) continue;
-                const std::uint64_t cell = order.origins[b * tets_a_block + from].cell();
+                const std::uint64_t cell = cells_of_tets[from];
                 if (wide_cells) packed.wide_cell_ids[to] = cell;
                 else packed.cell_ids[to] = static_cast<std::uint32_t>(cell);
             }

@@ -6,6 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include "core/bounds.hpp"
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
@@ -15,32 +16,15 @@ namespace isotet::core {
 
 namespace {
 
-struct Bounds {
-    Point lower, upper;
-    Bounds() {
-        lower.fill(std::numeric_limits<double>::infinity());
-        upper.fill(-std::numeric_limits<double>::infinity());
-    }
-};
-
 Bounds bounds_of(const PointReader& points, const Packed& packed) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, packed.points(), 1 << 14), Bounds{},
         [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const Point p = points[packed.user_point(i)];
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    bounds.lower[axis] = std::min(bounds.lower[axis], p[axis]);
-                    bounds.upper[axis] = std::max(bounds.upper[axis], p[axis]);
-                }
-            }
+            for (std::size_t i = range.begin(); i < range.end(); ++i) bounds.add(points[packed.user_point(i)]);
             return bounds;
         },
         [](Bounds a, const Bounds& b) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                a.lower[axis] = std::min(a.lower[axis], b.lower[axis]);
-                a.upper[axis] = std::max(a.upper[axis], b.upper[axis]);
-            }
+            a.combine(b);
             return a;
         });
 }

@@ -10,7 +10,7 @@
 #include "core/memory.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
-#include "core/tet_order.hpp"
+#include "core/tet_survey.hpp"
 
 namespace isotet {
 

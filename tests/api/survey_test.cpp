@@ -51,6 +51,23 @@ TEST(Survey, CountsOddTets) {
     EXPECT_EQ(report.duplicate_points, 1u);
 }
 
+TEST(Survey, BoundsAreThoseOfTheTetsWhereverOtherCellsStand) {
+    constexpr std::size_t vertices = 200'000; // enough for some threads to see nothing else
+    std::vector<std::int64_t> corners{0, 1, 2, 3}, offsets{0};
+    std::vector<std::uint8_t> types{static_cast<std::uint8_t>(CellType::tetrahedron)};
+    corners.resize(4 + vertices, 4);
+    types.resize(1 + vertices, 1);
+    for (std::size_t i = 4; i <= corners.size(); ++i) offsets.push_back(static_cast<std::int64_t>(i));
+    Grid grid;
+    grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 9, 9, 9}, 3);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::move(types));
+    const GridReport report = survey(grid).value();
+    EXPECT_EQ(report.lower, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_EQ(report.upper, (std::array{1.0, 2.0, 3.0}));
+}
+
 TEST(Survey, AgreesWithPackingOnNastyGrids) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const NastyGrid g = nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});

@@ -31,9 +31,9 @@ core::RankedTet ranked(const Tet& tet) {
 }
 
 void expect_clusters(const std::vector<Tet>& tets) {
-    std::vector<core::RankedTet> ranks(tets.size());
+    core::Buffer<core::RankedTet> ranks(tets.size());
     std::transform(tets.begin(), tets.end(), ranks.begin(), ranked);
-    const core::BlockClusters block = core::grow_clusters(ranks);
+    const core::BlockClusters block = core::grow_clusters(std::move(ranks));
     ASSERT_EQ(block.order.size(), tets.size());
     std::vector<std::uint32_t> sorted(block.order.begin(), block.order.end());
     std::sort(sorted.begin(), sorted.end());

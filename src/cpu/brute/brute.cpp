@@ -9,7 +9,7 @@
 
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
-#include "core/tet_order.hpp"
+#include "core/tet_survey.hpp"
 #include "cpu/brute/emit.hpp"
 #include "cpu/brute/normals.hpp"
 #include "cpu/extract.hpp"

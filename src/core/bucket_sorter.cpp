@@ -1,0 +1,132 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "core/bucket_sorter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+namespace isotet::core {
+
+namespace {
+
+constexpr std::size_t few_tets = 64; ///< of one lowest point: nearly always fewer
+
+/// The tets of a bucket by lowest rank, then as they were dealt out. Those of the rank k are [first[k], first[k + 1]).
+struct ByRank {
+    std::vector<std::uint32_t> first;
+    Buffer<RankedTet> tets;
+    Buffer<TetOrigin> origins;
+};
+
+ByRank by_rank(const TetBuckets& all, std::size_t bucket) {
+    const std::size_t ranks = all.ranks_a_bucket();
+    const std::size_t size = all.dealt(bucket);
+    ByRank out{std::vector<std::uint32_t>(ranks + 1, 0), Buffer<RankedTet>(size), {}};
+    if (all.has_origins()) out.origins = Buffer<TetOrigin>(size);
+    const auto rank_in_bucket = [&](const RankedTet& tet) { return lowest_rank(tet) % ranks; };
+    all.for_dealt(bucket, [&](const RankedTet& tet, TetOrigin) { ++out.first[rank_in_bucket(tet)]; });
+    std::uint32_t sum = 0;
+    for (std::uint32_t& count : out.first) sum += std::exchange(count, sum);
+    all.for_dealt(bucket, [&](const RankedTet& tet, TetOrigin origin) {
+        const std::uint32_t at = out.first[rank_in_bucket(tet)]++;
+        out.tets[at] = tet;
+        if (all.has_origins()) out.origins[at] = origin;
+    });
+    std::copy_backward(out.first.begin(), out.first.end() - 1, out.first.end()); // each has moved on to where the next began
+    out.first[0] = 0;
+    return out;
+}
+
+RankedTet ascending(RankedTet tet) {
+    std::sort(tet.begin(), tet.end());
+    return tet;
+}
+
+/// Marks each tet that has the corners of an earlier one.
+void mark_repeated(std::span<const RankedTet> tets, std::vector<std::uint8_t>& repeated) {
+    repeated.assign(tets.size(), 0);
+    const auto sum = [](const RankedTet& t) { return std::uint64_t{t[0]} + t[1] + t[2] + t[3]; };
+    if (tets.size() <= few_tets) {
+        std::array<std::uint64_t, few_tets> sums;
+        for (std::size_t i = 0; i < tets.size(); ++i) {
+            sums[i] = sum(tets[i]);
+            for (std::size_t k = 0; k < i; ++k)
+                if (sums[k] == sums[i] && ascending(tets[k]) == ascending(tets[i])) {
+                    repeated[i] = 1;
+                    break;
+                }
+        }
+        return;
+    }
+    std::vector<std::pair<RankedTet, std::size_t>> sorted(tets.size());
+    for (std::size_t i = 0; i < tets.size(); ++i) sorted[i] = {ascending(tets[i]), i};
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        if (sorted[i].first == sorted[i - 1].first) repeated[sorted[i].second] = 1;
+}
+
+/// A tet with its corners in ascending order of the user's points, the order that makes all that follows simple: the canonical
+/// form is this one, the last two exchanged where it is not upright.
+struct Ascending {
+    std::array<std::uint64_t, 4> points;
+    RankedTet ranks;
+    bool odd; ///< whether the corners had the other orientation before
+
+    Ascending(const RankedTet& tet, const Buffer<std::uint64_t>& point_of) {
+        // A sorting network without branches: of what they depend nobody can predict. The lowest bits say which corner it was.
+        std::array<std::uint64_t, 4> keys;
+        for (std::size_t k = 0; k < 4; ++k) keys[k] = point_of[tet[k]] << 2 | k;
+        odd = false;
+        const auto order = [&](std::size_t a, std::size_t b) {
+            const std::uint64_t x = keys[a], y = keys[b];
+            odd ^= y < x;
+            keys[a] = std::min(x, y);
+            keys[b] = std::max(x, y);
+        };
+        order(0, 1);
+        order(2, 3);
+        order(0, 2);
+        order(1, 3);
+        order(1, 2);
+        for (std::size_t k = 0; k < 4; ++k) {
+            points[k] = keys[k] >> 2;
+            ranks[k] = tet[keys[k] & 3];
+        }
+    }
+    RankedTet stored(bool exchange) const { return {ranks[0], ranks[1], ranks[exchange ? 3 : 2], ranks[exchange ? 2 : 3]}; }
+};
+
+} // namespace
+
+SortedBucket sort_bucket(const PointReader& points, const CellReader& cells, const Buffer<std::uint64_t>& point_of,
+                         std::size_t bucket, TetBuckets& all) {
+    ByRank sorted = by_rank(all, bucket);
+    SortedBucket out;
+    std::size_t kept = 0;
+    std::vector<std::uint8_t> repeated;
+    for (std::size_t rank = 0; rank + 1 < sorted.first.size(); ++rank) {
+        const std::size_t begin = sorted.first[rank], end = sorted.first[rank + 1];
+        mark_repeated({sorted.tets.data() + begin, end - begin}, repeated);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Ascending tet(sorted.tets[i], point_of);
+            const TetOrigin origin = all.has_origins() ? sorted.origins[i] : TetOrigin{};
+            const bool whole = cells.only_tets() || Orienter::is_whole(cells.type(origin.cell()));
+            const int sign = points.orientation(tet.points) * (tet.odd ? -1 : 1); // of the corners as the user gave them
+            if (whole) out.balance += sign;
+            if (repeated[i - begin]) {
+                ++out.repeated;
+                continue;
+            }
+            if (whole && sign == 0) out.flat.push_back(kept);
+            const bool mirrored = out.orientation.add(sign, whole, origin.cell_negative());
+            sorted.tets[kept] = tet.stored(mirrored != tet.odd);
+            if (all.has_origins()) sorted.origins[kept] = origin;
+            ++kept;
+        }
+    }
+    all.write_sorted(bucket, {sorted.tets.data(), kept}, {sorted.origins.data(), all.has_origins() ? kept : 0});
+    return out;
+}
+
+} // namespace isotet::core

@@ -1,0 +1,32 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The tets of one bucket: sorted, repeated ones dropped, the others turned upright.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/buffer.hpp"
+#include "core/cells.hpp"
+#include "core/orientation.hpp"
+#include "core/tet_buckets.hpp"
+
+namespace isotet::core {
+
+/// What sorting a bucket finds out.
+struct SortedBucket {
+    Orienter::Counts orientation;  ///< of the tets that stay
+    std::int64_t balance = 0;      ///< upright minus negative tetrahedra, repeated ones too
+    std::uint64_t repeated = 0;
+    std::vector<std::size_t> flat; ///< which tets are flat tetrahedra: turned as most are, once that is known
+};
+
+/// Gives the tets of a bucket their stored form and order: by lowest rank, then as they were dealt out. Of tets with the same
+/// four corners the first stays.
+///
+/// `point_of`   rank -> user's point
+/// `bucket`     buckets may be sorted at the same time
+SortedBucket sort_bucket(const PointReader& points, const CellReader& cells, const Buffer<std::uint64_t>& point_of,
+                         std::size_t bucket, TetBuckets& tets);
+
+} // namespace isotet::core

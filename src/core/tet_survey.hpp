@@ -1,0 +1,42 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What one pass over all cells of a grid finds out about its tets.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <isotet/grid.hpp>
+
+#include "core/buffer.hpp"
+#include "core/cells.hpp"
+
+namespace isotet::core {
+
+/// A tet by the cell it comes from and which piece of it (0 to 5).
+struct TetId {
+    std::uint64_t value;
+    static TetId make(std::uint64_t cell, unsigned piece) { return {cell << 3 | piece}; }
+    std::uint64_t cell() const { return value >> 3; }
+    unsigned piece() const { return static_cast<unsigned>(value & 7); }
+};
+
+/// What one pass over all cells finds out.
+struct TetSurvey {
+    std::array<double, 3> lower{}, upper{}; ///< bounds of the used points
+    std::uint64_t tets = 0, collapsed = 0, left_out = 0;
+    bool mostly_negative = false;
+};
+
+/// Bounds, counts and orientation of a checked grid. Parallel, one pass over the cells.
+TetSurvey survey_tets(const Grid& grid, const CellReader& cells);
+
+/// What one pass over the point numbers of all cells finds out.
+struct TetCounts {
+    std::uint64_t tets = 0, collapsed = 0, left_out = 0;
+    Buffer<std::uint8_t> used; ///< by point: 1 when a tet has it
+};
+
+/// Counts the tets of a checked grid. Parallel. One byte a point.
+TetCounts count_tets(const CellReader& cells);
+
+} // namespace isotet::core
