@@ -18,6 +18,7 @@
 #include "render_input.hpp"
 #include "render_report.hpp"
 #include "render_scene.hpp"
+#include "render_tets.hpp"
 #include "stopwatch.hpp"
 
 namespace isotet::cli {
@@ -127,6 +128,7 @@ Result<PictureFiles> open_files(const RenderCommand& command) {
 
 Result<ExitCode> run_render(const RenderCommand& command) {
     Console console(command.common);
+    if (Result<void> fits = check_method(command); !fits) return fits.error();
     Result<PictureFiles> files = open_files(command);
     if (!files) return files.error();
     std::optional<Picture> reference;

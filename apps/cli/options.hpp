@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include <isotet/draw_tets.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/render.hpp>
+#include <isotet/search.hpp>
 
 namespace isotet::cli {
 
@@ -79,6 +81,9 @@ struct ExtractCommand {
 /// The opacity of the grid's boundary where none is given.
 constexpr double boundary_without_a_word = 0.1;
 
+/// What chooses tets for a method that draws tets, where nothing else is given.
+constexpr Filter filter_without_a_word = Filter::cluster_ranges;
+
 struct RenderCommand {
     CommonOptions common;
     GridOptions grid; ///< `file` may be a surface
@@ -96,6 +101,8 @@ struct RenderCommand {
     std::vector<double> range; ///< both ends of the scale, or none
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
+    std::optional<DrawMethod> method; ///< that draws tets; nothing: clusters, which extracts surfaces
+    std::optional<Filter> filter;     ///< nothing: none was given
     std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
     std::uint64_t orbit = 0;    ///< pictures around; 0: one
     double frames_a_second = 12;

@@ -111,6 +111,15 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
                              {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
                              "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
                              "CPU");
+    std::vector<std::pair<std::string, std::optional<DrawMethod>>> methods{{"clusters", std::nullopt}};
+    for (const DrawMethod method : all_draw_methods) methods.emplace_back(name_of(method), method);
+    add_choice(app, "--method", render.method, methods,
+               "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be compared with; "
+               "without it clusters");
+    std::vector<std::pair<std::string, std::optional<Filter>>> filters;
+    for (const Filter filter : all_filters) filters.emplace_back(name_of(filter), filter);
+    add_choice(app, "--filter", render.filter, filters,
+               "What finds the tets that such a method draws, none: it draws all; without it cluster_ranges");
     add_text(app, "--color-by", render.color_by, "FIELD", "Colour by this point or cell field; without it each isovalue has its colour");
     add_choice<ColorMap>(app, "--colormap", render.scale.map,
                          {{"viridis", ColorMap::viridis},

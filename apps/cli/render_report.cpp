@@ -19,6 +19,8 @@ std::string times_text(const RenderInput& input, const RenderScene& scene, const
     return text + fmt::format(", draw {}, write {}", seconds_text(picture.draw_seconds), seconds_text(picture.write_seconds));
 }
 
+std::string_view filter_name(const RenderCommand& command) { return name_of(command.filter.value_or(filter_without_a_word)); }
+
 Json json_of(const DeviceWork& work) {
     Json passes = Json::array();
     for (const DevicePass& pass : work.passes) passes.push_back({{"name", pass.name}, {"seconds", pass.seconds}});
@@ -46,12 +48,19 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
     for (const SurfaceCounts& surface : scene.surfaces()) {
         if (!command.sweep.empty()) break;
         const std::string what = surface.isovalue ? "isovalue " + rounded(*surface.isovalue) : "surface";
-        table.row({what, grouped(surface.triangles) + " triangles"});
+        table.row({what, scene.tets() ? fmt::format("{} tets drawn, {} sent", grouped(surface.tets), bytes_text(surface.sent_bytes))
+                                      : grouped(surface.triangles) + " triangles"});
     }
     if (input.colors)
         table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower), rounded(input.colors->scale.upper))});
     table.row({"device", fmt::format("{} ({})", device.info().name, name_of(device.info().kind))});
-    if (input.packed) table.row({"engine", scene.engine()});
+    if (input.packed && !scene.tets()) table.row({"engine", scene.engine()});
+    if (scene.tets()) {
+        const TetStoreReport& store = scene.tets()->report();
+        table.row({"method", fmt::format("{}, filter {}", name_of(*command.method), filter_name(command))});
+        table.row({"store", fmt::format("{}, of them {} sent again for every picture", bytes_text(store.stored_bytes),
+                                        bytes_text(store.host_bytes))});
+    }
     table.row({"time", times_text(input, scene, picture)});
     const std::string count = picture.pictures == 1 ? "picture" : fmt::format("{} pictures", picture.pictures);
     table.row({count, fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height, bytes_text(picture.bytes))});
@@ -71,13 +80,23 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     report["boundary_faces"] = input.boundary ? Json(input.boundary->triangle_count()) : Json(nullptr);
     Json surfaces = Json::array();
     for (const SurfaceCounts& surface : scene.surfaces()) {
+        const bool tets = scene.tets() != nullptr;
         surfaces.push_back({{"isovalue", surface.isovalue ? Json(*surface.isovalue) : Json(nullptr)},
-                            {"vertices", surface.vertices},
-                            {"triangles", surface.triangles}});
+                            {"vertices", tets ? Json(nullptr) : Json(surface.vertices)},
+                            {"triangles", tets ? Json(nullptr) : Json(surface.triangles)},
+                            {"tets", tets ? Json(surface.tets) : Json(nullptr)},
+                            {"bytes_sent", tets ? Json(surface.sent_bytes) : Json(nullptr)}});
     }
     report["surfaces"] = std::move(surfaces);
     report["device"] = {{"name", json_text(device.info().name)}, {"kind", name_of(device.info().kind)}};
     report["engine"] = scene.engine();
+    report["method"] = command.method ? name_of(*command.method) : "clusters";
+    report["filter"] = command.method ? Json(filter_name(command)) : Json(nullptr);
+    report["store"] = nullptr;
+    if (scene.tets()) {
+        const TetStoreReport& store = scene.tets()->report();
+        report["store"] = {{"bytes", store.stored_bytes}, {"on_device", store.device_bytes}, {"sent_every_time", store.host_bytes}};
+    }
     report["seconds"] = {{"read", input.read_seconds},
                          {"pack", input.pack_seconds},
                          {"boundary", input.boundary_seconds},

@@ -33,6 +33,13 @@ Result<void> RenderScene::load() {
     scene_.bounds = input_.bounds;
     if (input_.boundary)
         if (Result<void> done = upload_boundary(); !done) return done;
+    if (command_.method) {
+        Result<RenderTets> tets = RenderTets::load(command_, input_, device_, console_);
+        if (!tets) return tets.error();
+        tets_ = *std::move(tets);
+        upload_seconds_ = uploading.seconds();
+        return {};
+    }
     const bool card = device_.info().kind != DeviceKind::software;
     if (input_.packed && (command_.engine == EngineChoice::vulkan || (command_.engine == EngineChoice::automatic && card))) {
         if (Result<void> done = upload_grid(); !done) {
@@ -71,16 +78,35 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     mesh_colors_.clear();
     counts_.clear();
     const Stopwatch extracting;
-    const Result<void> done = input_.surface ? add_mesh(*input_.surface) : grid_ ? extract_on_device(isovalues) : extract_on_cpu(isovalues);
+    const Result<void> done = input_.surface ? add_mesh(*input_.surface)
+                              : tets_        ? choose_tets(isovalues)
+                              : grid_        ? extract_on_device(isovalues)
+                                             : extract_on_cpu(isovalues);
     if (!done) return done;
     extract_seconds_ += extracting.seconds();
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         counts_[i].isovalue = isovalues[i];
-        if (counts_[i].triangles > 0) continue;
+        if (!is_empty(i)) continue;
         console_.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}", shortest(isovalues[i]), input_.field,
                                   shortest(input_.lower), shortest(input_.upper)));
     }
     dress();
+    return {};
+}
+
+/// Of tets nobody knows before they are drawn; but values on both sides of the isovalue make a surface, as a rule.
+bool RenderScene::is_empty(std::size_t surface) const {
+    if (!tets_) return counts_[surface].triangles == 0;
+    const double isovalue = *counts_[surface].isovalue;
+    return !(input_.lower < isovalue && isovalue <= input_.upper);
+}
+
+Result<void> RenderScene::choose_tets(const std::vector<double>& isovalues) {
+    if (Result<void> shown = tets_->show(isovalues); !shown) return shown;
+    for (const TetSurface& surface : tets_->surfaces()) {
+        scene_.surfaces.emplace_back().tets = &surface;
+        counts_.push_back({.isovalue = {}, .tets = surface.tets(), .sent_bytes = surface.sent_bytes()});
+    }
     return {};
 }
 
@@ -97,7 +123,7 @@ Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues
         DrawnSurface& drawn = scene_.surfaces.emplace_back();
         drawn.surface = &surface;
         if (grid_colors_) drawn.colors = &*grid_colors_;
-        counts_.push_back({{}, surface.vertices(), surface.triangle_count()});
+        counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
     }
     return {};
 }
@@ -122,7 +148,7 @@ Result<void> RenderScene::add_mesh(const Surface& surface) {
     if (!mesh) return mesh.error();
     DrawnSurface& drawn = scene_.surfaces.emplace_back();
     drawn.mesh = &meshes_.emplace_back(*std::move(mesh));
-    counts_.push_back({{}, surface.vertices(), surface.triangle_count()});
+    counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
     return input_.colors ? add_colors(drawn, surface) : Result<void>();
 }
 
@@ -148,7 +174,7 @@ Result<void> RenderScene::add_colors(DrawnSurface& drawn, const Surface& surface
 void RenderScene::dress() {
     std::size_t smallest = 0;
     for (std::size_t i = 0; i < counts_.size(); ++i)
-        if (counts_[i].triangles > 0 && (counts_[smallest].triangles == 0 || counts_[i].triangles < counts_[smallest].triangles)) smallest = i;
+        if (counts_[i].size() > 0 && (counts_[smallest].size() == 0 || counts_[i].size() < counts_[smallest].size())) smallest = i;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         DrawnSurface& drawn = scene_.surfaces[i];
         drawn.color = color_among(counts_, i, command_.scale.map);
@@ -173,16 +199,17 @@ void RenderScene::fit(Camera& camera, double aspect) const {
 Annotation RenderScene::annotation() const {
     Annotation annotation;
     if (command_.plain) return annotation;
-    std::uint64_t triangles = 0;
-    for (const SurfaceCounts& surface : counts_) triangles += surface.triangles;
+    std::uint64_t all = 0;
+    for (const SurfaceCounts& surface : counts_) all += surface.size();
+    const std::string drawn = fmt::format("{} {}", grouped(all), tets_ ? "tets drawn" : "triangles");
     const std::string name = std::filesystem::path(command_.grid.file).filename().string();
-    if (input_.surface) annotation.caption = fmt::format("{}  ·  {} triangles", name, grouped(triangles));
+    if (input_.surface) annotation.caption = fmt::format("{}  ·  {}", name, drawn);
     else if (counts_.size() == 1)
-        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} = {}  ·  {} triangles", name, grouped(input_.cells), input_.field,
-                                         rounded(*counts_.front().isovalue), grouped(triangles));
+        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} = {}  ·  {}", name, grouped(input_.cells), input_.field,
+                                         rounded(*counts_.front().isovalue), drawn);
     else
-        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} at {} isovalues  ·  {} triangles", name, grouped(input_.cells), input_.field,
-                                         counts_.size(), grouped(triangles));
+        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} at {} isovalues  ·  {}", name, grouped(input_.cells), input_.field,
+                                         counts_.size(), drawn);
     if (input_.colors) {
         annotation.title = input_.colors->name;
         annotation.scale = input_.colors->scale;

@@ -14,13 +14,17 @@
 #include "console.hpp"
 #include "options.hpp"
 #include "render_input.hpp"
+#include "render_tets.hpp"
 
 namespace isotet::cli {
 
-/// A surface that is drawn.
+/// A surface that is drawn, or the tets that stand for it.
 struct SurfaceCounts {
     std::optional<double> isovalue; ///< nothing for a surface file
     std::uint64_t vertices = 0, triangles = 0;
+    std::uint64_t tets = 0, sent_bytes = 0; ///< of a method that draws tets: how many, and over the bus for this isovalue
+
+    std::uint64_t size() const { return triangles + tets; }
 };
 
 class RenderScene {
@@ -41,8 +45,9 @@ public:
     const std::vector<SurfaceCounts>& surfaces() const noexcept { return counts_; }
     Annotation annotation() const;
 
-    /// "vulkan", "cpu", or "none" of a surface file.
-    const char* engine() const { return input_.surface ? "none" : grid_ ? "vulkan" : "cpu"; }
+    /// "vulkan", "cpu", or "none" where nothing is extracted: of a surface file, or by a method that draws tets.
+    const char* engine() const { return input_.surface || tets_ ? "none" : grid_ ? "vulkan" : "cpu"; }
+    const RenderTets* tets() const { return tets_ ? &*tets_ : nullptr; } ///< null: surfaces are drawn
     double upload_seconds() const noexcept { return upload_seconds_; }
     double extract_seconds() const noexcept { return extract_seconds_; } ///< of all isovalues so far, with uploading by the CPU engine
     const DeviceWork& extract_work() const noexcept { return work_; }    ///< empty with the CPU engine
@@ -51,9 +56,11 @@ private:
     Result<void> upload_boundary();
     Result<void> upload_grid();
     Result<void> extract_on_device(const std::vector<double>& isovalues);
+    Result<void> choose_tets(const std::vector<double>& isovalues);
     Result<void> extract_on_cpu(const std::vector<double>& isovalues);
     Result<void> add_mesh(const Surface& surface);
     Result<void> add_colors(DrawnSurface& drawn, const Surface& surface);
+    bool is_empty(std::size_t surface) const;
     void dress();
 
     const RenderCommand& command_;
@@ -63,6 +70,7 @@ private:
     std::optional<DeviceMesh> boundary_;
     std::optional<DeviceGrid> grid_;
     std::optional<DeviceColors> grid_colors_;
+    std::optional<RenderTets> tets_;
     std::vector<DeviceSurface> surfaces_;   ///< by the Vulkan engine
     std::deque<DeviceMesh> meshes_;         ///< uploaded; places that do not move
     std::deque<DeviceColors> mesh_colors_;

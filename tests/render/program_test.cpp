@@ -69,6 +69,43 @@ TEST_F(Render, ExtractsOnEitherEngineTheSamePicture) {
     EXPECT_GT(content(path("device.png")).size(), 1000u);
 }
 
+TEST_F(Render, DrawsTheSamePictureByEveryMethod) {
+    const std::vector<std::string> more{"-i", "0.5", "--plain", "--boundary", "0"};
+    ASSERT_EQ(isotet(command("make:kuhn:8:sphere", "clusters.png", more)).status, 0);
+    for (const std::string method : {"registers", "registers_instanced", "textures"}) {
+        for (const std::string filter : {"none", "span_space"}) {
+            auto words = command("make:kuhn:8:sphere", method + ".png", more);
+            words.insert(words.end(), {"--method", method, "--filter", filter, "--reference", path("clusters.png")});
+            if (method != "textures") words.insert(words.end(), {"--threshold", "0.5"}); // shaded by faces
+            const auto report = json_of(words);
+            EXPECT_EQ(report["method"], method);
+            EXPECT_EQ(report["filter"], filter);
+            EXPECT_EQ(report["engine"], "none");
+            EXPECT_TRUE(report["surfaces"][0]["triangles"].is_null());
+            const std::uint64_t tets = report["surfaces"][0]["tets"], sent = report["surfaces"][0]["bytes_sent"];
+            EXPECT_EQ(sent, filter == "none" ? 0 : 4 * tets);
+            EXPECT_EQ(tets == 3072, filter == "none") << tets;
+            const std::uint64_t record = method == "registers" ? 272 : method == "registers_instanced" ? 64 : 16;
+            const std::uint64_t tables = method == "textures" ? 2 * 16 * 9 * 9 * 9 + 176 : 0;
+            EXPECT_EQ(report["store"]["bytes"], 3072 * record + tables);
+            EXPECT_EQ(report["store"]["sent_every_time"], 0);
+        }
+    }
+}
+
+TEST_F(Render, RefusesWhatMethodsThatDrawTetsCannotDo) {
+    const auto error = [&](std::vector<std::string> more) {
+        more.push_back("-q");
+        const RunResult run = isotet(command("make:kuhn:4:sphere,gyroid", "a.png", std::move(more)));
+        EXPECT_EQ(run.status, 2);
+        return run.err;
+    };
+    EXPECT_NE(error({"--method", "textures", "--color-by", "gyroid"}).find("but --method textures makes none"), std::string::npos);
+    EXPECT_NE(error({"--method", "registers", "--engine", "cpu"}).find("but --method registers extracts nothing"), std::string::npos);
+    EXPECT_NE(error({"--filter", "octree"}).find("but --method clusters draws surfaces"), std::string::npos);
+    EXPECT_NE(error({"--method", "points"}).find("--method got 'points'"), std::string::npos);
+}
+
 TEST_F(Render, ComparesWithAReference) {
     ASSERT_EQ(isotet(command("make:kuhn:8:sphere", "a.png", {"-i", "0.5"})).status, 0);
     const auto again = [&](const char* isovalue, const char* threshold) {
