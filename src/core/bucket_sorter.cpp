@@ -10,8 +10,6 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t few_tets = 64; ///< of one lowest point: nearly always fewer
-
 /// The tets of a bucket by lowest rank, then as they were dealt out. Those of the rank k are [first[k], first[k + 1]).
 struct ByRank {
     std::vector<std::uint32_t> first;
@@ -43,22 +41,23 @@ RankedTet ascending(RankedTet tet) {
     return tet;
 }
 
+std::uint32_t sum_of_ranks(const RankedTet& tet) { return tet[0] + tet[1] + tet[2] + tet[3]; }
+
+/// False when no two tets have the same corners, and nearly always then.
+bool may_repeat(std::span<const RankedTet> tets) {
+    std::array<std::uint64_t, 8> seen{}; // a bit for each of 512 hash values
+    std::uint64_t again = 0;
+    for (const RankedTet& tet : tets) {
+        const std::uint32_t hash = sum_of_ranks(tet) * 0x9e3779b9u >> 23;
+        const std::uint64_t bit = std::uint64_t{1} << hash % 64;
+        again |= seen[hash / 64] & bit;
+        seen[hash / 64] |= bit;
+    }
+    return again != 0;
+}
+
 /// Marks each tet that has the corners of an earlier one.
 void mark_repeated(std::span<const RankedTet> tets, std::vector<std::uint8_t>& repeated) {
-    repeated.assign(tets.size(), 0);
-    const auto sum = [](const RankedTet& t) { return std::uint64_t{t[0]} + t[1] + t[2] + t[3]; };
-    if (tets.size() <= few_tets) {
-        std::array<std::uint64_t, few_tets> sums;
-        for (std::size_t i = 0; i < tets.size(); ++i) {
-            sums[i] = sum(tets[i]);
-            for (std::size_t k = 0; k < i; ++k)
-                if (sums[k] == sums[i] && ascending(tets[k]) == ascending(tets[i])) {
-                    repeated[i] = 1;
-                    break;
-                }
-        }
-        return;
-    }
     std::vector<std::pair<RankedTet, std::size_t>> sorted(tets.size());
     for (std::size_t i = 0; i < tets.size(); ++i) sorted[i] = {ascending(tets[i]), i};
     std::sort(sorted.begin(), sorted.end());
@@ -69,14 +68,13 @@ void mark_repeated(std::span<const RankedTet> tets, std::vector<std::uint8_t>& r
 /// A tet with its corners in ascending order of the user's points, the order that makes all that follows simple: the canonical
 /// form is this one, the last two exchanged where it is not upright.
 struct Ascending {
-    std::array<std::uint64_t, 4> points;
     RankedTet ranks;
     bool odd; ///< whether the corners had the other orientation before
 
-    Ascending(const RankedTet& tet, const Buffer<std::uint64_t>& point_of) {
+    Ascending(const RankedTet& tet, const std::uint64_t* user_points) {
         // A sorting network without branches: of what they depend nobody can predict. The lowest bits say which corner it was.
         std::array<std::uint64_t, 4> keys;
-        for (std::size_t k = 0; k < 4; ++k) keys[k] = point_of[tet[k]] << 2 | k;
+        for (std::size_t k = 0; k < 4; ++k) keys[k] = user_points[tet[k]] << 2 | k;
         odd = false;
         const auto order = [&](std::size_t a, std::size_t b) {
             const std::uint64_t x = keys[a], y = keys[b];
@@ -89,30 +87,30 @@ struct Ascending {
         order(0, 2);
         order(1, 3);
         order(1, 2);
-        for (std::size_t k = 0; k < 4; ++k) {
-            points[k] = keys[k] >> 2;
-            ranks[k] = tet[keys[k] & 3];
-        }
+        for (std::size_t k = 0; k < 4; ++k) ranks[k] = tet[keys[k] & 3];
     }
     RankedTet stored(bool exchange) const { return {ranks[0], ranks[1], ranks[exchange ? 3 : 2], ranks[exchange ? 2 : 3]}; }
 };
 
 } // namespace
 
-SortedBucket sort_bucket(const PointReader& points, const CellReader& cells, const Buffer<std::uint64_t>& point_of,
-                         std::size_t bucket, TetBuckets& all) {
+SortedBucket sort_bucket(const RankedPoints& points, const CellReader& cells, std::size_t bucket, TetBuckets& all) {
     ByRank sorted = by_rank(all, bucket);
     SortedBucket out;
     std::size_t kept = 0;
     std::vector<std::uint8_t> repeated;
     for (std::size_t rank = 0; rank + 1 < sorted.first.size(); ++rank) {
         const std::size_t begin = sorted.first[rank], end = sorted.first[rank + 1];
-        mark_repeated({sorted.tets.data() + begin, end - begin}, repeated);
+        const std::span<const RankedTet> tets(sorted.tets.data() + begin, end - begin);
+        repeated.assign(tets.size(), 0);
+        if (may_repeat(tets)) mark_repeated(tets, repeated);
         for (std::size_t i = begin; i < end; ++i) {
-            const Ascending tet(sorted.tets[i], point_of);
+            const Ascending tet(sorted.tets[i], points.user);
             const TetOrigin origin = all.has_origins() ? sorted.origins[i] : TetOrigin{};
             const bool whole = cells.only_tets() || Orienter::is_whole(cells.type(origin.cell()));
-            const int sign = points.orientation(tet.points) * (tet.odd ? -1 : 1); // of the corners as the user gave them
+            const auto& [a, b, c, d] = tet.ranks;
+            const PointReader& at = points.coordinates;
+            const int sign = orientation_sign(at[a], at[b], at[c], at[d]) * (tet.odd ? -1 : 1); // of the tet as the user gave it
             if (whole) out.balance += sign;
             if (repeated[i - begin]) {
                 ++out.repeated;

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/buffer.hpp"
 #include "core/cells.hpp"
 #include "core/orientation.hpp"
 #include "core/tet_buckets.hpp"
@@ -21,12 +20,16 @@ struct SortedBucket {
     std::vector<std::size_t> flat; ///< which tets are flat tetrahedra: turned as most are, once that is known
 };
 
+/// Points by rank.
+struct RankedPoints {
+    const std::uint64_t* user; ///< their numbers in the user's grid
+    PointReader coordinates;
+};
+
 /// Gives the tets of a bucket their stored form and order: by lowest rank, then as they were dealt out. Of tets with the same
 /// four corners the first stays.
 ///
-/// `point_of`   rank -> user's point
-/// `bucket`     buckets may be sorted at the same time
-SortedBucket sort_bucket(const PointReader& points, const CellReader& cells, const Buffer<std::uint64_t>& point_of,
-                         std::size_t bucket, TetBuckets& tets);
+/// Threads   buckets may be sorted at the same time
+SortedBucket sort_bucket(const RankedPoints& points, const CellReader& cells, std::size_t bucket, TetBuckets& tets);
 
 } // namespace isotet::core

@@ -17,8 +17,8 @@ TetBuckets::TetBuckets(std::size_t ranks, std::uint64_t tets, std::size_t writer
     shift_ = std::max(least_shift, static_cast<unsigned>(std::bit_width(ranks / most_buckets)));
     buckets_.resize((ranks >> shift_) + 1);
     streams_.resize(writers * buckets());
-    // Half of the last page of each stream stays empty: a fiftieth of the memory, or a sixth for very many writers.
-    page_size_ = std::clamp<std::size_t>(std::bit_floor(1024 / writers), 16, 256);
+    // Half of the last page of each stream stays empty: a twenty-fourth of the memory, or a sixth for very many writers.
+    page_size_ = std::clamp<std::size_t>(std::bit_floor(2048 / writers), 16, 256);
     const std::size_t room = (tets / page_size_ + std::min<std::size_t>(streams_.size(), tets)) * page_size_;
     tets_ = Buffer<RankedTet>(room);
     if (origins) origins_ = Buffer<TetOrigin>(room);

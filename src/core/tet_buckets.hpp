@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/buffer.hpp"
+#include "core/prefetch.hpp"
 #include "core/ranked_tet.hpp"
 
 namespace isotet::core {
@@ -64,10 +65,15 @@ public:
     void for_dealt(std::size_t bucket, const F& f) const {
         for (std::size_t at = bucket; at < streams_.size(); at += buckets()) {
             const Stream& stream = streams_[at];
-            for (const std::uint32_t page : stream.pages) {
-                const std::size_t begin = page * page_size_;
-                const std::size_t end = page == stream.pages.back() ? stream.next : begin + page_size_;
-                for (std::size_t i = begin; i < end; ++i) f(tets_[i], has_origins() ? origins_[i] : TetOrigin{});
+            for (std::size_t p = 0; p < stream.pages.size(); ++p) {
+                const bool last = p + 1 == stream.pages.size();
+                const std::size_t begin = stream.pages[p] * page_size_;
+                const std::size_t end = last ? stream.next : begin + page_size_;
+                const RankedTet* const soon = tets_.data() + (last ? begin : stream.pages[p + 1] * page_size_);
+                for (std::size_t i = begin; i < end; ++i) {
+                    prefetch(soon + (i - begin));
+                    f(tets_[i], has_origins() ? origins_[i] : TetOrigin{});
+                }
             }
         }
     }

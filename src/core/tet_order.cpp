@@ -14,6 +14,7 @@
 #include "core/bucket_sorter.hpp"
 #include "core/parallel.hpp"
 #include "core/point_order.hpp"
+#include "core/prefetch.hpp"
 
 namespace isotet::core {
 
@@ -38,6 +39,25 @@ Result<Ranks> rank_points(const PointReader& points, const Buffer<std::uint8_t>&
         }
     });
     return ranks;
+}
+
+/// The coordinates of the used points by rank: those of a tet's corners are close together, wherever the user has them.
+template <class Real>
+Array coordinates_by_rank(std::span<const Real> user, const Buffer<std::uint64_t>& point_of) {
+    constexpr std::size_t ahead = 16;
+    Buffer<Real> out(3 * point_of.size());
+    parallel_ranges(point_of.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t rank = begin; rank < end; ++rank) {
+            prefetch(user.data() + 3 * point_of[std::min(rank + ahead, end - 1)]);
+            std::copy_n(user.data() + 3 * point_of[rank], 3, out.data() + 3 * rank);
+        }
+    });
+    return std::move(out).to_array(3);
+}
+
+Array coordinates_by_rank(const Array& user, const Buffer<std::uint64_t>& point_of) {
+    return user.type() == ScalarType::float32 ? coordinates_by_rank(user.as<float>(), point_of)
+                                              : coordinates_by_rank(user.as<double>(), point_of);
 }
 
 /// How many writers share the cells: more than threads, since some of them may be slower than others.
@@ -105,9 +125,13 @@ Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts 
     progress("pack", 0.15);
 
     std::vector<SortedBucket> sorted(order.tets.buckets());
-    parallel_each(sorted.size(), 1, [&](std::size_t bucket) {
-        if (!progress.cancelled()) sorted[bucket] = sort_bucket(points, cells, order.point_of, bucket, order.tets);
-    });
+    {
+        const Array coordinates = coordinates_by_rank(grid.points, order.point_of);
+        const RankedPoints ranked{order.point_of.data(), PointReader(coordinates)};
+        parallel_each(sorted.size(), 1, [&](std::size_t bucket) {
+            if (!progress.cancelled()) sorted[bucket] = sort_bucket(ranked, cells, bucket, order.tets);
+        });
+    }
     if (progress.cancelled()) return cancelled();
     std::int64_t balance = 0;
     for (const SortedBucket& bucket : sorted) {

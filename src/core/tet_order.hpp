@@ -27,7 +27,7 @@ struct TetOrder {
 /// Sorts the points along a Hilbert curve, and the tets by their lowest point. Points are gathered from the user's arrays
 /// along the curve, so that their order there matters little.
 ///
-/// Cost     16 bytes a tet, 8 more with origins or where not all cells are tetrahedra, and 36 a point
+/// Cost     16 bytes a tet, 8 more with origins or where not all cells are tetrahedra, and 36 a point (44 of float64)
 /// Errors   invalid_data when tets use 2^32 points or more; cancelled
 Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, bool keep_origins, const Progress& progress);
 
