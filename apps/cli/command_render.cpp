@@ -34,24 +34,6 @@ std::string name_of_picture(const RenderCommand& command) {
     return std::filesystem::path(file).stem().string() + ".png";
 }
 
-/// The device that was chosen, else the best graphics card, else a software device, which is noted.
-Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console) {
-    if (choice.name == "none") return Error{ErrorCode::invalid_argument, "--device is none, but only a device can draw"};
-    Result<std::optional<Device>> device = open_device(choice, console);
-    if (!device && choice.name.empty() && device.error().code == ErrorCode::machine) {
-        const Result<DeviceList> list = list_devices();
-        const auto draws = [](const DeviceInfo& one) { return one.kind == DeviceKind::software && one.unusable.empty(); };
-        if (!list || std::ranges::none_of(list->devices, draws))
-            return Error{ErrorCode::machine, "nothing can be drawn: " + device.error().message};
-        DeviceChoice software = choice;
-        software.name = "software";
-        device = open_device(software, console);
-    }
-    if (!device) return device.error();
-    if ((*device)->info().kind == DeviceKind::software) console.note(fmt::format("a software device draws: {}", (*device)->info().name));
-    return **std::move(device);
-}
-
 /// Draws the scene, and writes beside it what belongs to it.
 Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, const RenderCommand& command, double azimuth, Console& console) {
     PictureOptions options = command.picture;

@@ -20,4 +20,8 @@ CLI::Option* add_device_memory(CLI::App& app, DeviceChoice& choice);
 /// Opens the device that was chosen, and notes what the user should know of it. Nothing for --device none.
 Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console);
 
+/// For drawing: the device that was chosen, else the best graphics card, else a software device, which is noted.
+/// Errors   invalid_argument for --device none; machine when nothing can draw
+Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console);
+
 } // namespace isotet::cli

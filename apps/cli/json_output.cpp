@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "io/own/output_file.hpp"
 #include "standard_streams.hpp"
 #include "text.hpp"
+#include "text_file.hpp"
 
 namespace isotet::cli {
 
@@ -30,11 +30,7 @@ Result<void> write_json(const Json& report, const std::string& where, const Prog
         }
         return write_to_stdout(text);
     }
-    Result<io::OutputFile> file = io::OutputFile::open(where);
-    if (!file) return file.error();
-    if (Result<void> written = file->write(text); !written) return written;
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-    return file->commit();
+    return write_text_file(where, text, progress);
 }
 
 } // namespace isotet::cli

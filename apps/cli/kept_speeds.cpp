@@ -16,8 +16,8 @@
 
 #include "build_facts.hpp"
 #include "core/cache_folder.hpp"
-#include "io/own/output_file.hpp"
 #include "json_output.hpp"
+#include "text_file.hpp"
 
 namespace isotet::cli {
 
@@ -86,8 +86,7 @@ void add(const std::string& key, AnySpeeds speeds) {
     kept["speeds"][key] = std::move(entry);
     std::error_code failed;
     std::filesystem::create_directories(path.parent_path(), failed);
-    Result<io::OutputFile> file = io::OutputFile::open(path.string());
-    if (file && file->write(kept.dump(2, ' ', false, Json::error_handler_t::replace) + "\n")) (void)file->commit();
+    (void)write_text_file(path.string(), kept.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", {});
 }
 
 /// As the system calls it; empty where it does not.

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "option_tree.hpp"
 
+#include "bench_options.hpp"
 #include "device_choice.hpp"
 #include "option_values.hpp"
 #include "render_options.hpp"
@@ -213,6 +214,16 @@ CLI::App& add_render(CLI::App& program, RenderCommand& render) {
     return app;
 }
 
+CLI::App& add_bench(CLI::App& program, BenchCommand& bench) {
+    CLI::App& app = add_bench_command(program, bench);
+    add_device(app, bench.device);
+    add_device_memory(app, bench.device);
+    add_time(app, bench.grid);
+    add_reading(app, bench.grid, "--format");
+    add_common(app, bench.common);
+    return app;
+}
+
 CLI::App& add_check(CLI::App& program, CheckCommand& check) {
     CLI::App& app = *program.add_subcommand("check", "Measure a surface and look for what should not be there");
     add_file(app, "SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
@@ -286,8 +297,8 @@ std::unique_ptr<CLI::App> make_option_tree(CommandLine& line) {
     program->require_subcommand(0, 1);
     for (CLI::App* command :
          {&add_info(*program, line.info), &add_extract(*program, line.extract), &add_render(*program, line.render),
-          &add_check(*program, line.check), &add_make(*program, line.make), &add_formats(*program, line.formats),
-          &add_devices(*program, line.devices), &add_docs(*program, line.docs)}) {
+          &add_bench(*program, line.bench), &add_check(*program, line.check), &add_make(*program, line.make),
+          &add_formats(*program, line.formats), &add_devices(*program, line.devices), &add_docs(*program, line.docs)}) {
         command->callback([&line, command] { line.command = command->get_name(); });
     }
     return program;

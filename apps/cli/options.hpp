@@ -111,6 +111,23 @@ struct RenderCommand {
     DeviceChoice device;
 };
 
+/// What `isotet bench` can measure.
+enum class BenchMethod : std::uint8_t { brute, clusters, clusters_vulkan, registers, registers_instanced, textures };
+
+struct BenchCommand {
+    CommonOptions common;
+    GridOptions grid;   ///< `file` is empty with --paper
+    FieldChoice field;
+    std::vector<double> isovalues;     ///< none: three
+    bool paper = false;
+    std::uint64_t most_tets = 5'000'000;
+    std::vector<BenchMethod> methods;  ///< none: all that can be
+    std::vector<Filter> filters;       ///< none: without and with the interval tree
+    std::uint64_t rounds = 5;
+    std::string csv, svg;              ///< files; empty for none
+    DeviceChoice device;
+};
+
 struct CheckCommand {
     CommonOptions common;
     std::string surface;
@@ -143,11 +160,12 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "render", "check", "make", "formats", "devices" or "docs"
+    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices" or "docs"
     bool version = false;
     InfoCommand info;
     ExtractCommand extract;
     RenderCommand render;
+    BenchCommand bench;
     CheckCommand check;
     MakeCommand make;
     FormatsCommand formats;

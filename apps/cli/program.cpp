@@ -38,7 +38,7 @@ Result<void> complete_bare_file(std::vector<std::string>& words, const CLI::App&
     if (looks_like_command(words[1])) {
         return Error{
             ErrorCode::invalid_argument,
-            fmt::format("'{}' is neither a command nor a file; commands are info, extract, render, check, make, formats and devices",
+            fmt::format("'{}' is neither a command nor a file; commands are info, extract, render, bench, check, make, formats and devices",
                         words[1])};
     }
     words.insert(words.begin() + 1, "info");
@@ -59,6 +59,7 @@ Result<ExitCode> run_command(const CommandLine& line, const CLI::App& program) {
     if (line.command == "info") return run_info(line.info);
     if (line.command == "extract") return run_extract(line.extract);
     if (line.command == "render") return run_render(line.render);
+    if (line.command == "bench") return run_bench(line.bench);
     if (line.command == "check") return run_check(line.check);
     if (line.command == "make") return run_make(line.make);
     if (line.command == "formats") return run_formats(line.formats);

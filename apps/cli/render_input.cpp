@@ -8,9 +8,8 @@
 
 #include <isotet/boundary.hpp>
 
-#include "field_choice.hpp"
 #include "grid_source.hpp"
-#include "number_format.hpp"
+#include "read_field.hpp"
 #include "render_colors.hpp"
 #include "stopwatch.hpp"
 #include "varied_field.hpp"
@@ -58,41 +57,6 @@ Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file,
     return input;
 }
 
-/// The whole grid where the field is still to be chosen; else what the field needs.
-Result<PointField> read_field(const RenderCommand& command, const GridSource& source, std::size_t step, Console& console, Grid& grid) {
-    FieldsToRead read;
-    std::string name = command.field.name;
-    const std::size_t fields = source.info().fields.size();
-    if (!name.empty() || fields <= 1) {
-        const Result<FoundField> found = choose_field(source, command.field);
-        if (!found) return found.error();
-        name = found->name;
-        read = {found->point, found->cell};
-        if (!command.color_by.empty()) {
-            const Result<FoundField> colors = choose_field(source, {command.color_by, false});
-            if (!colors) return colors.error();
-            add_names(*read.point, colors->point);
-            add_names(*read.cell, colors->cell);
-        }
-    }
-    Result<Grid> all = source.read(read, step, console);
-    if (!all) return all.error();
-    grid = *std::move(all);
-    if (name.empty()) {
-        name = most_varied_field(grid);
-        if (name.empty()) {
-            return Error{ErrorCode::invalid_data, fmt::format("none of the {} fields has two different values: there is nothing to contour; "
-                                                              "-f x, y or z contours a coordinate",
-                                                              fields)};
-        }
-        console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
-    }
-    const auto prefer = command.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field = find_field(grid, name, {.prefer = prefer, .threads = command.common.threads});
-    if (field) console.note(field->note);
-    return field;
-}
-
 Result<std::vector<double>> choose_levels(const RenderCommand& command, const PointField& field) {
     if (!command.isovalues.empty()) return command.isovalues;
     const std::uint64_t count = command.levels > 0 ? command.levels : levels_without_a_word;
@@ -110,7 +74,7 @@ Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
     Grid grid;
-    const Result<PointField> field = read_field(command, *source, steps->front(), console, grid);
+    const Result<PointField> field = read_field(*source, steps->front(), command.field, command.color_by, command.common.threads, console, grid);
     if (!field) return field.error();
     input.read_seconds = reading.seconds();
 

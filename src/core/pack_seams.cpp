@@ -16,31 +16,13 @@ namespace {
 constexpr std::size_t clusters_a_task = 64;
 constexpr std::size_t words_a_row = max_cluster_points / 64;
 
-/// A set of local points.
-struct PointSet {
-    std::uint64_t words[words_a_row] = {};
-
-    constexpr void add(std::size_t point) { words[point / 64] |= std::uint64_t{1} << point % 64; }
-    bool holds(std::size_t point) const { return words[point / 64] >> point % 64 & 1; }
-    void add(const PointSet& other) {
-        for (std::size_t w = 0; w < words_a_row; ++w) words[w] |= other.words[w];
-    }
-};
-
-/// Which pairs of local points are edges of a cluster: the neighbours of each, and itself.
+/// Which pairs of local points are edges of a cluster: bit b of row a, a < b.
 struct EdgeMatrix {
-    PointSet rows[max_cluster_points];
+    std::uint64_t rows[max_cluster_points][words_a_row] = {};
 
-    void add(const StoredTet& tet) {
-        static constexpr auto alone = [] {
-            std::array<PointSet, max_cluster_points> sets{};
-            for (std::size_t k = 0; k < sets.size(); ++k) sets[k].add(k);
-            return sets;
-        }();
-        const auto& v = tet.corners;
-        PointSet corners = alone[v[0]];
-        for (std::size_t k = 1; k < 4; ++k) corners.add(alone[v[k]]);
-        for (const std::uint8_t corner : v) rows[corner].add(corners);
+    void add(std::uint8_t a, std::uint8_t b) {
+        if (a > b) std::swap(a, b);
+        rows[a][b / 64] |= std::uint64_t{1} << b % 64;
     }
 };
 
@@ -181,19 +163,24 @@ private:
     template <class F>
     void for_candidates(std::size_t c, F&& f) const {
         const ClusterHeader& h = packed_.headers[c];
-        PointSet shared;
+        std::uint64_t shared[words_a_row] = {};
         for (std::size_t k = 0; k < draft_.local_count(c); ++k)
-            if (k < h.foreign_points || shared_[h.first_point + k - h.foreign_points]) shared.add(k);
+            if (k < h.foreign_points || shared_[h.first_point + k - h.foreign_points]) shared[k / 64] |= std::uint64_t{1} << k % 64;
         EdgeMatrix matrix;
-        for (const StoredTet& tet : packed_.cluster_tets(c)) matrix.add(tet);
+        for (const StoredTet& tet : packed_.cluster_tets(c)) {
+            const auto& v = tet.corners;
+            matrix.add(v[0], v[1]);
+            matrix.add(v[0], v[2]);
+            matrix.add(v[0], v[3]);
+            matrix.add(v[1], v[2]);
+            matrix.add(v[1], v[3]);
+            matrix.add(v[2], v[3]);
+        }
         for (std::size_t a = 0; a < draft_.local_count(c); ++a) {
-            if (!shared.holds(a)) continue;
-            for (std::size_t word = a / 64; word < words_a_row; ++word) {
-                std::uint64_t bits = matrix.rows[a].words[word] & shared.words[word];
-                if (word == a / 64) bits &= ~std::uint64_t{1} << a % 64; // the higher ones
-                for (; bits; bits &= bits - 1)
+            if (!(shared[a / 64] >> a % 64 & 1)) continue;
+            for (std::size_t word = a / 64; word < words_a_row; ++word)
+                for (std::uint64_t bits = matrix.rows[a][word] & shared[word]; bits; bits &= bits - 1)
                     f(static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
-            }
         }
     }
 
@@ -222,38 +209,24 @@ private:
         return {candidates_.data() + first_candidate_[c], first_candidate_[c + 1] - first_candidate_[c]};
     }
 
-    /// Calls f(owner, begin, end) for each run of a cluster's candidates whose lower ends have one owner: all that it has here,
-    /// since local points stand by owner.
-    template <class F>
-    void for_runs(std::size_t c, const F& f) const {
-        const std::span<const SeamEdge> all = candidates(c);
-        for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
-            const std::uint32_t owner = ref(c, all[begin].lower).owner();
-            end = begin + 1;
-            while (end < all.size() && (all[end].lower == all[end - 1].lower || ref(c, all[end].lower).owner() == owner)) ++end;
-            f(owner, begin, end);
-        }
-    }
-
     void exchange() {
         const std::size_t n = draft_.clusters();
         std::vector<std::uint64_t> next(n + 1, 0); // letters to each cluster; then where its next letter goes
         parallel_each(n, clusters_a_task, [&](std::size_t c) {
-            for_runs(c, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
-                std::atomic_ref<std::uint64_t>(next[owner + 1]).fetch_add(end - begin, std::memory_order_relaxed);
-            });
+            for (const SeamEdge edge : candidates(c))
+                std::atomic_ref<std::uint64_t>(next[ref(c, edge.lower).owner() + 1]).fetch_add(1, std::memory_order_relaxed);
         });
         for (std::size_t c = 0; c < n; ++c) next[c + 1] += next[c];
         const std::vector<std::uint64_t> first = next;
         Buffer<Letter> letters(candidates_.size());
         parallel_each(n, clusters_a_task, [&](std::size_t c) {
-            const SeamEdge* const all = candidates(c).data();
-            for_runs(c, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
-                Letter* out = letters.data() + std::atomic_ref<std::uint64_t>(next[owner]).fetch_add(end - begin, std::memory_order_relaxed);
-                for (std::size_t place = begin; place < end; ++place)
-                    *out++ = Letter::make(ref(c, all[place].lower), ref(c, all[place].higher), static_cast<std::uint32_t>(c),
-                                          static_cast<std::uint16_t>(place));
-            });
+            std::uint16_t place = 0;
+            for (const SeamEdge edge : candidates(c)) {
+                const PointRef lower = ref(c, edge.lower), higher = ref(c, edge.higher);
+                const std::uint64_t slot =
+                    std::atomic_ref<std::uint64_t>(next[lower.owner()]).fetch_add(1, std::memory_order_relaxed);
+                letters[slot] = Letter::make(lower, higher, static_cast<std::uint32_t>(c), place++);
+            }
         });
         // Letters arrive in any order; sorting makes it one.
         answers_ = Buffer<Answer>(candidates_.size());

@@ -142,6 +142,38 @@ TEST_F(Render, SaysWhenThereIsNoSurface) {
     EXPECT_NE(run.err.find("there is no surface at 99: the values of 'sphere' go from"), std::string::npos) << run.err;
 }
 
+TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndFilter) {
+    const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", "software", "--rounds", "1", "--filters",
+                                 "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
+    EXPECT_EQ(report["device"]["kind"], "software");
+    ASSERT_EQ(report["rows"].size(), 3 + 3 * 6u);
+    const std::uint64_t tets = 6 * 6 * 6 * 6;
+    for (const auto& row : report["rows"]) {
+        EXPECT_TRUE(row["missing"].is_null()) << row;
+        EXPECT_GT(row["seconds"]["draw"], 0);
+        if (row["filter"].is_null()) {
+            EXPECT_GT(row["triangles"], 0) << row;
+        } else if (row["filter"] == "none") {
+            EXPECT_EQ(row["tets_looked_at"], tets);
+            EXPECT_EQ(row["bytes"]["sent"], 0);
+        } else {
+            EXPECT_LT(row["tets_looked_at"], tets) << row;
+            EXPECT_EQ(row["bytes"]["sent"], 4 * row["tets_looked_at"].get<std::uint64_t>());
+        }
+    }
+}
+
+TEST_F(Render, OfWhatDoesNotFitCrossesTheBusWhenBenchMeasuresIt) {
+    const auto crossing = [](const char* memory) {
+        return json_of({"bench", "make:kuhn:30:sphere", "-i", "0.6", "--device", "software", "--device-memory", memory, "--rounds", "1", "--methods",
+                        "registers", "--filters", "none"})["rows"][0];
+    };
+    const auto all = crossing("1GB"), some = crossing("32MB");
+    EXPECT_EQ(all["bytes"]["crossing"], 0);
+    EXPECT_GT(some["bytes"]["crossing"], 0) << some;
+    EXPECT_EQ(all["bytes"]["device"], some["bytes"]["device"].get<std::uint64_t>() + some["bytes"]["crossing"].get<std::uint64_t>());
+}
+
 TEST_F(Render, RefusesWhatCannotBe) {
     RunResult run = isotet({"render", "make:kuhn:4:sphere", "--device", "none"});
     EXPECT_EQ(run.status, 2);

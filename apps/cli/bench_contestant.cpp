@@ -1,0 +1,176 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "bench_contestant.hpp"
+
+#include <span>
+#include <utility>
+
+#include <isotet/device_grid.hpp>
+#include <isotet/draw_tets.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/extract_once.hpp>
+#include <isotet/search.hpp>
+
+#include "stopwatch.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+/// Makes a surface on the CPU; where there is a device it is uploaded.
+class OnCpu : public Contestant {
+public:
+    Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+        const Stopwatch extracting;
+        const Result<Extraction> extraction = extract_surface(bed, isovalue);
+        if (!extraction) return extraction.error();
+        DrawnSurface drawn;
+        outcome.triangles = extraction->surface.triangle_count();
+        if (bed.device) {
+            Result<DeviceMesh> mesh = DeviceMesh::upload(*bed.device, extraction->surface);
+            if (!mesh) return mesh.error();
+            mesh_ = *std::move(mesh);
+            drawn.mesh = &*mesh_;
+            outcome.sent_bytes = 12 * (mesh_->vertices() + mesh_->triangle_count());
+        }
+        times.extract = extracting.seconds();
+        return drawn;
+    }
+
+private:
+    virtual Result<Extraction> extract_surface(BenchBed& bed, double isovalue) = 0;
+
+    std::optional<DeviceMesh> mesh_;
+};
+
+class Brute final : public OnCpu {
+public:
+    Result<BenchCosts> prepare(BenchBed&) override { return BenchCosts{}; }
+
+private:
+    Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
+        OnceOptions options;
+        options.extract.threads = bed.threads;
+        Result<ExtractedOnce> once = extract_once(bed.grid, bed.field, std::span(&isovalue, 1), options, bed.progress);
+        if (!once) return once.error();
+        return std::move(once->surfaces.front());
+    }
+};
+
+class Clusters final : public OnCpu {
+public:
+    Result<BenchCosts> prepare(BenchBed& bed) override {
+        if (Result<void> packed = bed.pack(); !packed) return packed.error();
+        return BenchCosts{bed.pack_seconds, bed.packed->report().bytes, 0, 0};
+    }
+
+private:
+    Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
+        ExtractOptions options;
+        options.threads = bed.threads;
+        return extract(*bed.packed, isovalue, options, bed.progress);
+    }
+};
+
+class ClustersOnDevice final : public Contestant {
+public:
+    Result<BenchCosts> prepare(BenchBed& bed) override {
+        if (Result<void> packed = bed.pack(); !packed) return packed.error();
+        const Stopwatch uploading;
+        Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, bed.progress);
+        if (!grid) return grid.error();
+        grid_ = *std::move(grid);
+        return BenchCosts{bed.pack_seconds + uploading.seconds(), bed.packed->report().bytes, grid_->device_bytes(), 0};
+    }
+
+    Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+        const Stopwatch extracting;
+        if (Result<void> done = grid_->extract(isovalue, surface_, {}, bed.progress); !done) return done.error();
+        times.extract = extracting.seconds();
+        outcome.triangles = surface_.triangle_count();
+        outcome.sent_bytes = grid_->work().uploaded_bytes;
+        DrawnSurface drawn;
+        drawn.surface = &surface_;
+        return drawn;
+    }
+
+private:
+    std::optional<DeviceGrid> grid_;
+    DeviceSurface surface_;
+};
+
+/// The paper's: the vertex shader cuts tets, all of them or those that a filter finds.
+class InTheVertexShader final : public Contestant {
+public:
+    InTheVertexShader(DrawMethod method, Filter filter) : method_(method), filter_(filter) {}
+
+    Result<BenchCosts> prepare(BenchBed& bed) override {
+        if (Result<void> packed = bed.pack(); !packed) return packed.error();
+        const Stopwatch preparing;
+        Result<TetStore> store = TetStore::upload(*bed.device, *bed.packed, method_, {}, bed.threads, bed.progress);
+        if (!store) return store.error();
+        store_ = *std::move(store);
+        BenchCosts costs;
+        if (filter_ != Filter::none) {
+            Result<TetFilter> tets = TetFilter::build(*bed.packed, filter_, bed.threads, bed.progress);
+            if (!tets) return tets.error();
+            tets_ = *std::move(tets);
+            costs.host_bytes = tets_->report().table_bytes + tets_->report().filter_bytes;
+        }
+        costs.prepare_seconds = bed.pack_seconds + preparing.seconds();
+        costs.device_bytes = store_->report().device_bytes;
+        costs.crossing_bytes = store_->report().host_bytes;
+        costs.host_bytes += costs.crossing_bytes;
+        return costs;
+    }
+
+    Result<DrawnSurface> make(BenchBed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+        const Stopwatch asking;
+        const std::vector<std::uint32_t>* found = nullptr;
+        if (tets_) {
+            const auto list = tets_->find(isovalue);
+            if (!list) return list.error();
+            found = *list;
+            times.ask = asking.seconds();
+        }
+        const Stopwatch sending;
+        Result<TetSurface> surface = found ? store_->at(isovalue, *found) : store_->at(isovalue);
+        if (!surface) return surface.error();
+        surface_ = *std::move(surface);
+        times.extract = sending.seconds();
+        outcome.tets_looked_at = surface_->tets();
+        outcome.sent_bytes = surface_->sent_bytes();
+        DrawnSurface drawn;
+        drawn.tets = &*surface_;
+        return drawn;
+    }
+
+private:
+    DrawMethod method_;
+    Filter filter_;
+    std::optional<TetStore> store_;
+    std::optional<TetFilter> tets_;
+    std::optional<TetSurface> surface_;
+};
+
+} // namespace
+
+Result<void> BenchBed::pack() {
+    if (packed) return {};
+    const Stopwatch packing;
+    PackOptions options;
+    options.threads = threads;
+    Result<PackedGrid> made = isotet::pack(grid, field, options, progress);
+    if (!made) return made.error();
+    packed = *std::move(made);
+    pack_seconds = packing.seconds();
+    return {};
+}
+
+std::unique_ptr<Contestant> make_contestant(const BenchPair& pair) {
+    if (const std::optional<DrawMethod> method = draw_method_of(pair.method)) return std::make_unique<InTheVertexShader>(*method, pair.filter);
+    if (pair.method == BenchMethod::brute) return std::make_unique<Brute>();
+    if (pair.method == BenchMethod::clusters) return std::make_unique<Clusters>();
+    return std::make_unique<ClustersOnDevice>();
+}
+
+} // namespace isotet::cli

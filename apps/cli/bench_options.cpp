@@ -1,0 +1,111 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "bench_options.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "option_values.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr const char* details = R"(
+Each method gets every isovalue in every round. With a device each isovalue ends as a picture of it, shaded by faces; without
+one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the filter,
+uploading. Ask is the filter's search; extract is making triangles and sending them, or the list of tets, to the device; draw
+is the rest of the way to the picture. Medians; the best round in JSON and CSV.
+
+Methods: brute and clusters (CPU), clusters_vulkan (device), and the vertex-shader methods of Buatois, Caumon and Levy (2006),
+which draw without making a surface: registers, registers_instanced, textures. The last three draw the tets that a filter finds:
+none, interval_tree, octree, seed_set, span_space, cluster_ranges.
+
+--paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the interval
+tree gains. --device-memory makes grids that do not fit visible at sizes that one can run.
+
+Examples:
+  isotet bench grid.vtu -f pressure -i 0.5
+  isotet bench grid.vtu -f pressure --methods clusters,textures --filters none,interval_tree
+  isotet bench --paper --device software --max-tets 1000000 --svg figure4.svg --csv figure4.csv
+  isotet bench --paper --device-memory 256MB --svg figure4.svg
+)";
+
+/// Words separated by commas, each one of `all` by its name.
+template <class Value, class All>
+void add_list(CLI::App& app, const std::string& option, std::vector<Value>& target, const All& all, const std::string& description) {
+    app.add_option_function<std::vector<std::string>>(
+           option,
+           [&target, &all, option](const std::vector<std::string>& words) {
+               for (const std::string& word : words) {
+                   const auto found = std::ranges::find_if(all, [&](Value value) { return std::string_view(name_of(value)) == word; });
+                   std::string names;
+                   for (const Value value : all) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(value));
+                   if (found == all.end()) throw wrong_value(option, word, "one or more of " + names);
+                   if (std::ranges::find(target, *found) == target.end()) target.push_back(*found);
+               }
+           },
+           description)
+        ->type_name("A[,B...]")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+}
+
+} // namespace
+
+const char* name_of(BenchMethod method) noexcept {
+    switch (method) {
+    case BenchMethod::brute: return "brute";
+    case BenchMethod::clusters: return "clusters";
+    case BenchMethod::clusters_vulkan: return "clusters_vulkan";
+    case BenchMethod::registers: return "registers";
+    case BenchMethod::registers_instanced: return "registers_instanced";
+    case BenchMethod::textures: return "textures";
+    }
+    return "";
+}
+
+std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept { return parse_draw_method(name_of(method)); }
+
+bool needs_device(BenchMethod method) noexcept { return method != BenchMethod::brute && method != BenchMethod::clusters; }
+
+std::string BenchPair::name() const {
+    std::string name = name_of(method);
+    if (draw_method_of(method) && filter != Filter::none) name += fmt::format(" + {}", name_of(filter));
+    return name;
+}
+
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& filters) {
+    std::vector<BenchPair> pairs;
+    for (const BenchMethod method : methods) {
+        if (!draw_method_of(method)) pairs.push_back({method});
+        else
+            for (const Filter filter : filters) pairs.push_back({method, filter});
+    }
+    return pairs;
+}
+
+CLI::App& add_bench_command(CLI::App& program, BenchCommand& bench) {
+    CLI::App& app = *program.add_subcommand("bench", "Measure methods and filters on a grid, and say which to take");
+    CLI::Option* file = add_file(app, "FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
+    CLI::Option* paper = app.add_flag("--paper", bench.paper, "Measure Figure 4 of Buatois, Caumon and Levy (2006) on made grids, without FILE");
+    paper->excludes(file);
+    add_count(
+        app, "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",
+        "Largest grid of --paper; without it 5000000")
+        ->needs(paper);
+    add_text(app, "-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")->excludes(paper);
+    app.add_flag("--cell-field", bench.field.cell_field, "Of a name that is both a point and a cell field, the cell field");
+    add_numbers(app, "-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")->excludes(paper);
+    add_list(app, "--methods", bench.methods, all_bench_methods, "Methods, separated by commas; without it all that this machine can");
+    add_list(app, "--filters", bench.filters, all_filters, "Filters, separated by commas; without it none and interval_tree");
+    add_count(
+        app, "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N", "How often everything is measured; without it 5");
+    add_file(app, "--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
+    add_file(app, "--svg", bench.svg, "OUT_FILE", "Draw a chart: with --paper tets a second against tets, else time against surfaces");
+    app.footer(details);
+    return app;
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,41 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What `isotet bench` measures: pairs of a method and a filter.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <isotet/draw_tets.hpp>
+#include <isotet/search.hpp>
+
+#include "options.hpp"
+
+namespace isotet::cli {
+
+inline constexpr std::array all_bench_methods{BenchMethod::brute,     BenchMethod::clusters,            BenchMethod::clusters_vulkan,
+                                              BenchMethod::registers, BenchMethod::registers_instanced, BenchMethod::textures};
+
+const char* name_of(BenchMethod method) noexcept;
+
+/// The vertex-shader methods draw lists of tets that a filter finds; the others find theirs themselves.
+std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept;
+bool needs_device(BenchMethod method) noexcept;
+
+struct BenchPair {
+    BenchMethod method = BenchMethod::brute;
+    Filter filter = Filter::none; ///< of a vertex-shader method
+
+    std::string name() const; ///< "textures + interval_tree", "clusters"
+};
+
+/// Each method that takes lists with each filter, the others once.
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& filters);
+
+CLI::App& add_bench_command(CLI::App& program, BenchCommand& bench);
+
+} // namespace isotet::cli

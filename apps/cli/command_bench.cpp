@@ -1,0 +1,170 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet bench`: methods and filters against each other, on a grid of the user or on those of the paper's Figure 4.
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <isotet/choose.hpp>
+#include <isotet/make.hpp>
+
+#include "bench_report.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "device_choice.hpp"
+#include "grid_source.hpp"
+#include "json_output.hpp"
+#include "output_paths.hpp"
+#include "read_field.hpp"
+#include "text_file.hpp"
+#include "varied_field.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr double isovalue_of_paper = 0.25; ///< of the gyroid: near its middle, where the surface is large
+constexpr std::uint64_t levels_without_a_word = 3;
+
+class BenchRun {
+public:
+    BenchRun(const BenchCommand& command, Console& console) : command_(command), console_(console) {}
+
+    Result<void> run();
+    const BenchNumbers& numbers() const noexcept { return numbers_; }
+
+private:
+    Result<void> open_device();
+    Result<void> choose_pairs();
+    Result<void> run_file();
+    Result<void> run_paper();
+    Result<void> measure_all(const std::string& name, const Grid& grid, const PointField& field);
+
+    const BenchCommand& command_;
+    Console& console_;
+    std::optional<Device> device_;
+    std::vector<BenchPair> pairs_;
+    BenchNumbers numbers_;
+};
+
+/// Without a device that can draw, what needs none is measured; unless a device was asked for.
+Result<void> BenchRun::open_device() {
+    if (command_.device.name == "none") return {};
+    Result<Device> device = open_drawing_device(command_.device, console_);
+    if (device) {
+        device_ = *std::move(device);
+        numbers_.device = device_->info();
+        return {};
+    }
+    if (!command_.device.name.empty() || device.error().code != ErrorCode::machine) return device.error();
+    console_.note(fmt::format("{}: only what needs no device is measured, and no pictures are drawn", device.error().message));
+    return {};
+}
+
+Result<void> BenchRun::choose_pairs() {
+    std::vector<BenchMethod> methods = command_.methods;
+    if (methods.empty())
+        for (const BenchMethod method : all_bench_methods)
+            if (device_ || !needs_device(method)) methods.push_back(method);
+    for (const BenchMethod method : methods)
+        if (needs_device(method) && !device_)
+            return Error{ErrorCode::invalid_argument, fmt::format("--methods has {}, which needs a device, but there is none", name_of(method))};
+    const std::vector<Filter> filters = command_.filters.empty() ? std::vector{Filter::none, Filter::interval_tree} : command_.filters;
+    if (!command_.filters.empty() && std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
+        return Error{ErrorCode::invalid_argument, "--filters was given, but none of the methods takes lists of tets: registers, "
+                                                  "registers_instanced and textures do"};
+    pairs_ = pairs_of(methods, filters);
+    return {};
+}
+
+Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
+    BenchBed bed{.grid = grid, .field = field, .threads = command_.common.threads, .progress = console_.progress(), .device = device_, .renderer = {},
+                 .packed = {}, .pack_seconds = 0};
+    if (device_) {
+        Result<Renderer> renderer = Renderer::make(*device_);
+        if (!renderer) return renderer.error();
+        bed.renderer = *std::move(renderer);
+    }
+    const Result<FieldSample> sample = FieldSample::take(grid, field);
+    if (!sample) return sample.error();
+    for (const BenchPair& pair : pairs_) {
+        console_.detail(fmt::format("measuring {}: {}", name, pair.name()));
+        Result<BenchRow> row = measure(pair, bed, numbers_.isovalues, command_.rounds);
+        if (!row) return row.error();
+        row->grid = name;
+        row->tets = bed.packed ? bed.packed->report().tets : sample->tets();
+        row->points = grid.points.tuples();
+        numbers_.rows.push_back(*std::move(row));
+    }
+    return {};
+}
+
+Result<void> BenchRun::run_file() {
+    const Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
+    if (!source) return source.error();
+    const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
+    if (!steps) return steps.error();
+    Grid grid;
+    const Result<PointField> field = read_field(*source, steps->front(), command_.field, {}, command_.common.threads, console_, grid);
+    if (!field) return field.error();
+    numbers_.field = field->name;
+    numbers_.isovalues = command_.isovalues.empty() ? levels_within(*field, levels_without_a_word) : command_.isovalues;
+    if (numbers_.isovalues.empty())
+        return Error{ErrorCode::invalid_data, fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};
+    return measure_all(command_.grid.file, grid, *field);
+}
+
+/// Regular grids from 100 thousand tets on, the sizes of the figure and beyond.
+Result<void> BenchRun::run_paper() {
+    numbers_.field = "gyroid";
+    numbers_.isovalues = {isovalue_of_paper};
+    const auto most = static_cast<double>(command_.most_tets);
+    std::vector<double> sizes;
+    for (double decade = 1e5; decade <= most; decade *= 10)
+        for (const double step : {1.0, 2.0, 4.0, 6.0})
+            if (decade * step <= most) sizes.push_back(decade * step);
+    if (sizes.empty() || sizes.back() < most) sizes.push_back(most);
+    for (const double size : sizes) {
+        MakeOptions options;
+        options.side = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(std::cbrt(size / 6))));
+        options.fields = {numbers_.field};
+        options.threads = command_.common.threads;
+        const Result<Grid> grid = make_grid(options, console_.progress());
+        if (!grid) return grid.error();
+        const Result<PointField> field = find_field(*grid, numbers_.field);
+        if (!field) return field.error();
+        if (Result<void> done = measure_all(fmt::format("make:kuhn:{}:gyroid", options.side), *grid, *field); !done) return done;
+    }
+    return {};
+}
+
+Result<void> BenchRun::run() {
+    if (command_.paper == !command_.grid.file.empty())
+        return Error{ErrorCode::invalid_argument, "isotet bench takes a FILE, or --paper"};
+    if (Result<void> paths = check_output_paths({command_.grid.file}, {command_.csv, command_.svg, command_.common.json}); !paths) return paths;
+    numbers_.command = &command_;
+    numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads) : std::max(1U, std::thread::hardware_concurrency());
+    if (Result<void> opened = open_device(); !opened) return opened;
+    if (Result<void> chosen = choose_pairs(); !chosen) return chosen;
+    return command_.paper ? run_paper() : run_file();
+}
+
+} // namespace
+
+Result<ExitCode> run_bench(const BenchCommand& command) {
+    Console console(command.common);
+    BenchRun run(command, console);
+    if (Result<void> done = run.run(); !done) return done.error();
+    if (Result<void> printed = console.print(bench_table(run.numbers())); !printed) return printed.error();
+    for (const auto& [path, text] : {std::pair(command.csv, &bench_csv), {command.svg, &bench_svg}})
+        if (!path.empty())
+            if (Result<void> written = write_text_file(path, text(run.numbers()), console.progress()); !written) return written.error();
+    Json report = bench_json(run.numbers());
+    report["notes"] = json_texts(console.noted());
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    return ExitCode::done;
+}
+
+} // namespace isotet::cli
