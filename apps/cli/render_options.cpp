@@ -128,7 +128,7 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
                           {"turbo", ColorMap::turbo},
                           {"cool-warm", ColorMap::cool_warm}},
                          "Colour map; without it viridis");
-    CLI::Option* range = add_numbers(app, "--range", render.range, "A,B", "Values at the ends of the colour map; without it those that are seen");
+    CLI::Option* range = add_numbers(app, "--range", render.range, "A,B", "Values at the ends of the colour map; without it the smallest and the largest of the field");
     CLI::Option* logarithmic = app.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
     for (CLI::Option* option : {range, logarithmic}) option->needs(app.get_option("--color-by"));
     add_color(app, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
