@@ -36,7 +36,7 @@ Result<void> check_method(const RenderCommand& command) {
 Result<RenderTets> RenderTets::load(const RenderCommand& command, const RenderInput& input, const Device& device, Console& console) {
     const DrawMethod method = *command.method;
     TetStoreOptions options;
-    options.gradients = method == DrawMethod::textures;
+    options.gradients = method == DrawMethod::textures || method == DrawMethod::mesh;
     options.picture_bytes = picture_bytes(command.picture, input.packed->report().tets);
     Result<TetStore> store = TetStore::upload(device, *input.packed, method, options, command.common.threads, console.progress());
     if (!store) return store.error();

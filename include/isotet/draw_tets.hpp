@@ -29,16 +29,20 @@ class ChosenTets;
 /// `registers_instanced`   the same, but the four vertices share one record: 64 bytes a tet
 /// `textures`              the paper's GPU(T): 16 bytes a tet, its four point numbers; 16 a point, x, y, z and value; 16 more
 ///                         a point for shading by gradients; the tables of cases and edges in the same store
-enum class DrawMethod : std::uint8_t { registers, registers_instanced, textures };
+/// `mesh`                  what the paper hoped of a geometry unit: mesh shaders (VK_EXT_mesh_shader) make the triangles of 32
+///                         tets at a time, and nothing of those that are not cut. The store of textures, and 8 bytes, their
+///                         range, for every 32 tets; not every device has mesh shaders
+enum class DrawMethod : std::uint8_t { registers, registers_instanced, textures, mesh };
 
-inline constexpr std::array all_draw_methods{DrawMethod::registers, DrawMethod::registers_instanced, DrawMethod::textures};
+inline constexpr std::array all_draw_methods{DrawMethod::registers, DrawMethod::registers_instanced, DrawMethod::textures,
+                                             DrawMethod::mesh};
 
 /// The name as written here, and back.
 std::string_view name_of(DrawMethod method) noexcept;
 std::optional<DrawMethod> parse_draw_method(std::string_view name) noexcept;
 
 struct TetStoreOptions {
-    bool gradients = false; ///< shading by the gradients of the packed grid, `textures` only; without them by faces
+    bool gradients = false; ///< shading by the gradients of the packed grid, `textures` and `mesh` only; without them by faces
     /// Device memory that uploading leaves free for pictures and lists of tets; nothing: an eighth of what is free.
     std::optional<std::uint64_t> picture_bytes;
 };
@@ -94,10 +98,10 @@ class TetStore {
 public:
     /// Uploads a store. The packed grid is not needed any more; with another field the store must be uploaded again.
     ///
-    /// Errors   invalid_argument for a grid packed in double, for gradients with another method than textures, and for
-    ///          gradients that the grid was not packed with; invalid_data with 2^32 - 1 tets or more; out_of_memory when the
-    ///          device has no room for one page (textures: for all points and one page), or the machine none for the rest;
-    ///          machine; cancelled
+    /// Errors   invalid_argument for a grid packed in double, for gradients with a method that keeps none, and for gradients
+    ///          that the grid was not packed with; invalid_data with 2^32 - 1 tets or more; out_of_memory when the device has
+    ///          no room for one page (textures, mesh: for all points and one page), or the machine none for the rest;
+    ///          machine, also when the device has no mesh shaders but they are asked for; cancelled
     /// Cost     the store over the bus
     static Result<TetStore> upload(const Device& device, const PackedGrid& packed, DrawMethod method,
                                    const TetStoreOptions& options = {}, int threads = 0, const Progress& progress = {});

@@ -71,13 +71,18 @@ layout::TetPage ChosenTets::describe(const Part& part) const {
     page.points = vulkan::address_of(store_->points);
     page.gradients = vulkan::address_of(store_->directions);
     page.tables = vulkan::address_of(store_->tables);
+    if (store_->ranges) {
+        const auto index = static_cast<std::uint64_t>(part.page - store_->pages.data());
+        page.ranges = vulkan::address_of(store_->ranges, index * (layout::page_tets / layout::tet_group) * sizeof(core::CutRange));
+    }
     page.isovalue = stored_;
+    page.tets = part.tets;
     return page;
 }
 
 void ChosenTets::add_uses(const Part& part, vulkan::Access how, std::vector<vulkan::Use>& uses) const {
     for (const vulkan::Buffer* buffer :
-         {&store_->place_of(*part.page), &numbers_, &store_->points, &store_->directions, &store_->tables})
+         {&store_->place_of(*part.page), &numbers_, &store_->points, &store_->directions, &store_->tables, &store_->ranges})
         if (*buffer) uses.push_back({*buffer, how});
 }
 

@@ -51,7 +51,7 @@ Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines&
 
 void record(const LineDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
     call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
-    call.vkCmdPushConstants(commands, draw.pipeline->layout, vulkan::DrawPipelines::stages, 0, sizeof push, &push);
+    call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
     call.vkCmdDraw(commands, draw.corners, 1, 0, 0);
 }
 

@@ -108,7 +108,7 @@ Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& s
 
 void record(const MeshDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
     call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
-    call.vkCmdPushConstants(commands, draw.pipeline->layout, vulkan::DrawPipelines::stages, 0, sizeof push, &push);
+    call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
     if (draw.indices) call.vkCmdBindIndexBuffer(commands, draw.indices, 0, VK_INDEX_TYPE_UINT32);
     // The arguments of an indexed draw begin with those of one that is not, as its vertex_offset is 0.
     static_assert(sizeof(VkDrawIndexedIndirectCommand) == sizeof(vulkan::layout::DrawArguments));

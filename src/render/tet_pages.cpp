@@ -24,10 +24,16 @@ using vulkan::Where;
 
 Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
-Result<void> check_options(const core::Packed& packed, DrawMethod method, const TetStoreOptions& options) {
+bool has_textures(DrawMethod method) { return method == DrawMethod::textures || method == DrawMethod::mesh; }
+
+Result<void> check_options(const vulkan::Context& context, const core::Packed& packed, DrawMethod method,
+                           const TetStoreOptions& options) {
+    if (method == DrawMethod::mesh && !context.capabilities().mesh_shaders)
+        return Error{ErrorCode::machine,
+                     fmt::format("the device {} has no mesh shaders (VK_EXT_mesh_shader), which the method mesh needs", context.info().name)};
     if (!options.gradients) return {};
-    if (method != DrawMethod::textures)
-        return wrong(fmt::format("the method {} was asked for gradients, but only textures keeps them", name_of(method)));
+    if (!has_textures(method))
+        return wrong(fmt::format("the method {} was asked for gradients, but only textures and mesh keep them", name_of(method)));
     if (packed.gradients.empty()) return wrong("shading by gradients needs a grid that was packed with gradients");
     return {};
 }
@@ -44,13 +50,27 @@ core::Buffer<std::array<float, 4>> directions_of(const core::Packed& packed) {
     return directions;
 }
 
+/// The isovalues that cut any tet of a group.
+core::Buffer<core::CutRange> group_ranges_of(const core::TetTable& table) {
+    const std::size_t tets = table.tets.size();
+    core::Buffer<core::CutRange> ranges((tets + layout::tet_group - 1) / layout::tet_group);
+    static_assert(sizeof(core::CutRange) == sizeof(vulkan::layout::Range));
+    core::parallel_each(ranges.size(), 1024, [&](std::size_t group) {
+        core::CutRange all;
+        const std::size_t first = group * layout::tet_group, end = std::min(first + layout::tet_group, tets);
+        for (std::size_t tet = first; tet < end; ++tet) all.take_in(table.range(static_cast<std::uint32_t>(tet)));
+        ranges[group] = all;
+    });
+    return ranges;
+}
+
 } // namespace
 
 Result<std::shared_ptr<TetPages>> TetPages::upload(std::shared_ptr<vulkan::Context> context, const core::Packed& packed,
                                                    DrawMethod method, const TetStoreOptions& options,
                                                    const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    if (Result<void> right = check_options(packed, method, options); !right) return right.error();
+    if (Result<void> right = check_options(*context, packed, method, options); !right) return right.error();
     const std::uint64_t table_bytes = 16 * (packed.report.tets + packed.points());
     if (Result<void> there = core::require_memory("making the tables of tets and points", table_bytes); !there)
         return there.error();
@@ -66,7 +86,7 @@ Result<std::shared_ptr<TetPages>> TetPages::upload(std::shared_ptr<vulkan::Conte
     pages->report.tets = table->tets.size();
     pages->report.points = table->points.size();
     const std::uint64_t spared = options.picture_bytes.value_or(pages->context->memory().free() / 8);
-    if (method == DrawMethod::textures)
+    if (has_textures(method))
         if (Result<void> done = pages->upload_points(*table, packed); !done) return done.error();
     if (Result<void> done = pages->upload_tets(*table, spared, progress); !done) return done.error();
     pages->report.stored_bytes = pages->report.device_bytes + pages->report.host_bytes;
@@ -84,6 +104,7 @@ Result<void> TetPages::upload_points(const core::TetTable& table, const core::Pa
     Result<void> done = keep(send(*context, std::as_bytes(std::span(&layout::tet_tables, 1)), "tables of cases and edges"), tables);
     if (done) done = keep(send(*context, table.points, "points of tets"), points);
     if (done && gradients) done = keep(send(*context, directions_of(packed), "gradients of tets"), directions);
+    if (done && method == DrawMethod::mesh) done = keep(send(*context, group_ranges_of(table), "ranges of groups of tets"), ranges);
     return done;
 }
 
@@ -147,7 +168,8 @@ std::array<std::uint32_t, 5> TetPages::constants(bool has_list) const {
     switch (method) {
     case DrawMethod::registers: return {layout::one_color, shading, layout::registers_method, has_list, shading};
     case DrawMethod::registers_instanced: return {layout::one_color, shading, layout::instanced_method, has_list, shading};
-    case DrawMethod::textures: return {layout::one_color, shading, layout::textures_method, has_list, shading};
+    case DrawMethod::textures:
+    case DrawMethod::mesh: return {layout::one_color, shading, layout::textures_method, has_list, shading};
     }
     return {};
 }

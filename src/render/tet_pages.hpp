@@ -33,7 +33,8 @@ public:
     bool gradients = false;
     std::array<double, 3> origin{}; ///< places are relative to it
     core::Storage storage;          ///< of values
-    vulkan::Buffer tables, points, directions; ///< of textures; no directions without gradients
+    vulkan::Buffer tables, points, directions; ///< of textures and mesh; no directions without gradients
+    vulkan::Buffer ranges; ///< of mesh: of every layout::tet_group tets
     std::vector<Page> pages;
     vulkan::Buffer guest; ///< room for one page; none where all are on the device
     TetStoreReport report;

@@ -31,12 +31,14 @@ Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space,
     if (drawn.colors) return wrong("tets that are cut while they are drawn have one colour: a field cannot colour them");
     TetDraw draw;
     draw.translucent = drawn.opacity < 1;
-    draw.quad_corners = quad_corners.handle();
+    const bool by_groups = tets.store().method == DrawMethod::mesh;
+    if (!by_groups) draw.quad_corners = quad_corners.handle();
     const auto constants = tets.store().constants(tets.has_list());
     namespace shaders = vulkan::drawing;
-    const auto pipeline =
-        draw.translucent ? pipelines.get(shaders::tet_corners, shaders::mesh_translucent, vulkan::Surfaces::translucent, constants)
-                         : pipelines.get(shaders::tet_corners, shaders::mesh_opaque, vulkan::Surfaces::opaque, constants);
+    const auto pipeline = pipelines.get(by_groups ? shaders::tet_groups : shaders::tet_corners,
+                                        draw.translucent ? shaders::mesh_translucent : shaders::mesh_opaque,
+                                        draw.translucent ? vulkan::Surfaces::translucent : vulkan::Surfaces::opaque, constants,
+                                        by_groups ? vulkan::FirstStage::mesh : vulkan::FirstStage::vertex);
     if (!pipeline) return pipeline.error();
     draw.pipeline = *pipeline;
     for (const ChosenTets::Part& part : tets.parts()) {
@@ -47,8 +49,8 @@ Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space,
         one.page.mesh.color = linear_light(drawn.color);
         one.page.mesh.opacity = static_cast<float>(drawn.opacity);
         one.tets = part.tets;
-        tets.add_uses(part, vulkan::Access::draw_read, one.uses);
-        one.uses.push_back(vulkan::draws_from(quad_corners));
+        tets.add_uses(part, by_groups ? vulkan::Access::mesh_read : vulkan::Access::draw_read, one.uses);
+        if (!by_groups) one.uses.push_back(vulkan::draws_from(quad_corners));
         if (part.page->on_device) continue;
         one.from = &part.page->records;
         one.to = &tets.store().guest;
@@ -58,7 +60,8 @@ Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space,
 
 void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
     call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
-    call.vkCmdPushConstants(commands, draw.pipeline->layout, vulkan::DrawPipelines::stages, 0, sizeof push, &push);
+    call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
+    if (!draw.quad_corners) return call.vkCmdDrawMeshTasksEXT(commands, (draw.tets - 1) / layout::tet_group + 1, 1, 1);
     call.vkCmdBindIndexBuffer(commands, draw.quad_corners, 0, VK_INDEX_TYPE_UINT32);
     call.vkCmdDrawIndexed(commands, corners_a_quad * draw.tets, 1, 0, 0, 0);
 }

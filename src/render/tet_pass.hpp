@@ -23,7 +23,7 @@ struct TetDraw {
     std::uint32_t tets = 0;
     bool translucent = false;
     const vulkan::DrawPipeline* pipeline = nullptr;
-    VkBuffer quad_corners = VK_NULL_HANDLE;
+    VkBuffer quad_corners = VK_NULL_HANDLE; ///< null: drawn by mesh shaders
     const vulkan::Buffer *from = nullptr, *to = nullptr; ///< what has to be copied before; null: it is there
     std::vector<vulkan::Use> uses;
 };

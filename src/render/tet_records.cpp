@@ -30,7 +30,8 @@ std::uint64_t record_bytes(DrawMethod method) {
     switch (method) {
     case DrawMethod::registers: return 4 * sizeof(layout::TetRegisters);
     case DrawMethod::registers_instanced: return sizeof(Corners);
-    case DrawMethod::textures: return sizeof(core::TetTable::tets[0]);
+    case DrawMethod::textures:
+    case DrawMethod::mesh: return sizeof(core::TetTable::tets[0]);
     }
     return 0;
 }
@@ -54,7 +55,8 @@ void write_records(DrawMethod method, const core::TetTable& table, std::uint64_t
             std::memcpy(record, &corners, sizeof corners);
         });
         return;
-    case DrawMethod::textures: std::memcpy(out.data(), table.tets.data() + first, out.size()); return;
+    case DrawMethod::textures:
+    case DrawMethod::mesh: std::memcpy(out.data(), table.tets.data() + first, out.size()); return;
     }
 }
 

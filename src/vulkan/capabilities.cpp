@@ -134,11 +134,15 @@ Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device) {
     call.vkGetPhysicalDeviceProperties2(device, &properties);
 
     found.features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
+    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
+    if (has_extension(call, device, VK_EXT_MESH_SHADER_EXTENSION_NAME)) found.features12.pNext = &mesh;
     VkPhysicalDeviceFeatures2 features{};
     features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     features.pNext = &found.features12;
     call.vkGetPhysicalDeviceFeatures2(device, &features);
     found.features = features.features;
+    found.mesh_shaders = mesh.meshShader;
     // The structs are copied from here on; links into the old ones would dangle.
     found.properties11.pNext = found.properties12.pNext = found.features12.pNext = nullptr;
 

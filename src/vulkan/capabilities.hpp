@@ -31,6 +31,8 @@ struct Capabilities {
     std::vector<QueueFamily> queues;
     bool memory_budget = false; ///< VK_EXT_memory_budget: heap_free is known, and changes
 
+    bool mesh_shaders = false;  ///< VK_EXT_mesh_shader with the feature
+
     static constexpr std::uint32_t none = UINT32_MAX;
     std::uint32_t compute_family = none;
     std::uint32_t transfer_family = none; ///< one that only copies, if there is one; else compute_family

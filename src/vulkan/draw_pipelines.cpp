@@ -10,6 +10,11 @@
 
 namespace isotet::vulkan {
 
+DrawPipelines::DrawPipelines(Context& context, const RenderPass& pass)
+    : context_(context), pass_(pass),
+      stages_(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT |
+              (context.capabilities().mesh_shaders ? VK_SHADER_STAGE_MESH_BIT_EXT : 0)) {}
+
 DrawPipelines::~DrawPipelines() {
     LogicalDevice& device = context_.device();
     if (device.hung()) return;
@@ -19,7 +24,7 @@ DrawPipelines::~DrawPipelines() {
 
 Result<void> DrawPipelines::make_layout() {
     if (layout_) return {};
-    const VkPushConstantRange push{stages, 0, push_bytes};
+    const VkPushConstantRange push{stages_, 0, push_bytes};
     VkPipelineLayoutCreateInfo layout{};
     layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
     layout.pushConstantRangeCount = 1;
@@ -43,29 +48,15 @@ Result<VkShaderModule> DrawPipelines::module_of(const ShaderCode& code) {
     return shader;
 }
 
-Result<const DrawPipeline*> DrawPipelines::get(const ShaderCode& vertex, const ShaderCode& fragment, Surfaces surfaces,
-                                               std::span<const std::uint32_t> constants) {
+Result<const DrawPipeline*> DrawPipelines::get(const ShaderCode& first, const ShaderCode& fragment, Surfaces surfaces,
+                                               std::span<const std::uint32_t> constants, FirstStage stage) {
     for (const Made& made : made_) {
-        if (made.vertex == vertex.words.data() && made.fragment == fragment.words.data() && std::ranges::equal(made.constants, constants))
+        if (made.first == first.words.data() && made.fragment == fragment.words.data() && std::ranges::equal(made.constants, constants))
             return &made.pipeline;
     }
     LogicalDevice& device = context_.device();
     if (Result<void> lives = device.alive(); !lives) return lives.error();
     if (Result<void> made = make_layout(); !made) return made.error();
-    const Result<VkShaderModule> first = module_of(vertex);
-    if (!first) return first.error();
-    const Result<VkShaderModule> second = module_of(fragment);
-    const Result<VkPipeline> pipeline = second ? build(*first, *second, surfaces, constants) : second.error();
-    device.call().vkDestroyShaderModule(device.handle(), *first, nullptr);
-    if (second) device.call().vkDestroyShaderModule(device.handle(), *second, nullptr);
-    if (!pipeline) return pipeline.error();
-    device.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, fragment.name);
-    made_.push_back({vertex.words.data(), fragment.words.data(), {constants.begin(), constants.end()}, {*pipeline, layout_}});
-    return &made_.back().pipeline;
-}
-
-Result<VkPipeline> DrawPipelines::build(VkShaderModule vertex, VkShaderModule fragment, Surfaces surfaces,
-                                        std::span<const std::uint32_t> constants) {
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, 4});
     const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
@@ -76,11 +67,25 @@ Result<VkPipeline> DrawPipelines::build(VkShaderModule vertex, VkShaderModule fr
         shader.pName = "main";
         shader.pSpecializationInfo = &specialization;
     }
-    shaders[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-    shaders[0].module = vertex;
+    shaders[0].stage = stage == FirstStage::mesh ? VK_SHADER_STAGE_MESH_BIT_EXT : VK_SHADER_STAGE_VERTEX_BIT;
     shaders[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-    shaders[1].module = fragment;
+    const Result<VkShaderModule> one = module_of(first);
+    if (!one) return one.error();
+    const Result<VkShaderModule> other = module_of(fragment);
+    shaders[0].module = *one;
+    if (other) shaders[1].module = *other;
+    const Result<VkPipeline> pipeline = other ? build(shaders, surfaces) : other.error();
+    device.call().vkDestroyShaderModule(device.handle(), *one, nullptr);
+    if (other) device.call().vkDestroyShaderModule(device.handle(), *other, nullptr);
+    if (!pipeline) return pipeline.error();
+    device.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, fragment.name);
+    made_.push_back(
+        {first.words.data(), fragment.words.data(), {constants.begin(), constants.end()}, {*pipeline, layout_, stages_}});
+    return &made_.back().pipeline;
+}
 
+Result<VkPipeline> DrawPipelines::build(std::span<const VkPipelineShaderStageCreateInfo> shaders, Surfaces surfaces) {
+    // Mesh shaders make their own triangles: these two then mean nothing.
     VkPipelineVertexInputStateCreateInfo input{};
     input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
     VkPipelineInputAssemblyStateCreateInfo assembly{};
@@ -118,7 +123,7 @@ Result<VkPipeline> DrawPipelines::build(VkShaderModule vertex, VkShaderModule fr
 
     VkGraphicsPipelineCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    create.stageCount = 2;
+    create.stageCount = static_cast<std::uint32_t>(shaders.size());
     create.pStages = shaders.data();
     create.pVertexInputState = &input;
     create.pInputAssemblyState = &assembly;

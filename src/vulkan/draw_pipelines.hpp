@@ -18,6 +18,13 @@ namespace isotet::vulkan {
 struct DrawPipeline {
     VkPipeline pipeline = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkShaderStageFlags stages = 0; ///< that see push constants
+};
+
+/// What puts triangles in front of a fragment shader.
+enum class FirstStage : std::uint8_t {
+    vertex,
+    mesh, ///< of devices that have Capabilities::mesh_shaders
 };
 
 /// What becomes of a fragment that is nearer than what has been drawn so far.
@@ -27,15 +34,14 @@ enum class Surfaces : std::uint8_t {
 };
 
 /// All pipelines of a device. No vertex inputs, no descriptor sets: shaders take up to 128 bytes of push constants, seen by
-/// both stages, and reach buffers by address. Triangles are seen from both sides.
+/// all stages, and reach buffers by address. Triangles are seen from both sides.
 ///
 /// Threads   one thread at a time
 class DrawPipelines {
 public:
     static constexpr std::uint32_t push_bytes = 128;
-    static constexpr VkShaderStageFlags stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
-    DrawPipelines(Context& context, const RenderPass& pass) : context_(context), pass_(pass) {}
+    DrawPipelines(Context& context, const RenderPass& pass);
     ~DrawPipelines();
     DrawPipelines(const DrawPipelines&) = delete;
     DrawPipelines& operator=(const DrawPipelines&) = delete;
@@ -45,21 +51,22 @@ public:
     ///
     /// Cost     5 to 500 ms the first time
     /// Errors   machine when the driver cannot build it; out_of_memory
-    Result<const DrawPipeline*> get(const ShaderCode& vertex, const ShaderCode& fragment, Surfaces surfaces,
-                                    std::span<const std::uint32_t> constants = {});
+    Result<const DrawPipeline*> get(const ShaderCode& first, const ShaderCode& fragment, Surfaces surfaces,
+                                    std::span<const std::uint32_t> constants = {}, FirstStage stage = FirstStage::vertex);
 
 private:
     struct Made {
-        const std::uint32_t *vertex, *fragment;
+        const std::uint32_t *first, *fragment;
         std::vector<std::uint32_t> constants;
         DrawPipeline pipeline;
     };
     Result<void> make_layout();
     Result<VkShaderModule> module_of(const ShaderCode& code);
-    Result<VkPipeline> build(VkShaderModule vertex, VkShaderModule fragment, Surfaces surfaces, std::span<const std::uint32_t> constants);
+    Result<VkPipeline> build(std::span<const VkPipelineShaderStageCreateInfo> shaders, Surfaces surfaces);
 
     Context& context_;
     const RenderPass& pass_;
+    const VkShaderStageFlags stages_;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     std::list<Made> made_;
 };

@@ -103,6 +103,10 @@ namespace isotet::vulkan {
     X(vkResetFences)                      \
     X(vkWaitForFences)
 
+// Of a device with VK_EXT_mesh_shader; null without it.
+#define ISOTET_VULKAN_MESH_FUNCTIONS(X) \
+    X(vkCmdDrawMeshTasksEXT)
+
 // Of a device with VK_EXT_debug_utils; null without it.
 #define ISOTET_VULKAN_NAMING_FUNCTIONS(X) \
     X(vkSetDebugUtilsObjectNameEXT)       \
@@ -123,6 +127,7 @@ struct InstanceFunctions {
 
 struct DeviceFunctions {
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_VULKAN_MEMBER)
+    ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_VULKAN_MEMBER)
     ISOTET_VULKAN_NAMING_FUNCTIONS(ISOTET_VULKAN_MEMBER)
 };
 

@@ -26,6 +26,7 @@ Meaning meaning_of(Access access) {
                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT, 0};
     case Access::draw_write:
         return {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_WRITE_BIT};
+    case Access::mesh_read: return {VK_PIPELINE_STAGE_MESH_SHADER_BIT_EXT, VK_ACCESS_SHADER_READ_BIT, 0};
     case Access::arguments: break;
     }
     return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT, 0};
@@ -35,7 +36,7 @@ Meaning meaning_of(Access access) {
 bool covers(VkFlags flags, VkFlags wanted) { return (wanted & ~flags) == 0; }
 
 constexpr Access all_kinds[] = {Access::kernel_read, Access::kernel_write, Access::copy_read, Access::copy_write,
-                                Access::arguments,   Access::draw_read,    Access::draw_write};
+                                Access::arguments,   Access::draw_read,    Access::draw_write,   Access::mesh_read};
 
 std::uint32_t bit_of(Access access) { return 1u << static_cast<unsigned>(access); }
 

@@ -19,6 +19,7 @@ enum class Access : std::uint8_t {
     arguments,  ///< of an indirect dispatch
     draw_read,  ///< by shaders of draws, as indices, or as arguments of indirect draws
     draw_write, ///< by fragment shaders, which may read as well
+    mesh_read,  ///< by mesh shaders, of devices that have them
 };
 
 struct BufferUse {

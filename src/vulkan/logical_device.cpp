@@ -35,11 +35,18 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     features12.bufferDeviceAddress = VK_TRUE;
     features12.scalarBlockLayout = VK_TRUE;
 
+    VkPhysicalDeviceMeshShaderFeaturesEXT mesh{};
+    mesh.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT;
+    mesh.meshShader = VK_TRUE;
+    if (capabilities.mesh_shaders) features12.pNext = &mesh;
+
     VkPhysicalDeviceFeatures features{}; // of these none is needed, but for drawing
     features.fragmentStoresAndAtomics = capabilities.features.fragmentStoresAndAtomics;
 
     std::vector<const char*> extensions;
     if (capabilities.memory_budget) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+
+    if (capabilities.mesh_shaders) extensions.push_back(VK_EXT_MESH_SHADER_EXTENSION_NAME);
 
     VkDeviceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
@@ -58,6 +65,9 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     DeviceFunctions& call = device->call_;
 #define ISOTET_LOAD(name) call.name = reinterpret_cast<PFN_##name>(ask.vkGetDeviceProcAddr(device->handle_, #name));
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_LOAD)
+    if (capabilities.mesh_shaders) {
+        ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_LOAD)
+    }
     if (ask.vkCreateDebugUtilsMessengerEXT) {
         ISOTET_VULKAN_NAMING_FUNCTIONS(ISOTET_LOAD)
     }
@@ -66,6 +76,9 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
 #define ISOTET_CHECK(name) \
     if (!call.name) missing = #name;
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_CHECK)
+    if (capabilities.mesh_shaders) {
+        ISOTET_VULKAN_MESH_FUNCTIONS(ISOTET_CHECK)
+    }
 #undef ISOTET_CHECK
     if (missing)
         return Error{ErrorCode::machine, fmt::format("the driver of {} lacks {}", device->device_name_, missing)};

@@ -80,10 +80,12 @@ TEST_F(TetPictures, AreThoseOfTheExtractedSurface) {
 }
 
 TEST_F(TetPictures, AreShadedByGradients) {
-    TetStore store = TetStore::upload(*device_, packed_, DrawMethod::textures, {.gradients = true, .picture_bytes = {}}).value();
-    const TetSurface tets = store.at(0.1).value();
     const Picture smooth = expected(0.1, Normals::gradient, 1), flat = expected(0.1, Normals::none, 1);
-    expect_alike(drawn(tets, 1), smooth);
+    for (const DrawMethod method : {DrawMethod::textures, DrawMethod::mesh}) {
+        TetStore store = TetStore::upload(*device_, packed_, method, {.gradients = true, .picture_bytes = {}}).value();
+        const TetSurface tets = store.at(0.1).value();
+        expect_alike(drawn(tets, 1), smooth);
+    }
     std::size_t differing = 0;
     for (std::size_t i = 0; i < flat.pixels.size(); ++i) differing += difference(smooth.pixels[i], flat.pixels[i]) > 8;
     EXPECT_GT(differing, flat.pixels.size() / 50) << "faces would look otherwise";

@@ -82,12 +82,13 @@ TEST_F(Tets, StoresTakeWhatThePaperSays) {
     const std::uint64_t tables = 4 * (8 * 4 + 6 * 2);
     EXPECT_EQ(tet_store_bytes(DrawMethod::textures, 1000, 300, false), 16u * 1000 + 16 * 300 + tables);
     EXPECT_EQ(tet_store_bytes(DrawMethod::textures, 1000, 300, true), 16u * 1000 + 32 * 300 + tables);
+    EXPECT_EQ(tet_store_bytes(DrawMethod::mesh, 1000, 300, true), 16u * 1000 + 32 * 300 + tables + 8 * 32) << "32 groups";
     const Grid grid = made_grid("mixed", 8, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid), {.gradients = true}).value();
     const std::uint64_t tets = packed.report().tets, points = packed.report().points;
     for (const DrawMethod method : all_draw_methods)
         for (const bool gradients : {false, true}) {
-            if (gradients && method != DrawMethod::textures) continue;
+            if (gradients && method != DrawMethod::textures && method != DrawMethod::mesh) continue;
             const std::uint64_t before = device_->memory_used();
             const TetStoreOptions options{.gradients = gradients, .picture_bytes = {}};
             const TetStore store = TetStore::upload(*device_, packed, method, options).value();
@@ -157,6 +158,26 @@ TEST_F(Tets, HaveMethodsWithNames) {
     EXPECT_EQ(parse_draw_method(""), std::nullopt);
 }
 
+TEST_F(Tets, MeshShadersAreAskedOfDevicesThatHaveThemOnly) {
+    vulkan::Settings settings = watched();
+    settings.alter_capabilities = [](vulkan::Capabilities& capabilities) { capabilities.mesh_shaders = false; };
+    renderer_.reset();
+    device_.reset();
+    reopen(settings);
+    device_.emplace(shared_context());
+    renderer_.emplace(Renderer::make(*device_).value());
+    const Grid grid = made_grid("kuhn", 3, {"gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const auto without = TetStore::upload(*device_, packed, DrawMethod::mesh);
+    ASSERT_FALSE(without);
+    EXPECT_EQ(without.error().code, ErrorCode::machine);
+    EXPECT_NE(without.error().message.find("has no mesh shaders (VK_EXT_mesh_shader)"), std::string::npos) << without.error().message;
+    TetStore textures = TetStore::upload(*device_, packed, DrawMethod::textures).value();
+    const TetSurface tets = textures.at(0.1).value();
+    scene_.surfaces = {{.tets = &tets}};
+    EXPECT_TRUE(renderer_->draw(scene_, options_)) << "all else is as ever";
+}
+
 TEST_F(Tets, WhatCannotBeIsRefused) {
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
@@ -167,7 +188,7 @@ TEST_F(Tets, WhatCannotBeIsRefused) {
     EXPECT_EQ(error(packed, DrawMethod::textures, {.gradients = true, .picture_bytes = {}}),
               "shading by gradients needs a grid that was packed with gradients");
     EXPECT_EQ(error(packed, DrawMethod::registers, {.gradients = true, .picture_bytes = {}}),
-              "the method registers was asked for gradients, but only textures keeps them");
+              "the method registers was asked for gradients, but only textures and mesh keep them");
     PackOptions in_double;
     in_double.precision = Precision::double_;
     EXPECT_NE(error(pack(grid, point_field(grid), in_double).value(), DrawMethod::textures, {}), "");

@@ -107,6 +107,7 @@ private:
         if (use.access == Access::arguments) return indirect;
         if (use.access == Access::draw_write) return VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
         if (use.access == Access::draw_read) return indirect | draw_stages;
+        if (use.access == Access::mesh_read) return VK_PIPELINE_STAGE_MESH_SHADER_BIT_EXT;
         return use.access == Access::copy_read || use.access == Access::copy_write ? transfer : compute;
     }
     static bool covers(VkFlags flags, VkFlags wanted) { return (flags & wanted) == wanted; }
@@ -118,6 +119,7 @@ private:
         case Access::copy_write: return VK_ACCESS_TRANSFER_WRITE_BIT;
         case Access::draw_read: return VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT;
         case Access::draw_write: return VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+        case Access::mesh_read: return VK_ACCESS_SHADER_READ_BIT;
         case Access::arguments: break;
         }
         return VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
@@ -151,8 +153,8 @@ std::vector<BufferUse> random_uses(std::mt19937& random) {
         const std::uint64_t buffer = random() % 4;
         const Access of_kernel[] = {Access::kernel_read, Access::kernel_write, Access::arguments};
         const Access of_copy[] = {Access::copy_read, Access::copy_write};
-        const Access of_draw[] = {Access::draw_read, Access::draw_write};
-        const Access access = kind == 0 ? of_kernel[random() % 3] : kind == 1 ? of_copy[random() % 2] : of_draw[random() % 2];
+        const Access of_draw[] = {Access::draw_read, Access::draw_write, Access::mesh_read};
+        const Access access = kind == 0 ? of_kernel[random() % 3] : kind == 1 ? of_copy[random() % 2] : of_draw[random() % 3];
         const auto same = [&](const BufferUse& use) { return use.buffer == buffer; };
         if (kind != 1 || std::none_of(uses.begin(), uses.end(), same)) uses.push_back({buffer, access});
     }

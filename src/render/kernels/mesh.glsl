@@ -48,6 +48,12 @@ Shading shade(View view, Mesh mesh) {
     return Shading(color_of(mesh) * light, facing);
 }
 
+#elif defined(ISOTET_MESH_STAGE)
+
+layout(location = 0) out vec3 position[];
+layout(location = 1) out vec3 normal[];
+layout(location = 2) out vec2 value[];
+
 #else
 
 layout(location = 0) out vec3 position;

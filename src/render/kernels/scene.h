@@ -82,9 +82,10 @@ struct Lines {
 /// How a store holds its tets (TetPage::records).
 ISOTET_CONSTANT registers_method = 0u;  ///< TetRegisters, one for each of the four vertices of a tet
 ISOTET_CONSTANT instanced_method = 1u;  ///< four corners a tet, x, y, z and value
-ISOTET_CONSTANT textures_method = 2u;   ///< four point numbers a tet
+ISOTET_CONSTANT textures_method = 2u;   ///< four point numbers a tet; also of mesh shaders
 
 ISOTET_CONSTANT page_tets = 65536u;     ///< of a store, but for its last page
+ISOTET_CONSTANT tet_group = 32u;        ///< tets of a workgroup of mesh shaders
 ISOTET_CONSTANT twin_size = 64u;        ///< invocations of a workgroup, a vertex of a tet each
 
 /// Half the table of marching tetrahedra: by which corners are above (1, 2, 4, 8), four crossed edges around. An index of 8 or
@@ -115,7 +116,9 @@ struct TetPage {
     Address points;       ///< of textures: x, y, z and value each
     Address gradients;    ///< of textures: unit direction and 0, or zero, each
     Address tables;       ///< of textures: TetTables
+    Address ranges;       ///< of mesh shaders: a Range for every tet_group tets of the page
     float isovalue;
+    uint tets;            ///< that are drawn
 };
 
 /// What the compute twin of the vertex shader works on.

@@ -14,8 +14,11 @@ layout(push_constant, scalar) uniform Push {
 void main() {
     const uint vertex = group_index() * twin_size + gl_LocalInvocationIndex;
     if (vertex >= push.count) return;
-    const TetVertex found = tet_vertex(TetPageAt(push.page).page, vertex);
-    const vec3 place = found.is_there ? found.position : vec3(uintBitsToFloat(0x7fc00000u));
+    const TetPage page = TetPageAt(push.page).page;
+    uint number = vertex % 4u;
+    const Tet tet = tet_at(page, vertex / 4u, number);
+    vec3 place = vec3(uintBitsToFloat(0x7fc00000u));
+    if (tet.row > 0u) place = tet_vertex(page, tet, number).position;
     Floats at = Floats(advance(push.vertices, vertex, 12u));
     at.at[0] = place.x;
     at.at[1] = place.y;
