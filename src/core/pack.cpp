@@ -29,9 +29,13 @@ Result<void> check_field(const PointField& field, std::uint64_t points) {
 
 namespace {
 
-/// At the peak: the packed grid with the candidate seams; and 5 bytes a user's point for owners and places. The sorted tets
-/// (16 B, 24 with source cells) and, beside them, what blocks return take less.
-std::uint64_t packing_memory(std::uint64_t tets, std::uint64_t points) { return 36 * tets + 6 * points; }
+/// At the peak, while clusters are grown: the sorted tets (16 B, some pages half empty) and what is grown so far; before, as
+/// points are sorted, or later, as seams are found, about as much. And what each thread needs for the block at hand.
+std::uint64_t packing_memory(std::uint64_t tets, const Grid& grid, bool origins) {
+    constexpr std::uint64_t a_thread = 3'000'000;
+    const std::uint64_t a_point = grid.points.type() == ScalarType::float32 ? 38 : 50;
+    return (origins ? 30 : 22) * tets + a_point * grid.points.tuples() + a_thread * static_cast<std::uint64_t>(threads_here());
+}
 
 void measure(Packed& packed) {
     PackReport& report = packed.report;
@@ -68,7 +72,8 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
     TetCounts counts = count_tets(*cells);
     if (counts.tets == 0) return nothing_to_contour(grid, *cells);
-    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid.points.tuples())); !ok) return ok.error();
+    const bool origins = options.source_cells || !cells->only_tets();
+    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid, origins)); !ok) return ok.error();
 
     const BlockReuse reuse;
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;

@@ -13,24 +13,18 @@ namespace isotet::core {
 
 namespace {
 
-/// The clusters of a block, and the user's cells of its tets in their order, where they are wanted.
-struct GrownBlock {
-    BlockClusters clusters;
-    Buffer<std::uint64_t> cells;
-};
-
-GrownBlock grow_block(const TetBuckets& tets, std::uint64_t first, std::size_t size) {
-    GrownBlock block;
+/// Brings the origins of a block's tets, where they are wanted, into the order of its clusters, too.
+BlockClusters grow_block(TetBuckets& tets, std::uint64_t first, std::size_t size) {
     Buffer<RankedTet> own(size);
     tets.copy_tets(first, {own.data(), size});
-    block.clusters = grow_clusters(std::move(own));
+    BlockClusters block = grow_clusters(std::move(own));
     if (tets.has_origins()) {
-        Buffer<TetOrigin> origins(size);
-        tets.copy_origins(first, {origins.data(), size});
-        block.cells = Buffer<std::uint64_t>(size);
-        for (std::size_t i = 0; i < size; ++i) block.cells[i] = origins[block.clusters.order[i]].cell();
+        std::vector<TetOrigin> origins(size), ordered(size);
+        tets.copy_origins(first, origins);
+        for (std::size_t i = 0; i < size; ++i) ordered[i] = origins[block.order[i]];
+        tets.replace_origins(first, ordered);
     }
-    block.clusters.order.release();
+    block.order.release();
     return block;
 }
 
@@ -42,7 +36,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     const bool source_cells = order.tets.has_origins();
     const std::size_t count = order.tets.size();
     const std::size_t block_count = (count + tets_a_block - 1) / tets_a_block;
-    std::vector<GrownBlock> blocks(block_count);
+    std::vector<BlockClusters> blocks(block_count);
     std::atomic<std::size_t> finished{0};
     std::mutex reporting;
     parallel_each(block_count, 1, [&](std::size_t b) {
@@ -53,7 +47,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
             progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};
-    order.tets = {};
+    order.tets.drop_tets();
 
     // Where each block's clusters, groups and points start.
     struct Start {
@@ -62,7 +56,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     std::vector<Start> starts(block_count + 1);
     for (std::size_t b = 0; b < block_count; ++b) {
         Start next = starts[b];
-        const BlockClusters& block = blocks[b].clusters;
+        const BlockClusters& block = blocks[b];
         next.cluster += block.clusters.size();
         next.local += block.points.size();
         for (const auto& cluster : block.clusters) next.group += groups_for(cluster.tets);
@@ -85,7 +79,9 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     if (source_cells && wide_cells) packed.wide_cell_ids = Buffer<std::uint64_t>(packed.tets.size());
     else if (source_cells) packed.cell_ids = Buffer<std::uint32_t>(packed.tets.size());
     parallel_each(block_count, 1, [&](std::size_t b) {
-        const auto [block, cells_of_tets] = std::move(blocks[b]);
+        const BlockClusters block = std::move(blocks[b]);
+        std::vector<TetOrigin> origins(source_cells ? block.tets.size() : 0);
+        order.tets.copy_origins(b * tets_a_block, origins);
         Start at = starts[b];
         std::copy(block.points.begin(), block.points.end(), draft.locals.begin() + at.local);
         std::size_t tet = 0;
@@ -101,7 +97,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
                 const std::size_t to = at.group * group_size + i;
                 packed.tets[to] = block.tets[from];
                 if (!source_cells) continue;
-                const std::uint64_t cell = cells_of_tets[from];
+                const std::uint64_t cell = origins[from].cell();
                 if (wide_cells) packed.wide_cell_ids[to] = cell;
                 else packed.cell_ids[to] = static_cast<std::uint32_t>(cell);
             }

@@ -16,13 +16,31 @@ namespace {
 constexpr std::size_t clusters_a_task = 64;
 constexpr std::size_t words_a_row = max_cluster_points / 64;
 
-/// Which pairs of local points are edges of a cluster: bit b of row a, a < b.
-struct EdgeMatrix {
-    std::uint64_t rows[max_cluster_points][words_a_row] = {};
+/// A set of local points.
+struct PointSet {
+    std::uint64_t words[words_a_row] = {};
 
-    void add(std::uint8_t a, std::uint8_t b) {
-        if (a > b) std::swap(a, b);
-        rows[a][b / 64] |= std::uint64_t{1} << b % 64;
+    constexpr void add(std::size_t point) { words[point / 64] |= std::uint64_t{1} << point % 64; }
+    bool holds(std::size_t point) const { return words[point / 64] >> point % 64 & 1; }
+    void add(const PointSet& other) {
+        for (std::size_t w = 0; w < words_a_row; ++w) words[w] |= other.words[w];
+    }
+};
+
+/// Which pairs of local points are edges of a cluster: the neighbours of each, and itself.
+struct EdgeMatrix {
+    PointSet rows[max_cluster_points];
+
+    void add(const StoredTet& tet) {
+        static constexpr auto alone = [] {
+            std::array<PointSet, max_cluster_points> sets{};
+            for (std::size_t k = 0; k < sets.size(); ++k) sets[k].add(k);
+            return sets;
+        }();
+        const auto& v = tet.corners;
+        PointSet corners = alone[v[0]];
+        for (std::size_t k = 1; k < 4; ++k) corners.add(alone[v[k]]);
+        for (const std::uint8_t corner : v) rows[corner].add(corners);
     }
 };
 
@@ -44,6 +62,22 @@ static_assert(sizeof(Letter) == 16);
 struct Answer {
     std::uint32_t owner;
     std::uint16_t place;
+};
+/// Answers to all candidates: six bytes each, where structs would take eight.
+class Answers {
+public:
+    Answers() = default;
+    explicit Answers(std::size_t size) : owners_(size), places_(size) {}
+
+    Answer operator[](std::size_t i) const { return {owners_[i], places_[i]}; }
+    void set(std::size_t i, Answer answer) {
+        owners_[i] = answer.owner;
+        places_[i] = answer.place;
+    }
+
+private:
+    Buffer<std::uint32_t> owners_;
+    Buffer<std::uint16_t> places_;
 };
 constexpr std::uint32_t nobody = 0xffffffffu;
 
@@ -69,13 +103,15 @@ void sort_letters(std::span<Letter> letters, std::vector<Letter>& scratch) {
 class Neighbourhood {
 public:
     /// Seams arrive in the order of the cluster's candidates and keep it among those of one owner.
-    void add_seam(std::uint32_t owner, ForeignSeam seam) { seams_.push_back({owner, seam}); }
+    void add_seam(std::uint32_t owner, ForeignSeam seam) {
+        ++entry(owner).foreign_seams;
+        seams_.push_back({owner, seam});
+    }
     /// Points arrive by ascending owner.
     void add_point(std::uint32_t owner) { ++entry(owner).foreign_points; }
 
     /// Puts seams and neighbours into order.
     void finish() {
-        for (const Seam& seam : seams_) ++entry(seam.owner).foreign_seams;
         std::sort(table_.begin(), table_.end(), [](const Neighbour& a, const Neighbour& b) { return a.cluster < b.cluster; });
         sorted_.resize(seams_.size());
         std::size_t begin = 0;
@@ -91,7 +127,8 @@ public:
         first_.clear();
     }
     std::span<const Neighbour> table() const { return table_; }
-    std::span<const ForeignSeam> seams() const { return sorted_; }
+    std::size_t seam_count() const { return seams_.size(); }
+    std::span<const ForeignSeam> seams() const { return sorted_; } ///< once finished
 
 private:
     struct Seam {
@@ -128,18 +165,14 @@ public:
         exchange();
     }
     void write_links() {
-        draft_links();
+        for_neighbourhoods([&](std::size_t c, Neighbourhood& neighbourhood) { count_links(c, neighbourhood); });
         std::uint64_t words = 0;
         for (ClusterHeader& header : packed_.headers) {
             header.first_link = words;
             words += ClusterLinks::words(header);
         }
         packed_.links = Buffer<std::uint32_t>(words);
-        parallel_each(links_.size(), 1, [&](std::size_t task) {
-            std::copy(links_[task].begin(), links_[task].end(), packed_.links.begin() + packed_.headers[task * clusters_a_task].first_link);
-            links_[task] = {};
-        });
-        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) { number_foreign_seams(c); });
+        for_neighbourhoods([&](std::size_t c, Neighbourhood& neighbourhood) { write_links_of(c, neighbourhood); });
     }
 
 private:
@@ -163,24 +196,19 @@ private:
     template <class F>
     void for_candidates(std::size_t c, F&& f) const {
         const ClusterHeader& h = packed_.headers[c];
-        std::uint64_t shared[words_a_row] = {};
+        PointSet shared;
         for (std::size_t k = 0; k < draft_.local_count(c); ++k)
-            if (k < h.foreign_points || shared_[h.first_point + k - h.foreign_points]) shared[k / 64] |= std::uint64_t{1} << k % 64;
+            if (k < h.foreign_points || shared_[h.first_point + k - h.foreign_points]) shared.add(k);
         EdgeMatrix matrix;
-        for (const StoredTet& tet : packed_.cluster_tets(c)) {
-            const auto& v = tet.corners;
-            matrix.add(v[0], v[1]);
-            matrix.add(v[0], v[2]);
-            matrix.add(v[0], v[3]);
-            matrix.add(v[1], v[2]);
-            matrix.add(v[1], v[3]);
-            matrix.add(v[2], v[3]);
-        }
+        for (const StoredTet& tet : packed_.cluster_tets(c)) matrix.add(tet);
         for (std::size_t a = 0; a < draft_.local_count(c); ++a) {
-            if (!(shared[a / 64] >> a % 64 & 1)) continue;
-            for (std::size_t word = a / 64; word < words_a_row; ++word)
-                for (std::uint64_t bits = matrix.rows[a][word] & shared[word]; bits; bits &= bits - 1)
+            if (!shared.holds(a)) continue;
+            for (std::size_t word = a / 64; word < words_a_row; ++word) {
+                std::uint64_t bits = matrix.rows[a].words[word] & shared.words[word];
+                if (word == a / 64) bits &= ~std::uint64_t{1} << a % 64; // the higher ones
+                for (; bits; bits &= bits - 1)
                     f(static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
+            }
         }
     }
 
@@ -189,11 +217,16 @@ private:
         first_candidate_ = Buffer<std::uint64_t>(n + 1);
         const std::size_t tasks = (n + clusters_a_task - 1) / clusters_a_task;
         std::vector<std::vector<SeamEdge>> lists(tasks);
-        parallel_each(tasks, 1, [&](std::size_t task) {
-            for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c) {
-                const std::size_t before = lists[task].size();
-                for_candidates(c, [&](std::uint8_t a, std::uint8_t b) { lists[task].push_back({a, b}); });
-                first_candidate_[c + 1] = lists[task].size() - before;
+        parallel_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
+            std::vector<SeamEdge> list;
+            for (std::size_t task = from; task < to; ++task) {
+                list.clear();
+                for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c) {
+                    const std::size_t before = list.size();
+                    for_candidates(c, [&](std::uint8_t a, std::uint8_t b) { list.push_back({a, b}); });
+                    first_candidate_[c + 1] = list.size() - before;
+                }
+                lists[task].assign(list.begin(), list.end()); // no longer than it need be
             }
         });
         first_candidate_[0] = 0;
@@ -209,31 +242,65 @@ private:
         return {candidates_.data() + first_candidate_[c], first_candidate_[c + 1] - first_candidate_[c]};
     }
 
+    /// Calls f(owner, begin, end) for each run of a cluster's candidates whose lower ends have one owner of [first, last): all
+    /// that this owner has here, since local points stand by owner.
+    template <class F>
+    void for_runs(std::size_t c, std::size_t first, std::size_t last, const F& f) const {
+        if (c < first || ref(c, 0).owner() >= last) return; // no cluster has points of a later one
+        const std::span<const SeamEdge> all = candidates(c);
+        const auto owner_of = [&](const SeamEdge edge) { return ref(c, edge.lower).owner(); };
+        auto begin = std::partition_point(all.begin(), all.end(), [&](const SeamEdge edge) { return owner_of(edge) < first; });
+        while (begin != all.end()) {
+            const std::uint32_t owner = owner_of(*begin);
+            if (owner >= last) return;
+            auto end = begin + 1;
+            while (end != all.end() && (end->lower == end[-1].lower || owner_of(*end) == owner)) ++end;
+            f(owner, static_cast<std::size_t>(begin - all.begin()), static_cast<std::size_t>(end - all.begin()));
+            begin = end;
+        }
+    }
+
     void exchange() {
         const std::size_t n = draft_.clusters();
         std::vector<std::uint64_t> next(n + 1, 0); // letters to each cluster; then where its next letter goes
         parallel_each(n, clusters_a_task, [&](std::size_t c) {
-            for (const SeamEdge edge : candidates(c))
-                std::atomic_ref<std::uint64_t>(next[ref(c, edge.lower).owner() + 1]).fetch_add(1, std::memory_order_relaxed);
+            for_runs(c, 0, n, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
+                std::atomic_ref<std::uint64_t>(next[owner + 1]).fetch_add(end - begin, std::memory_order_relaxed);
+            });
         });
         for (std::size_t c = 0; c < n; ++c) next[c + 1] += next[c];
         const std::vector<std::uint64_t> first = next;
-        Buffer<Letter> letters(candidates_.size());
-        parallel_each(n, clusters_a_task, [&](std::size_t c) {
-            std::uint16_t place = 0;
-            for (const SeamEdge edge : candidates(c)) {
-                const PointRef lower = ref(c, edge.lower), higher = ref(c, edge.higher);
-                const std::uint64_t slot =
-                    std::atomic_ref<std::uint64_t>(next[lower.owner()]).fetch_add(1, std::memory_order_relaxed);
-                letters[slot] = Letter::make(lower, higher, static_cast<std::uint32_t>(c), place++);
-            }
+        // In rounds, since all letters together would take more memory than anything else in packing.
+        const std::size_t rounds = std::clamp<std::size_t>(n / 1024, 1, 8);
+        const auto begin_of = [&](std::size_t round) { return n / rounds * round + std::min(round, n % rounds); };
+        std::uint64_t most = 0;
+        for (std::size_t round = 0; round < rounds; ++round) most = std::max(most, first[begin_of(round + 1)] - first[begin_of(round)]);
+        Buffer<Letter> letters(most);
+        answers_ = Answers(candidates_.size());
+        for (std::size_t round = 0; round < rounds; ++round) deliver(begin_of(round), begin_of(round + 1), first, next, letters);
+    }
+
+    /// Sends the letters to the clusters [from, to), and answers them. `next` is where each cluster's next letter goes, at
+    /// first as `first`; letters lie in the buffer from first[from] on.
+    void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first, std::vector<std::uint64_t>& next,
+                 Buffer<Letter>& letters) {
+        Letter* const to_first = letters.data();
+        parallel_each(draft_.clusters() - from, clusters_a_task, [&](std::size_t behind) {
+            const std::size_t c = from + behind;
+            const SeamEdge* const all = candidates(c).data();
+            for_runs(c, from, to, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
+                const std::uint64_t slot = std::atomic_ref<std::uint64_t>(next[owner]).fetch_add(end - begin, std::memory_order_relaxed);
+                Letter* out = to_first + (slot - first[from]);
+                for (std::size_t place = begin; place < end; ++place)
+                    *out++ = Letter::make(ref(c, all[place].lower), ref(c, all[place].higher), static_cast<std::uint32_t>(c),
+                                          static_cast<std::uint16_t>(place));
+            });
         });
         // Letters arrive in any order; sorting makes it one.
-        answers_ = Buffer<Answer>(candidates_.size());
-        parallel_ranges(n, clusters_a_task, [&](std::size_t from, std::size_t to) {
+        parallel_ranges(to - from, clusters_a_task, [&](std::size_t begin, std::size_t end) {
             std::vector<Letter> scratch;
-            for (std::size_t c = from; c < to; ++c) {
-                const std::span<Letter> mail(letters.data() + first[c], first[c + 1] - first[c]);
+            for (std::size_t c = from + begin; c < from + end; ++c) {
+                const std::span<Letter> mail(to_first + (first[c] - first[from]), first[c + 1] - first[c]);
                 sort_letters(mail, scratch);
                 answer(mail);
             }
@@ -246,81 +313,70 @@ private:
             std::size_t end = begin + 1;
             while (end < letters.size() && letters[end].edge == letters[begin].edge) ++end;
             const Answer answer = end - begin > 1 ? Answer{letters[begin].cluster, letters[begin].place} : Answer{nobody, 0};
-            for (; begin < end; ++begin) answers_[first_candidate_[letters[begin].cluster] + letters[begin].place] = answer;
+            for (; begin < end; ++begin) answers_.set(first_candidate_[letters[begin].cluster] + letters[begin].place, answer);
         }
     }
 
-    /// The links of each task's clusters, one after another. In foreign seams the owner's candidate stands instead of its
-    /// own seam: which seam that becomes is known only when all owners have counted theirs.
-    void draft_links() {
-        const std::size_t n = draft_.clusters();
-        links_.resize((n + clusters_a_task - 1) / clusters_a_task);
-        parallel_each(links_.size(), 1, [&](std::size_t task) {
+    /// Calls f(cluster, an empty neighbourhood) for all clusters.
+    template <class F>
+    void for_neighbourhoods(const F& f) {
+        parallel_ranges(draft_.clusters(), clusters_a_task, [&](std::size_t begin, std::size_t end) {
             Neighbourhood neighbourhood;
-            std::vector<SeamEdge> own_seams;
-            for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c)
-                draft_links_of(c, neighbourhood, own_seams, links_[task]);
+            for (std::size_t c = begin; c < end; ++c) {
+                neighbourhood.clear();
+                for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k) neighbourhood.add_point(ref(c, k).owner());
+                f(c, neighbourhood);
+            }
         });
-        answers_.release();
     }
 
-    /// Afterwards the cluster's candidates hold their numbers among its own seams.
-    void draft_links_of(std::size_t c, Neighbourhood& neighbourhood, std::vector<SeamEdge>& own_seams,
-                        std::vector<std::uint32_t>& words) {
-        ClusterHeader& header = packed_.headers[c];
-        neighbourhood.clear();
-        for (std::size_t k = 0; k < header.foreign_points; ++k) neighbourhood.add_point(ref(c, k).owner());
+    /// Afterwards the answers to the cluster's own seams hold their numbers among these.
+    void count_links(std::size_t c, Neighbourhood& neighbourhood) {
         std::uint16_t own = 0;
-        own_seams.clear();
         for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k) {
             const Answer answer = answers_[k];
-            if (answer.owner == c) {
-                own_seams.push_back(candidates_[k]);
-                candidates_[k] = std::bit_cast<SeamEdge>(own++);
-            } else if (answer.owner != nobody) {
-                neighbourhood.add_seam(answer.owner, {candidates_[k], answer.place});
-            }
+            if (answer.owner == c) answers_.set(k, {answer.owner, own++});
+            else if (answer.owner != nobody) neighbourhood.add_seam(answer.owner, {});
         }
-        neighbourhood.finish();
+        ClusterHeader& header = packed_.headers[c];
         header.neighbours = static_cast<std::uint16_t>(neighbourhood.table().size());
         header.own_seams = own;
-        header.foreign_seams = static_cast<std::uint16_t>(neighbourhood.seams().size());
+        header.foreign_seams = static_cast<std::uint16_t>(neighbourhood.seam_count());
+    }
 
-        const std::size_t begin = words.size();
-        words.resize(begin + ClusterLinks::words(header));
-        std::uint32_t* out = words.data() + begin;
+    void write_links_of(std::size_t c, Neighbourhood& neighbourhood) {
+        const ClusterHeader& header = packed_.headers[c];
+        std::vector<SeamEdge> own_seams;
+        own_seams.reserve(header.own_seams);
+        for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k) {
+            const Answer answer = answers_[k];
+            if (answer.owner == c) own_seams.push_back(candidates_[k]);
+            else if (answer.owner != nobody)
+                neighbourhood.add_seam(answer.owner, {candidates_[k], answers_[first_candidate_[answer.owner] + answer.place].place});
+        }
+        neighbourhood.finish();
+        std::uint8_t points[max_cluster_points];
+        for (std::size_t k = 0; k < header.foreign_points; ++k) points[k] = ref(c, k).index();
+
+        std::uint32_t* out = packed_.links.data() + header.first_link;
         const auto put = [&out](const void* data, std::size_t bytes) {
-            if (bytes) std::memcpy(out, data, bytes);
+            if (!bytes) return;
+            out[words_for(bytes) - 1] = 0; // what fills up the last word
+            std::memcpy(out, data, bytes);
             out += words_for(bytes);
         };
         put(neighbourhood.table().data(), neighbourhood.table().size_bytes());
-        std::uint8_t points[max_cluster_points];
-        for (std::size_t k = 0; k < header.foreign_points; ++k) points[k] = ref(c, k).index();
         put(points, header.foreign_points);
         put(own_seams.data(), own_seams.size() * sizeof(SeamEdge));
         put(neighbourhood.seams().data(), neighbourhood.seams().size_bytes());
-    }
-
-    /// Turns the owners' candidates into the owners' own seams.
-    void number_foreign_seams(std::size_t c) {
-        const ClusterHeader& header = packed_.headers[c];
-        const std::span<const Neighbour> neighbours = packed_.cluster_links(c).neighbours;
-        std::uint32_t* word = packed_.links.data() + header.first_link + ClusterLinks::words(header) - header.foreign_seams;
-        for (const Neighbour& neighbour : neighbours)
-            for (std::size_t k = 0; k < neighbour.foreign_seams; ++k, ++word) {
-                auto seam = std::bit_cast<ForeignSeam>(*word);
-                seam.index = std::bit_cast<std::uint16_t>(candidates_[first_candidate_[neighbour.cluster] + seam.index]);
-                *word = std::bit_cast<std::uint32_t>(seam);
-            }
     }
 
     Draft& draft_;
     Packed& packed_;
     Buffer<std::uint8_t> shared_; ///< by packed point: held by more than one cluster
     Buffer<std::uint64_t> first_candidate_;
-    Buffer<SeamEdge> candidates_; ///< at the end: of own seams, their numbers
-    Buffer<Answer> answers_;
-    std::vector<std::vector<std::uint32_t>> links_; ///< by task
+    Buffer<SeamEdge> candidates_;
+    Answers answers_;
 };
 
 } // namespace

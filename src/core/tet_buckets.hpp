@@ -99,6 +99,13 @@ public:
             std::copy_n(origins_.data() + position, count, out.data() + at);
         });
     }
+    /// Puts origins into another order, say.
+    void replace_origins(std::uint64_t first, std::span<const TetOrigin> origins) {
+        for_pieces(first, origins.size(), [&](std::size_t position, std::size_t at, std::size_t count) {
+            std::copy_n(origins.data() + at, count, origins_.data() + position);
+        });
+    }
+    void drop_tets() { tets_.release(); }
     void drop_origins() { origins_.release(); }
 
 private:

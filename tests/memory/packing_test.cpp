@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Packing takes no more memory than is promised: allocations are counted.
+#include <gtest/gtest.h>
+
+#include <isotet/pack.hpp>
+
+#include "core/block.hpp"
+#include "memory/counted_memory.hpp"
+#include "support/small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+double bytes_a_tet(const Grid& grid, const PackOptions& options) {
+    core::drop_kept_blocks(); // what is kept from before would be used without being taken
+    std::uint64_t tets = 0;
+    const std::size_t peak = peak_bytes([&] { tets = pack(grid, point_field(grid), options).value().report().tets; });
+    return static_cast<double>(peak) / static_cast<double>(tets);
+}
+
+TEST(PackingMemory, StaysBelowFortyBytesATet) {
+    for (const char* shape : {"kuhn", "shuffled", "layer"}) {
+        const Grid grid = made_grid(shape, 52, {"gyroid"}); // over 800,000 tets
+        PackOptions options;
+        options.threads = 2;
+        EXPECT_LE(bytes_a_tet(grid, options), 40) << shape;
+    }
+}
+
+} // namespace
+} // namespace isotet::test
