@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // PNG files: read back by libpng, pixel by pixel.
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -72,6 +73,20 @@ TEST_F(PictureFile, BrokenOnesAreErrors) {
     EXPECT_EQ(read_picture(path("none.png")).error().code, ErrorCode::file);
     std::ofstream(path("b.png")) << "no picture";
     EXPECT_EQ(read_picture(path("b.png")).error().code, ErrorCode::invalid_data);
+}
+
+/// Else a file of a hundred bytes could ask for gigabytes.
+TEST_F(PictureFile, TooShortForItsSizeIsAnErrorBeforeMemoryIsTaken) {
+    constexpr std::array<unsigned char, 33> head{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0,
+                                                 0, 0x80, 0, 0, 0, 0x80, 0, 1, 0, 0, 0, 0, 0xec, 0x07, 0x9e, 0xd2};
+    constexpr std::array<unsigned char, 12> data{0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e};
+    std::ofstream(path("b.png"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(head.data()), head.size())
+        .write(reinterpret_cast<const char*>(data.data()), data.size());
+    const Result<Picture> picture = read_picture(path("b.png"));
+    ASSERT_FALSE(picture);
+    EXPECT_EQ(picture.error().code, ErrorCode::invalid_data);
+    EXPECT_NE(picture.error().message.find("45 bytes are too few for 32768 x 32768 pixels"), std::string::npos) << picture.error().message;
 }
 
 TEST_F(PictureFile, IsTheSameEveryTime) {

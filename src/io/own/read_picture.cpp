@@ -1,12 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // read_picture(): PNG by libpng.
-#include <new>
+#include "io/own/read_picture.hpp"
+
+#include <cstdint>
 
 #include <fmt/format.h>
 #include <png.h>
 
-#include <isotet/compare_pictures.hpp>
-
+#include "core/guard.hpp"
+#include "core/memory.hpp"
 #include "io/own/mapped_file.hpp"
 
 namespace isotet {
@@ -24,33 +26,41 @@ struct Image {
     ~Image() { png_image_free(&state); }
 };
 
-Result<Picture> read_png(const std::string& path) {
-    const auto file = MappedFile::open(path);
-    if (!file) return file.error();
-    const std::string_view bytes = file->text();
+/// Deflate makes at most 1032 bytes of one, and a pixel has one bit at least.
+bool can_hold(std::size_t bytes, std::uint64_t pixels) { return pixels / 8 <= 1032 * std::uint64_t{bytes}; }
+
+} // namespace
+
+Result<Picture> parse_picture(std::string_view bytes, const std::string& name) {
     Image image;
-    const auto broken = [&] { return Error{ErrorCode::invalid_data, fmt::format("{}: not a PNG file that can be read: {}", path, image.state.message)}; };
-    if (!png_image_begin_read_from_memory(&image.state, bytes.data(), bytes.size())) return broken();
-    if (image.state.width > most_pixels_an_axis || image.state.height > most_pixels_an_axis) {
-        return Error{ErrorCode::invalid_data, fmt::format("{}: a picture of {} x {} pixels, but {} each are the most", path, image.state.width,
-                                                          image.state.height, most_pixels_an_axis)};
+    const auto broken = [&](std::string_view why) {
+        return Error{ErrorCode::invalid_data, fmt::format("{}: not a PNG file that can be read: {}", name, why)};
+    };
+    if (!png_image_begin_read_from_memory(&image.state, bytes.data(), bytes.size())) return broken(image.state.message);
+    const std::uint32_t width = image.state.width, height = image.state.height;
+    if (width > most_pixels_an_axis || height > most_pixels_an_axis) {
+        return Error{ErrorCode::invalid_data, fmt::format("{}: a picture of {} x {} pixels, but {} each are the most", name, width,
+                                                          height, most_pixels_an_axis)};
     }
+    const std::uint64_t pixels = std::uint64_t{width} * height;
+    if (!can_hold(bytes.size(), pixels))
+        return broken(fmt::format("{} bytes are too few for {} x {} pixels", bytes.size(), width, height));
+    Picture picture{width, height, {}};
+    if (auto there = core::require_memory("the picture in " + name, pixels * sizeof(picture.pixels[0])); !there) return there.error();
     image.state.format = PNG_FORMAT_RGBA;
-    Picture picture{image.state.width, image.state.height, {}};
-    picture.pixels.resize(std::size_t{picture.width} * picture.height);
-    if (!png_image_finish_read(&image.state, nullptr, picture.pixels.data(), 0, nullptr)) return broken();
+    picture.pixels.resize(pixels);
+    if (!png_image_finish_read(&image.state, nullptr, picture.pixels.data(), 0, nullptr)) return broken(image.state.message);
     return picture;
 }
 
-} // namespace
 } // namespace io
 
 Result<Picture> read_picture(const std::string& path) {
-    try {
-        return io::read_png(path);
-    } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::out_of_memory, fmt::format("no memory left to read {}", path)};
-    }
+    return core::guarded("reading " + path, [&]() -> Result<Picture> {
+        const auto file = io::MappedFile::open(path);
+        if (!file) return file.error();
+        return io::parse_picture(file->text(), path);
+    });
 }
 
 } // namespace isotet
