@@ -35,7 +35,8 @@ std::string name_of_picture(const RenderCommand& command) {
 }
 
 /// Draws the scene, and writes beside it what belongs to it.
-Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, const RenderCommand& command, double azimuth, Console& console) {
+Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, const RenderCommand& command,
+                               double azimuth, Console& console) {
     PictureOptions options = command.picture;
     options.camera = camera_of(command.view, command.parallel ? Projection::parallel : Projection::perspective);
     const PictureSize whole{options.width, options.height};
@@ -59,8 +60,8 @@ Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, con
 }
 
 /// Extracts, draws and writes one picture after another; returns the last one.
-Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Renderer& renderer, RenderScene& scene,
-                            PictureFiles& files, PictureNumbers& numbers, Console& console) {
+Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Renderer& renderer,
+                            RenderScene& scene, PictureFiles& files, PictureNumbers& numbers, Console& console) {
     Result<Picture> picture = Error{};
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (console.progress().cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
@@ -84,13 +85,14 @@ Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const Render
 }
 
 /// Compares with --reference.
-Result<void> compare(const Picture& picture, const Picture& reference, const RenderCommand& command, PictureNumbers& numbers, Console& console) {
+Result<void> compare(const Picture& picture, const Picture& reference, const RenderCommand& command,
+                     PictureNumbers& numbers, Console& console) {
     const Result<double> differs = difference(picture, reference);
     if (!differs) return differs.error();
     numbers.differs = *differs;
     if (*differs > command.threshold)
-        console.note(fmt::format("{} of the pixels differ from {}, but {} are allowed", percent_text(*differs), command.reference,
-                                 percent_text(command.threshold)));
+        console.note(fmt::format("{} of the pixels differ from {}, but {} are allowed", percent_text(*differs),
+                                 command.reference, percent_text(command.threshold)));
     return {};
 }
 
@@ -102,7 +104,8 @@ Result<PictureFiles> open_files(const RenderCommand& command) {
     if (!files) return files;
     std::vector<std::string> outputs = files->names();
     outputs.push_back(command.common.json);
-    if (Result<void> paths = check_output_paths({command.grid.file, command.reference}, outputs); !paths) return paths.error();
+    if (Result<void> paths = check_output_paths({command.grid.file, command.reference}, outputs); !paths)
+        return paths.error();
     return files;
 }
 
@@ -136,11 +139,14 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     const Result<Picture> last = draw_frames(*frames, command, *renderer, scene, *files, numbers, console);
     if (!last) return last.error();
     if (reference)
-        if (Result<void> compared = compare(*last, *reference, command, numbers, console); !compared) return compared.error();
-    if (Result<void> printed = console.print(render_table(command, *input, scene, *device, numbers)); !printed) return printed.error();
+        if (Result<void> compared = compare(*last, *reference, command, numbers, console); !compared)
+            return compared.error();
+    if (Result<void> printed = console.print(render_table(command, *input, scene, *device, numbers)); !printed)
+        return printed.error();
     Json report = render_json(command, *input, scene, *device, numbers);
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+        return written.error();
     return numbers.differs.value_or(0) > command.threshold ? ExitCode::check_says_no : ExitCode::done;
 }
 

@@ -51,7 +51,8 @@ Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Co
     const Seen seen = look_at(field.values, command.scale.logarithmic);
     field.has_no_data = seen.no_data;
     if (command.range.empty()) {
-        if (!(seen.lower <= seen.upper)) console.note(fmt::format("'{}' has no value that could have a colour", field.name));
+        if (!(seen.lower <= seen.upper))
+            console.note(fmt::format("'{}' has no value that could have a colour", field.name));
         field.scale.lower = seen.lower;
         field.scale.upper = seen.upper;
         widen(field.scale);
@@ -60,7 +61,8 @@ Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Co
     if (command.range.size() != 2 || !(command.range[0] < command.range[1]))
         return wrong("--range takes two numbers, the smaller one first, such as 0,100");
     if (command.scale.logarithmic && command.range[0] <= 0)
-        return wrong(fmt::format("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0])));
+        return wrong(
+            fmt::format("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0])));
     field.scale.lower = command.range[0];
     field.scale.upper = command.range[1];
     return field;
@@ -76,7 +78,8 @@ Array in_user_units(const SurfaceField& field) {
     if (field.offset == 0 && field.scale == 1) return field.values;
     std::vector<double> values(field.values.size());
     field.values.visit([&](auto scalars) {
-        std::ranges::transform(scalars, values.begin(), [&](auto scalar) { return static_cast<double>(scalar) / field.scale + field.offset; });
+        std::ranges::transform(scalars, values.begin(),
+                               [&](auto scalar) { return static_cast<double>(scalar) / field.scale + field.offset; });
     });
     return Array::own(std::move(values), field.values.components());
 }
@@ -86,7 +89,8 @@ Array in_user_units(const SurfaceField& field) {
 Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Console& console) {
     const std::string& name = command.color_by;
     const Array* cells = find(grid.cell_fields, name);
-    if (cells && !find(grid.point_fields, name)) return with_scale({name, *cells, Association::cell, {}, false}, command, console);
+    if (cells && !find(grid.point_fields, name))
+        return with_scale({name, *cells, Association::cell, {}, false}, command, console);
     const Result<PointField> found = find_field(grid, name, {.threads = command.common.threads});
     if (!found) return found.error();
     return with_scale({name, found->values, Association::point, {}, false}, command, console);
@@ -95,7 +99,8 @@ Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Con
 Result<ColorField> colors_of(const Surface& surface, const RenderCommand& command, Console& console) {
     Grid vertices;
     vertices.points = surface.positions;
-    for (const SurfaceField& field : surface.point_fields) vertices.point_fields.push_back({field.name, in_user_units(field)});
+    for (const SurfaceField& field : surface.point_fields)
+        vertices.point_fields.push_back({field.name, in_user_units(field)});
     std::vector<std::string> names;
     for (const SurfaceField& field : surface.point_fields) names.push_back(field.name);
     if (const auto match = match_field_name(command.color_by, names)) {
@@ -105,11 +110,14 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
     }
     for (const SurfaceField& field : surface.cell_fields) {
         names.push_back(field.name);
-        if (field.name == command.color_by) return with_scale({field.name, in_user_units(field), Association::cell, {}, false}, command, console);
+        if (field.name == command.color_by)
+            return with_scale({field.name, in_user_units(field), Association::cell, {}, false}, command, console);
     }
     std::string there;
-    for (const std::string& name : nearest_first(command.color_by, names)) there += fmt::format("{}'{}'", there.empty() ? "" : ", ", name);
-    return wrong(fmt::format("--color-by names '{}', but the surface has {}", command.color_by, there.empty() ? "no fields" : there));
+    for (const std::string& name : nearest_first(command.color_by, names))
+        there += fmt::format("{}'{}'", there.empty() ? "" : ", ", name);
+    return wrong(fmt::format("--color-by names '{}', but the surface has {}", command.color_by,
+                             there.empty() ? "no fields" : there));
 }
 
 } // namespace isotet::cli

@@ -22,10 +22,13 @@ Result<std::size_t> count_frames(const RenderCommand& command) {
     if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
     if (command.sweep.empty()) return std::size_t{1};
     if (command.sweep.size() != 3)
-        return wrong(fmt::format("--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such as 0,1,50", command.sweep.size()));
+        return wrong(fmt::format(
+            "--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such as 0,1,50",
+            command.sweep.size()));
     const double count = command.sweep[2];
     if (count < 2 || count > most_frames || count != std::floor(count))
-        return wrong(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count), shortest(most_frames)));
+        return wrong(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
+                                 shortest(most_frames)));
     return static_cast<std::size_t>(count);
 }
 
@@ -46,8 +49,11 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     PictureFiles files(out, pictures);
     const bool numbered = out.find(number_stands_here) != std::string::npos;
     if (pictures == 1) {
-        if (!out.ends_with(".png")) return wrong(fmt::format("the name of the output is '{}', but it must end in .png", out));
-        if (numbered) return wrong(fmt::format("the name of the output is '{}', but only pictures of --sweep and --orbit have numbers", out));
+        if (!out.ends_with(".png"))
+            return wrong(fmt::format("the name of the output is '{}', but it must end in .png", out));
+        if (numbered)
+            return wrong(fmt::format(
+                "the name of the output is '{}', but only pictures of --sweep and --orbit have numbers", out));
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {
@@ -57,8 +63,9 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return wrong(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} and ends in .png", out,
-                             pictures, number_stands_here));
+    return wrong(fmt::format(
+        "the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} and ends in .png",
+        out, pictures, number_stands_here));
 }
 
 std::string PictureFiles::name(std::size_t picture) const {

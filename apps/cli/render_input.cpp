@@ -27,7 +27,8 @@ struct Kinds {
 Kinds kinds_of(const std::string& file) {
     if (file.starts_with("make:")) return {true, false};
     std::string ending = std::filesystem::path(file).extension().string();
-    std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::ranges::transform(ending, ending.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     Kinds kinds;
     for (const Format& format : formats()) {
         if (std::ranges::find(format.extensions, ending) == format.extensions.end()) continue;
@@ -38,11 +39,13 @@ Kinds kinds_of(const std::string& file) {
 }
 
 Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file, double seconds, Console& console) {
-    if (!command.isovalues.empty() || !command.sweep.empty() || command.levels > 0 || !command.field.name.empty() || command.boundary ||
-        command.method) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("{} is a surface: it has no isovalues, no field to contour (--color-by colours it), no boundary and no tets",
-                                 command.grid.file)};
+    if (!command.isovalues.empty() || !command.sweep.empty() || command.levels > 0 || !command.field.name.empty() ||
+        command.boundary || command.method) {
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format(
+                "{} is a surface: it has no isovalues, no field to contour (--color-by colours it), no boundary and no tets",
+                command.grid.file)};
     }
     RenderInput input;
     input.format = file.format;
@@ -62,7 +65,8 @@ Result<std::vector<double>> choose_levels(const RenderCommand& command, const Po
     const std::uint64_t count = command.levels > 0 ? command.levels : levels_without_a_word;
     std::vector<double> levels = levels_within(field, count);
     if (!levels.empty()) return levels;
-    return Error{ErrorCode::invalid_data, fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
+    return Error{ErrorCode::invalid_data,
+                 fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
 }
 
 Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
@@ -74,7 +78,8 @@ Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
     Grid grid;
-    const Result<PointField> field = read_field(*source, steps->front(), command.field, command.color_by, command.common.threads, console, grid);
+    const Result<PointField> field =
+        read_field(*source, steps->front(), command.field, command.color_by, command.common.threads, console, grid);
     if (!field) return field.error();
     input.read_seconds = reading.seconds();
 
@@ -90,7 +95,8 @@ Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
 
     const Stopwatch packing;
     Result<PackedGrid> packed =
-        pack(grid, *field, {.source_cells = by_cells, .gradients = true, .threads = command.common.threads}, console.progress());
+        pack(grid, *field, {.source_cells = by_cells, .gradients = true, .threads = command.common.threads},
+             console.progress());
     if (!packed) return packed.error();
     input.pack_seconds = packing.seconds();
     input.cells = grid.cells.count();

@@ -59,7 +59,8 @@ void add_color(CLI::App& app, const std::string& name, Color& color, const std::
            name,
            [&color, name](const std::string& text) {
                const std::optional<Color> parsed = parse_color(text);
-               if (!parsed) throw wrong_value(name, text, "white, black, transparent, another plain colour, or #rrggbb");
+               if (!parsed)
+                   throw wrong_value(name, text, "white, black, transparent, another plain colour, or #rrggbb");
                color = *parsed;
            },
            description)
@@ -70,25 +71,31 @@ void add_color(CLI::App& app, const std::string& name, Color& color, const std::
 
 CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
     CLI::App& app = *program.add_subcommand("render", "Draw isosurfaces, or a surface, into a picture");
-    add_file(app, "FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")->required();
+    add_file(app, "FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")
+        ->required();
     add_file(app, "-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
-    add_text(app, "-f,--field", render.field.name, "FIELD", "The field to contour; without it the one that varies most");
-    app.add_flag("--cell-field", render.field.cell_field, "Of a name that is both a point and a cell field, the cell field");
+    add_text(app, "-f,--field", render.field.name, "FIELD",
+             "The field to contour; without it the one that varies most");
+    app.add_flag("--cell-field", render.field.cell_field,
+                 "Of a name that is both a point and a cell field, the cell field");
     CLI::Option* isovalues = add_numbers(app, "-i,--isovalue", render.isovalues, "V[,W...]",
                                          "Isovalues, separated by commas; may be repeated");
     add_count(
         app, "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
         "N isovalues at round numbers evenly inside the range of the field; without it 3")
         ->excludes(isovalues);
-    CLI::Option* sweep = add_numbers(app, "--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")->excludes(isovalues);
+    CLI::Option* sweep =
+        add_numbers(app, "--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")->excludes(isovalues);
     sweep->excludes(app.get_option("--levels"));
     CLI::Option* orbit = add_count(
-        app, "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N", "N pictures, once around from the left to the right");
+        app, "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N",
+        "N pictures, once around from the left to the right");
     orbit->excludes(sweep);
     add_number(
         app, "--fps",
         [&](double rate) {
-            if (rate <= 0 || rate > 100) throw wrong_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
+            if (rate <= 0 || rate > 100)
+                throw wrong_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
             render.frames_a_second = rate;
         },
         "RATE", "Pictures a second of an animated OUT; without it 12");
@@ -107,20 +114,23 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
                       {"-z", View::minus_z}},
                      "From where one looks; without it iso, obliquely from above");
     app.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
-    add_choice<EngineChoice>(app, "--engine", render.engine,
-                             {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
-                             "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
-                             "CPU");
+    add_choice<EngineChoice>(
+        app, "--engine", render.engine,
+        {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
+        "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
+        "CPU");
     std::vector<std::pair<std::string, std::optional<DrawMethod>>> methods{{"clusters", std::nullopt}};
     for (const DrawMethod method : all_draw_methods) methods.emplace_back(name_of(method), method);
-    add_choice(app, "--method", render.method, methods,
-               "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be compared with; "
-               "without it clusters");
+    add_choice(
+        app, "--method", render.method, methods,
+        "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be compared with; "
+        "without it clusters");
     std::vector<std::pair<std::string, std::optional<Filter>>> filters;
     for (const Filter filter : all_filters) filters.emplace_back(name_of(filter), filter);
     add_choice(app, "--filter", render.filter, filters,
                "What finds the tets that such a method draws, none: it draws all; without it cluster_ranges");
-    add_text(app, "--color-by", render.color_by, "FIELD", "Colour by this point or cell field; without it each isovalue has its colour");
+    add_text(app, "--color-by", render.color_by, "FIELD",
+             "Colour by this point or cell field; without it each isovalue has its colour");
     add_choice<ColorMap>(app, "--colormap", render.scale.map,
                          {{"viridis", ColorMap::viridis},
                           {"cividis", ColorMap::cividis},
@@ -128,23 +138,29 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
                           {"turbo", ColorMap::turbo},
                           {"cool-warm", ColorMap::cool_warm}},
                          "Colour map; without it viridis");
-    CLI::Option* range = add_numbers(app, "--range", render.range, "A,B", "Values at the ends of the colour map; without it the smallest and the largest of the field");
-    CLI::Option* logarithmic = app.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
+    CLI::Option* range =
+        add_numbers(app, "--range", render.range, "A,B",
+                    "Values at the ends of the colour map; without it the smallest and the largest of the field");
+    CLI::Option* logarithmic =
+        app.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
     for (CLI::Option* option : {range, logarithmic}) option->needs(app.get_option("--color-by"));
     add_color(app, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
-    CLI::Option* reference = add_file(app, "--reference", render.reference, "FILE",
-                                      "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
+    CLI::Option* reference =
+        add_file(app, "--reference", render.reference, "FILE",
+                 "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
     reference->excludes(sweep)->excludes(orbit);
     add_number(
         app, "--threshold",
         [&](double share) {
-            if (share < 0 || share > 1) throw wrong_value("--threshold", shortest(share), "a share of the pixels, from 0 to 1");
+            if (share < 0 || share > 1)
+                throw wrong_value("--threshold", shortest(share), "a share of the pixels, from 0 to 1");
             render.threshold = share;
         },
         "SHARE", "Share of the pixels that may differ visibly from --reference; without it 0.001")
         ->needs(reference);
     app.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
-    add_color(app, "--background", render.picture.background, "Background: white, black, transparent, or #rrggbb; without it white");
+    add_color(app, "--background", render.picture.background,
+              "Background: white, black, transparent, or #rrggbb; without it white");
     app.footer(details);
     return app;
 }

@@ -14,12 +14,17 @@ std::string times_text(const RenderInput& input, const RenderScene& scene, const
     std::string text = "read " + seconds_text(input.read_seconds);
     if (input.packed) text += ", pack " + seconds_text(input.pack_seconds);
     if (input.boundary) text += ", boundary " + seconds_text(input.boundary_seconds);
-    if (input.packed) text += fmt::format(", upload {}, extract {}", seconds_text(scene.upload_seconds()), seconds_text(scene.extract_seconds()));
+    if (input.packed)
+        text += fmt::format(", upload {}, extract {}", seconds_text(scene.upload_seconds()),
+                            seconds_text(scene.extract_seconds()));
     else text += ", upload " + seconds_text(scene.extract_seconds());
-    return text + fmt::format(", draw {}, write {}", seconds_text(picture.draw_seconds), seconds_text(picture.write_seconds));
+    return text +
+           fmt::format(", draw {}, write {}", seconds_text(picture.draw_seconds), seconds_text(picture.write_seconds));
 }
 
-std::string_view filter_name(const RenderCommand& command) { return name_of(command.filter.value_or(filter_without_a_word)); }
+std::string_view filter_name(const RenderCommand& command) {
+    return name_of(command.filter.value_or(filter_without_a_word));
+}
 
 Json json_of(const DeviceWork& work) {
     Json passes = Json::array();
@@ -35,8 +40,8 @@ Json json_of(const DeviceWork& work) {
 
 std::string percent_text(double share) { return rounded(100 * share) + " %"; }
 
-std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
-                         const PictureNumbers& picture) {
+std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene,
+                         const Device& device, const PictureNumbers& picture) {
     Table table = facts();
     table.row({input.surface ? "surface" : "grid", fmt::format("{} ({})", command.grid.file, input.format)});
     if (input.packed) {
@@ -44,15 +49,19 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
         table.row({"field", fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper))});
     }
     if (input.boundary) table.row({"boundary", grouped(input.boundary->triangle_count()) + " faces"});
-    if (!command.sweep.empty()) table.row({"isovalues", fmt::format("{}, {} to {}", picture.pictures, shortest(command.sweep[0]), shortest(command.sweep[1]))});
+    if (!command.sweep.empty())
+        table.row({"isovalues", fmt::format("{}, {} to {}", picture.pictures, shortest(command.sweep[0]),
+                                            shortest(command.sweep[1]))});
     for (const SurfaceCounts& surface : scene.surfaces()) {
         if (!command.sweep.empty()) break;
         const std::string what = surface.isovalue ? "isovalue " + rounded(*surface.isovalue) : "surface";
-        table.row({what, scene.tets() ? fmt::format("{} tets drawn, {} sent", grouped(surface.tets), bytes_text(surface.sent_bytes))
+        table.row({what, scene.tets() ? fmt::format("{} tets drawn, {} sent", grouped(surface.tets),
+                                                    bytes_text(surface.sent_bytes))
                                       : grouped(surface.triangles) + " triangles"});
     }
     if (input.colors)
-        table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower), rounded(input.colors->scale.upper))});
+        table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower),
+                                              rounded(input.colors->scale.upper))});
     table.row({"device", fmt::format("{} ({})", device.info().name, name_of(device.info().kind))});
     if (input.packed && !scene.tets()) table.row({"engine", scene.engine()});
     if (scene.tets()) {
@@ -63,8 +72,11 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
     }
     table.row({"time", times_text(input, scene, picture)});
     const std::string count = picture.pictures == 1 ? "picture" : fmt::format("{} pictures", picture.pictures);
-    table.row({count, fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height, bytes_text(picture.bytes))});
-    if (picture.differs) table.row({"reference", fmt::format("{}: {} of the pixels differ", command.reference, percent_text(*picture.differs))});
+    table.row({count, fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height,
+                                  bytes_text(picture.bytes))});
+    if (picture.differs)
+        table.row({"reference",
+                   fmt::format("{}: {} of the pixels differ", command.reference, percent_text(*picture.differs))});
     return table.text();
 }
 
@@ -95,7 +107,8 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     report["store"] = nullptr;
     if (scene.tets()) {
         const TetStoreReport& store = scene.tets()->report();
-        report["store"] = {{"bytes", store.stored_bytes}, {"on_device", store.device_bytes}, {"sent_every_time", store.host_bytes}};
+        report["store"] = {
+            {"bytes", store.stored_bytes}, {"on_device", store.device_bytes}, {"sent_every_time", store.host_bytes}};
     }
     report["seconds"] = {{"read", input.read_seconds},
                          {"pack", input.pack_seconds},

@@ -22,7 +22,8 @@ constexpr double opacity_among_several = 0.35;
 /// Isosurfaces have colours of their own: from the dark to the light of the map, in the order of their values.
 Color color_among(const std::vector<SurfaceCounts>& surfaces, std::size_t which, ColorMap map) {
     if (surfaces.size() < 2) return DrawnSurface{}.color;
-    const auto below = std::ranges::count_if(surfaces, [&](const SurfaceCounts& one) { return one.isovalue < surfaces[which].isovalue; });
+    const auto below = std::ranges::count_if(
+        surfaces, [&](const SurfaceCounts& one) { return one.isovalue < surfaces[which].isovalue; });
     return color_at(map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(surfaces.size() - 1));
 }
 
@@ -41,7 +42,8 @@ Result<void> RenderScene::load() {
         return {};
     }
     const bool card = device_.info().kind != DeviceKind::software;
-    if (input_.packed && (command_.engine == EngineChoice::vulkan || (command_.engine == EngineChoice::automatic && card))) {
+    if (input_.packed &&
+        (command_.engine == EngineChoice::vulkan || (command_.engine == EngineChoice::automatic && card))) {
         if (Result<void> done = upload_grid(); !done) {
             if (command_.engine == EngineChoice::vulkan || done.error().code == ErrorCode::cancelled) return done;
             console_.note(fmt::format("{}: the CPU extracts instead", done.error().message));
@@ -65,7 +67,8 @@ Result<void> RenderScene::upload_grid() {
     grid_ = *std::move(grid);
     if (!input_.colors) return {};
     const ColorField& field = *input_.colors;
-    Result<DeviceColors> colors = DeviceColors::of_grid(device_, *input_.packed, field.values, field.association, field.scale);
+    Result<DeviceColors> colors =
+        DeviceColors::of_grid(device_, *input_.packed, field.values, field.association, field.scale);
     if (!colors) return colors.error();
     grid_colors_ = *std::move(colors);
     return {};
@@ -87,8 +90,9 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         counts_[i].isovalue = isovalues[i];
         if (!is_empty(i)) continue;
-        console_.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}", shortest(isovalues[i]), input_.field,
-                                  shortest(input_.lower), shortest(input_.upper)));
+        console_.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}",
+                                  shortest(isovalues[i]), input_.field, shortest(input_.lower),
+                                  shortest(input_.upper)));
     }
     dress();
     return {};
@@ -136,7 +140,8 @@ Result<void> RenderScene::extract_on_cpu(const std::vector<double>& isovalues) {
         auto& fields = input_.colors->association == Association::point ? options.point_fields : options.cell_fields;
         fields.push_back({input_.colors->name, input_.colors->values});
     }
-    const Result<std::vector<Extraction>> extractions = extract(*input_.packed, isovalues, options, console_.progress());
+    const Result<std::vector<Extraction>> extractions =
+        extract(*input_.packed, isovalues, options, console_.progress());
     if (!extractions) return extractions.error();
     for (const Extraction& extraction : *extractions)
         if (Result<void> added = add_mesh(extraction.surface); !added) return added;
@@ -157,10 +162,13 @@ Result<void> RenderScene::add_colors(DrawnSurface& drawn, const Surface& surface
     Array values = field.values;
     ColorScale scale = field.scale;
     if (!input_.surface) { // interpolated by the engine: values / scale + offset is what the user had
-        const SurfaceField& carried = field.association == Association::point ? surface.point_fields.front() : surface.cell_fields.front();
+        const SurfaceField& carried =
+            field.association == Association::point ? surface.point_fields.front() : surface.cell_fields.front();
         std::vector<double> back(carried.values.size());
         carried.values.visit([&](auto scalars) {
-            std::ranges::transform(scalars, back.begin(), [&](auto scalar) { return static_cast<double>(scalar) / carried.scale + carried.offset; });
+            std::ranges::transform(scalars, back.begin(), [&](auto scalar) {
+                return static_cast<double>(scalar) / carried.scale + carried.offset;
+            });
         });
         values = Array::own(std::move(back));
     }
@@ -174,7 +182,8 @@ Result<void> RenderScene::add_colors(DrawnSurface& drawn, const Surface& surface
 void RenderScene::dress() {
     std::size_t smallest = 0;
     for (std::size_t i = 0; i < counts_.size(); ++i)
-        if (counts_[i].size() > 0 && (counts_[smallest].size() == 0 || counts_[i].size() < counts_[smallest].size())) smallest = i;
+        if (counts_[i].size() > 0 && (counts_[smallest].size() == 0 || counts_[i].size() < counts_[smallest].size()))
+            smallest = i;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
         DrawnSurface& drawn = scene_.surfaces[i];
         drawn.color = color_among(counts_, i, command_.scale.map);
@@ -205,11 +214,11 @@ Annotation RenderScene::annotation() const {
     const std::string name = std::filesystem::path(command_.grid.file).filename().string();
     if (input_.surface) annotation.caption = fmt::format("{}  ·  {}", name, drawn);
     else if (counts_.size() == 1)
-        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} = {}  ·  {}", name, grouped(input_.cells), input_.field,
-                                         rounded(*counts_.front().isovalue), drawn);
+        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} = {}  ·  {}", name, grouped(input_.cells),
+                                         input_.field, rounded(*counts_.front().isovalue), drawn);
     else
-        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} at {} isovalues  ·  {}", name, grouped(input_.cells), input_.field,
-                                         counts_.size(), drawn);
+        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} at {} isovalues  ·  {}", name, grouped(input_.cells),
+                                         input_.field, counts_.size(), drawn);
     if (input_.colors) {
         annotation.title = input_.colors->name;
         annotation.scale = input_.colors->scale;
@@ -218,8 +227,10 @@ Annotation RenderScene::annotation() const {
         annotation.title = input_.field;
         std::vector<std::size_t> order(counts_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::sort(order, std::greater(), [&](std::size_t i) { return counts_[i].isovalue; }); // large values above
-        for (const std::size_t i : order) annotation.legend.push_back({scene_.surfaces[i].color, rounded(*counts_[i].isovalue)});
+        std::ranges::sort(order, std::greater(),
+                          [&](std::size_t i) { return counts_[i].isovalue; }); // large values above
+        for (const std::size_t i : order)
+            annotation.legend.push_back({scene_.surfaces[i].color, rounded(*counts_[i].isovalue)});
     }
     return annotation;
 }

@@ -23,22 +23,26 @@ std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
 
 Result<void> check_method(const RenderCommand& command) {
     if (!command.method) {
-        if (command.filter) return wrong("--filter chooses the tets that a method draws, but --method clusters draws surfaces");
+        if (command.filter)
+            return wrong("--filter chooses the tets that a method draws, but --method clusters draws surfaces");
         return {};
     }
     const std::string_view name = name_of(*command.method);
-    if (!command.color_by.empty()) return wrong(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
+    if (!command.color_by.empty())
+        return wrong(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
     if (command.engine != EngineChoice::automatic)
         return wrong(fmt::format("--engine says what extracts, but --method {} extracts nothing", name));
     return {};
 }
 
-Result<RenderTets> RenderTets::load(const RenderCommand& command, const RenderInput& input, const Device& device, Console& console) {
+Result<RenderTets> RenderTets::load(const RenderCommand& command, const RenderInput& input, const Device& device,
+                                    Console& console) {
     const DrawMethod method = *command.method;
     TetStoreOptions options;
     options.gradients = method == DrawMethod::textures || method == DrawMethod::mesh;
     options.picture_bytes = picture_bytes(command.picture, input.packed->report().tets);
-    Result<TetStore> store = TetStore::upload(device, *input.packed, method, options, command.common.threads, console.progress());
+    Result<TetStore> store =
+        TetStore::upload(device, *input.packed, method, options, command.common.threads, console.progress());
     if (!store) return store.error();
     RenderTets tets(*std::move(store));
     const Filter filter = command.filter.value_or(filter_without_a_word);

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Drawing by a method that makes no surface: a store of tets on the device, and a filter that says which of them to draw.
+// Drawing by a method that makes no surface: a store of tets on the device, and a filter that says which to draw.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,8 @@ Result<void> check_method(const RenderCommand& command);
 class RenderTets {
 public:
     /// Uploads the store and builds the filter.
-    static Result<RenderTets> load(const RenderCommand& command, const RenderInput& input, const Device& device, Console& console);
+    static Result<RenderTets> load(const RenderCommand& command, const RenderInput& input, const Device& device,
+                                   Console& console);
 
     /// The tets to draw at each isovalue; those of the last call go.
     Result<void> show(const std::vector<double>& isovalues);

@@ -34,7 +34,8 @@ Result<void> ChosenTets::take_list(std::span<const std::uint32_t> list) {
     std::vector<std::uint64_t> next(store_->pages.size() + 1);
     for (const std::uint32_t tet : list) {
         if (tet >= tets)
-            return Error{ErrorCode::invalid_argument, fmt::format("tet {} shall be drawn, but the grid has {} tets", tet, tets)};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("tet {} shall be drawn, but the grid has {} tets", tet, tets)};
         ++next[tet / layout::page_tets + 1];
     }
     for (std::size_t page = 0; page < store_->pages.size(); ++page) {
@@ -73,7 +74,8 @@ layout::TetPage ChosenTets::describe(const Part& part) const {
     page.tables = vulkan::address_of(store_->tables);
     if (store_->ranges) {
         const auto index = static_cast<std::uint64_t>(part.page - store_->pages.data());
-        page.ranges = vulkan::address_of(store_->ranges, index * (layout::page_tets / layout::tet_group) * sizeof(core::CutRange));
+        page.ranges = vulkan::address_of(store_->ranges,
+                                         index * (layout::page_tets / layout::tet_group) * sizeof(core::CutRange));
     }
     page.isovalue = stored_;
     page.tets = part.tets;
@@ -81,8 +83,8 @@ layout::TetPage ChosenTets::describe(const Part& part) const {
 }
 
 void ChosenTets::add_uses(const Part& part, vulkan::Access how, std::vector<vulkan::Use>& uses) const {
-    for (const vulkan::Buffer* buffer :
-         {&store_->place_of(*part.page), &numbers_, &store_->points, &store_->directions, &store_->tables, &store_->ranges})
+    for (const vulkan::Buffer* buffer : {&store_->place_of(*part.page), &numbers_, &store_->points, &store_->directions,
+                                         &store_->tables, &store_->ranges})
         if (*buffer) uses.push_back({*buffer, how});
 }
 

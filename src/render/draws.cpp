@@ -24,7 +24,8 @@ DrawStep step_of(const Draw& draw, const Item& item, std::vector<vulkan::Use> us
 
 std::vector<DrawStep> in_order(const Draws& draws, std::uint64_t first_item) {
     std::vector<DrawStep> steps;
-    for (const LineDraw& draw : draws.lines) steps.push_back(step_of(draw, draw.lines, {vulkan::draws_from(draw.ends)}));
+    for (const LineDraw& draw : draws.lines)
+        steps.push_back(step_of(draw, draw.lines, {vulkan::draws_from(draw.ends)}));
     for (const MeshDraw& draw : draws.meshes)
         steps.emplace_back(step_of(draw, draw.mesh, draw.uses)).translucent = draw.translucent;
     for (const TetDraw& draw : draws.tets) {
@@ -33,7 +34,8 @@ std::vector<DrawStep> in_order(const Draws& draws, std::uint64_t first_item) {
         step.from = draw.from;
         step.to = draw.to;
     }
-    std::ranges::stable_sort(steps, {}, [](const DrawStep& step) { return std::tuple(step.translucent, step.from != nullptr); });
+    std::ranges::stable_sort(steps, {},
+                             [](const DrawStep& step) { return std::tuple(step.translucent, step.from != nullptr); });
     for (DrawStep& step : steps) {
         step.at = first_item;
         first_item += step.item.size();

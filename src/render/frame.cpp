@@ -56,8 +56,8 @@ Result<std::unique_ptr<Frame>> Frame::make(std::shared_ptr<vulkan::Context> cont
 
 std::uint32_t Frame::most_samples_an_axis() const {
     const VkPhysicalDeviceLimits& limits = context_->capabilities().properties.limits;
-    return std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight, limits.maxViewportDimensions[0],
-                     limits.maxViewportDimensions[1]});
+    return std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight,
+                     limits.maxViewportDimensions[0], limits.maxViewportDimensions[1]});
 }
 
 Result<const Buffer*> Frame::quad_corners() {
@@ -93,7 +93,8 @@ Result<void> Frame::make_room(const layout::View& view, const std::vector<DrawSt
     if (fragment_room_ == 0) fragment_room_ = static_cast<std::uint32_t>(samples_of(view));
     made = room_for(heads_, samples_of(view) * word, "lists of translucent fragments");
     if (made)
-        made = room_for(fragments_, sizeof(layout::FragmentList) + sizeof(layout::Fragment) * std::uint64_t{fragment_room_},
+        made = room_for(fragments_,
+                        sizeof(layout::FragmentList) + sizeof(layout::Fragment) * std::uint64_t{fragment_room_},
                         "translucent fragments");
     return made;
 }
@@ -109,12 +110,14 @@ void Frame::fill_addresses(layout::View& view) const {
 Result<void> Frame::make_parameters(const layout::View& view, const std::vector<DrawStep>& steps) {
     std::vector<std::byte> bytes(parameter_bytes(steps));
     std::memcpy(bytes.data(), &view, sizeof view);
-    for (const DrawStep& step : steps) std::ranges::copy(step.item, bytes.begin() + static_cast<std::ptrdiff_t>(step.at));
+    for (const DrawStep& step : steps)
+        std::ranges::copy(step.item, bytes.begin() + static_cast<std::ptrdiff_t>(step.at));
     return context_->staging().upload(parameters_, 0, bytes);
 }
 
 /// Adds one pass of draws.
-void Frame::record_draws(Recorder& recorder, const layout::View& view, std::span<const DrawStep> steps, vulkan::Images images) {
+void Frame::record_draws(Recorder& recorder, const layout::View& view, std::span<const DrawStep> steps,
+                         vulkan::Images images) {
     std::vector<Use> uses{vulkan::draws_from(parameters_)};
     for (const DrawStep& step : steps)
         for (const Use& use : step.uses) uses.push_back(use);
@@ -129,7 +132,8 @@ void Frame::record_draws(Recorder& recorder, const layout::View& view, std::span
     target_->draw(recorder, images, view.width * view.samples, view.height * view.samples, uses, draw);
 }
 
-void Frame::record(Recorder& recorder, const layout::View& view, const std::vector<DrawStep>& steps, const vulkan::Kernel& resolve) {
+void Frame::record(Recorder& recorder, const layout::View& view, const std::vector<DrawStep>& steps,
+                   const vulkan::Kernel& resolve) {
     const bool translucent = view.fragment_room > 0;
     if (translucent) {
         recorder.fill(heads_, 0, samples_of(view) * word, 0);
@@ -163,7 +167,8 @@ void Frame::record(Recorder& recorder, const layout::View& view, const std::vect
 /// Whether there was room for all fragments; if not, there is next time.
 Result<bool> Frame::fragments_fit(std::uint32_t room) {
     layout::FragmentList list{};
-    if (Result<void> done = context_->staging().download(fragments_, 0, std::as_writable_bytes(std::span(&list, 1))); !done)
+    if (Result<void> done = context_->staging().download(fragments_, 0, std::as_writable_bytes(std::span(&list, 1)));
+        !done)
         return done.error();
     if (list.count <= room) return true;
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max() - 1;
@@ -173,11 +178,13 @@ Result<bool> Frame::fragments_fit(std::uint32_t room) {
 
 Result<void> Frame::fetch(const Part& part, Picture& picture) {
     std::vector<std::array<std::uint8_t, 4>> pixels(std::size_t{part.width} * part.height);
-    if (Result<void> done = context_->staging().download(pixels_, 0, std::as_writable_bytes(std::span(pixels))); !done) return done;
+    if (Result<void> done = context_->staging().download(pixels_, 0, std::as_writable_bytes(std::span(pixels))); !done)
+        return done;
     for (std::uint32_t row = 0; row < part.height; ++row) {
         const auto from = pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * part.width);
         std::copy(from, from + part.width,
-                  picture.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{part.y + row} * picture.width + part.x));
+                  picture.pixels.begin() +
+                      static_cast<std::ptrdiff_t>(std::size_t{part.y + row} * picture.width + part.x));
     }
     return {};
 }

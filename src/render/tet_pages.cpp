@@ -30,10 +30,12 @@ Result<void> check_options(const vulkan::Context& context, const core::Packed& p
                            const TetStoreOptions& options) {
     if (method == DrawMethod::mesh && !context.capabilities().mesh_shaders)
         return Error{ErrorCode::machine,
-                     fmt::format("the device {} has no mesh shaders (VK_EXT_mesh_shader), which the method mesh needs", context.info().name)};
+                     fmt::format("the device {} has no mesh shaders (VK_EXT_mesh_shader), which the method mesh needs",
+                                 context.info().name)};
     if (!options.gradients) return {};
     if (!has_textures(method))
-        return wrong(fmt::format("the method {} was asked for gradients, but only textures and mesh keep them", name_of(method)));
+        return wrong(fmt::format("the method {} was asked for gradients, but only textures and mesh keep them",
+                                 name_of(method)));
     if (packed.gradients.empty()) return wrong("shading by gradients needs a grid that was packed with gradients");
     return {};
 }
@@ -45,7 +47,8 @@ core::Buffer<std::array<float, 4>> directions_of(const core::Packed& packed) {
         const std::array<int, 3> n = core::decode_normal(packed.gradients[p]);
         const double x = n[0], y = n[1], z = n[2], squares = x * x + y * y + z * z;
         const double factor = squares > 0 ? 1 / std::sqrt(squares) : 0;
-        directions[p] = {static_cast<float>(x * factor), static_cast<float>(y * factor), static_cast<float>(z * factor), 0};
+        directions[p] = {static_cast<float>(x * factor), static_cast<float>(y * factor), static_cast<float>(z * factor),
+                         0};
     });
     return directions;
 }
@@ -101,10 +104,12 @@ Result<void> TetPages::upload_points(const core::TetTable& table, const core::Pa
         report.device_bytes += buffer.size();
         return {};
     };
-    Result<void> done = keep(send(*context, std::as_bytes(std::span(&layout::tet_tables, 1)), "tables of cases and edges"), tables);
+    Result<void> done =
+        keep(send(*context, std::as_bytes(std::span(&layout::tet_tables, 1)), "tables of cases and edges"), tables);
     if (done) done = keep(send(*context, table.points, "points of tets"), points);
     if (done && gradients) done = keep(send(*context, directions_of(packed), "gradients of tets"), directions);
-    if (done && method == DrawMethod::mesh) done = keep(send(*context, group_ranges_of(table), "ranges of groups of tets"), ranges);
+    if (done && method == DrawMethod::mesh)
+        done = keep(send(*context, group_ranges_of(table), "ranges of groups of tets"), ranges);
     return done;
 }
 
@@ -112,13 +117,15 @@ Result<void> TetPages::upload_points(const core::TetTable& table, const core::Pa
 Result<void> TetPages::plan(std::uint64_t tets, std::uint64_t spared) {
     const auto page_bytes = [&](std::uint64_t page_tets) { return page_tets * record_bytes(method); };
     for (std::uint64_t first = 0; first < tets; first += layout::page_tets)
-        pages.push_back({{}, static_cast<std::uint32_t>(std::min<std::uint64_t>(layout::page_tets, tets - first)), false});
+        pages.push_back(
+            {{}, static_cast<std::uint32_t>(std::min<std::uint64_t>(layout::page_tets, tets - first)), false});
     std::uint64_t needed = 0;
     for (const Page& page : pages) needed += Memory::cost(page_bytes(page.tets));
     std::uint64_t room = context->memory().free();
     room -= std::min(room, spared);
     if (needed > room) {
-        Result<Buffer> taken = context->memory().take(page_bytes(pages.front().tets), Where::device, "one page of tets");
+        Result<Buffer> taken =
+            context->memory().take(page_bytes(pages.front().tets), Where::device, "one page of tets");
         if (!taken) return taken.error();
         room -= std::min(room, Memory::cost(taken->size()));
         guest = *std::move(taken);
@@ -167,7 +174,8 @@ std::array<std::uint32_t, 5> TetPages::constants(bool has_list) const {
     const std::uint32_t shading = gradients;
     switch (method) {
     case DrawMethod::registers: return {layout::one_color, shading, layout::registers_method, has_list, shading};
-    case DrawMethod::registers_instanced: return {layout::one_color, shading, layout::instanced_method, has_list, shading};
+    case DrawMethod::registers_instanced:
+        return {layout::one_color, shading, layout::instanced_method, has_list, shading};
     case DrawMethod::textures:
     case DrawMethod::mesh: return {layout::one_color, shading, layout::textures_method, has_list, shading};
     }

@@ -24,11 +24,12 @@ Result<vulkan::Buffer> make_quad_corners(vulkan::Context& context) {
     return send(context, numbers, "corners of quads");
 }
 
-Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn, const ChosenTets& tets,
-                           const vulkan::Buffer& quad_corners, std::vector<TetDraw>& draws) {
+Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
+                           const ChosenTets& tets, const vulkan::Buffer& quad_corners, std::vector<TetDraw>& draws) {
     if (!(drawn.opacity >= 0 && drawn.opacity <= 1))
         return wrong(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
-    if (drawn.colors) return wrong("tets that are cut while they are drawn have one colour: a field cannot colour them");
+    if (drawn.colors)
+        return wrong("tets that are cut while they are drawn have one colour: a field cannot colour them");
     TetDraw draw;
     draw.translucent = drawn.opacity < 1;
     const bool by_groups = tets.store().method == DrawMethod::mesh;
@@ -37,8 +38,8 @@ Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space,
     namespace shaders = vulkan::drawing;
     const auto pipeline = pipelines.get(by_groups ? shaders::tet_groups : shaders::tet_corners,
                                         draw.translucent ? shaders::mesh_translucent : shaders::mesh_opaque,
-                                        draw.translucent ? vulkan::Surfaces::translucent : vulkan::Surfaces::opaque, constants,
-                                        by_groups ? vulkan::FirstStage::mesh : vulkan::FirstStage::vertex);
+                                        draw.translucent ? vulkan::Surfaces::translucent : vulkan::Surfaces::opaque,
+                                        constants, by_groups ? vulkan::FirstStage::mesh : vulkan::FirstStage::vertex);
     if (!pipeline) return pipeline.error();
     draw.pipeline = *pipeline;
     for (const ChosenTets::Part& part : tets.parts()) {
@@ -58,7 +59,8 @@ Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space,
     return {};
 }
 
-void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
+void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call,
+            VkCommandBuffer commands) {
     call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
     call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
     if (!draw.quad_corners) return call.vkCmdDrawMeshTasksEXT(commands, (draw.tets - 1) / layout::tet_group + 1, 1, 1);

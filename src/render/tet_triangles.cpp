@@ -38,9 +38,11 @@ Result<std::vector<Triangle>> ChosenTets::triangles() const {
     const Result<const vulkan::Kernel*> twin = context.kernels().get(vulkan::drawing::tet_twin, constants);
     if (!twin) return twin.error();
     constexpr std::uint64_t vertices_a_tet = 4, most = std::uint64_t{layout::page_tets} * vertices_a_tet;
-    const Result<vulkan::Buffer> item = context.memory().take(sizeof(layout::TetPage), vulkan::Where::device, "a page of tets");
+    const Result<vulkan::Buffer> item =
+        context.memory().take(sizeof(layout::TetPage), vulkan::Where::device, "a page of tets");
     if (!item) return item.error();
-    const Result<vulkan::Buffer> vertices = context.memory().take(most * sizeof(Place), vulkan::Where::device, "vertices of tets");
+    const Result<vulkan::Buffer> vertices =
+        context.memory().take(most * sizeof(Place), vulkan::Where::device, "vertices of tets");
     if (!vertices) return vertices.error();
     core::Buffer<Place> places(most);
     for (const Part& part : parts_) {
@@ -51,7 +53,8 @@ Result<std::vector<Triangle>> ChosenTets::triangles() const {
         std::vector<vulkan::Use> uses{vulkan::reads(*item), vulkan::writes(*vertices)};
         add_uses(part, vulkan::Access::kernel_read, uses);
         const std::uint64_t count = part.tets * vertices_a_tet;
-        const layout::TwinPush push{vulkan::address_of(*item), vulkan::address_of(*vertices), static_cast<std::uint32_t>(count)};
+        const layout::TwinPush push{vulkan::address_of(*item), vulkan::address_of(*vertices),
+                                    static_cast<std::uint32_t>(count)};
         recorder.dispatch(**twin, push, (count + layout::twin_size - 1) / layout::twin_size, uses);
         if (const Result<vulkan::Timings> ran = recorder.run(); !ran) return ran.error();
         const auto found = std::as_writable_bytes(std::span(places.data(), count));
