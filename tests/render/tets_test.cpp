@@ -47,6 +47,14 @@ Triangles reference_triangles(const PackedGrid& packed, double isovalue) {
 
 class Tets : public Drawing {
 protected:
+    void reopen_with(const vulkan::Settings& settings) {
+        renderer_.reset();
+        device_.reset();
+        reopen(settings);
+        device_.emplace(shared_context());
+        renderer_.emplace(Renderer::make(*device_).value());
+    }
+
     /// With all tets, and with the list of every filter.
     void expect_reference_triangles(const PackedGrid& packed, const std::vector<double>& isovalues) {
         std::vector<TetStore> stores;
@@ -134,6 +142,15 @@ TEST_F(Tets, TrianglesOfNastyGridsAgreeWithTheReference) {
     }
 }
 
+/// As on a graphics card, where a forgotten copy would show.
+TEST_F(Tets, TrianglesAgreeWhereTheProcessorDoesNotReachTheDevice) {
+    vulkan::Settings settings = watched();
+    settings.force_staging = true;
+    reopen_with(settings);
+    const Grid grid = made_grid("mixed", 6, {"gyroid"});
+    expect_reference_triangles(pack(grid, point_field(grid)).value(), {0.1, -0.4});
+}
+
 TEST_F(Tets, NoListedTetGivesNothing) {
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
@@ -161,11 +178,7 @@ TEST_F(Tets, HaveMethodsWithNames) {
 TEST_F(Tets, MeshShadersAreAskedOfDevicesThatHaveThemOnly) {
     vulkan::Settings settings = watched();
     settings.alter_capabilities = [](vulkan::Capabilities& capabilities) { capabilities.mesh_shaders = false; };
-    renderer_.reset();
-    device_.reset();
-    reopen(settings);
-    device_.emplace(shared_context());
-    renderer_.emplace(Renderer::make(*device_).value());
+    reopen_with(settings);
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     const auto without = TetStore::upload(*device_, packed, DrawMethod::mesh);
