@@ -82,6 +82,7 @@ NEXT
   $program extract $grid pressure.stl -f p -i 180
   $program extract make:kuhn:128:gyroid gyroid.ply -f gyroid -i 0
   $program extract YOUR_GRID surface.vtp -f FIELD -i VALUE
+  $program bench $grid -f p
   $program formats
   ./scripts/test.sh quick
 NEXT

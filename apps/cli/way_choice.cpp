@@ -55,9 +55,9 @@ Result<Speeds> speeds_for(const ExtractCommand& command, const Task& task, Conso
 /// Opens a graphics card and measures it, if there is one and it may pay.
 Result<std::optional<DeviceSpeeds>> consider_device(const ExtractCommand& command, const Task& task, const Speeds& speeds, Extractor& extractor,
                                                     Console& console) {
-    const Forecast clusters = weigh(task, speeds).front();
+    const Forecast best = weigh(task, speeds).front();
     const double packing = speeds.pack_call + static_cast<double>(task.tets) * speeds.pack_tet;
-    if (!device_may_be_taken(command) || clusters.seconds - packing < worth_a_device || !extractor.open_unasked())
+    if (!device_may_be_taken(command) || best.seconds - packing < worth_a_device || !extractor.open_unasked())
         return std::optional<DeviceSpeeds>();
     const std::string key = device_key(extractor.device()->info(), command.common.threads);
     if (const std::optional<DeviceSpeeds> kept = kept_device_speeds(key)) return kept;
