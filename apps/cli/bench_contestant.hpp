@@ -49,8 +49,8 @@ struct BenchTimes {
 
 /// What an isovalue makes.
 struct BenchOutcome {
-    std::uint64_t tets_looked_at = 0; ///< by a vertex-shader method
-    std::uint64_t triangles = 0;      ///< 0: not known, for no surface was made
+    std::optional<std::uint64_t> tets_looked_at; ///< by a vertex-shader method
+    std::optional<std::uint64_t> triangles;      ///< of a surface that was made
     std::uint64_t sent_bytes = 0;     ///< over the bus to the device
 };
 

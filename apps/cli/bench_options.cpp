@@ -15,12 +15,12 @@ namespace {
 constexpr const char* details = R"(
 Each method gets every isovalue in every round. With a device each isovalue ends as a picture of it, shaded by faces; without
 one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the filter,
-uploading. Ask is the filter's search; extract is making triangles and sending them, or the list of tets, to the device; draw
+uploading. Ask is the filter's search; extract is making triangles, and sending them or the list of tets to the device; draw
 is the rest of the way to the picture. Medians; the best round in JSON and CSV.
 
-Methods: brute and clusters (CPU), clusters_vulkan (device), and the vertex-shader methods of Buatois, Caumon and Levy (2006),
-which draw without making a surface: registers, registers_instanced, textures. The last three draw the tets that a filter finds:
-none, interval_tree, octree, seed_set, span_space, cluster_ranges.
+Methods: brute and clusters (CPU), clusters_vulkan (device); and those that draw without making a surface: registers,
+registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh shaders. The last four
+draw the tets that a filter finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
 
 --paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the interval
 tree gains. --device-memory makes grids that do not fit visible at sizes that one can run.
@@ -62,6 +62,7 @@ const char* name_of(BenchMethod method) noexcept {
     case BenchMethod::registers: return "registers";
     case BenchMethod::registers_instanced: return "registers_instanced";
     case BenchMethod::textures: return "textures";
+    case BenchMethod::mesh: return "mesh";
     }
     return "";
 }
@@ -89,7 +90,8 @@ std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const s
 CLI::App& add_bench_command(CLI::App& program, BenchCommand& bench) {
     CLI::App& app = *program.add_subcommand("bench", "Measure methods and filters on a grid, and say which to take");
     CLI::Option* file = add_file(app, "FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
-    CLI::Option* paper = app.add_flag("--paper", bench.paper, "Measure Figure 4 of Buatois, Caumon and Levy (2006) on made grids, without FILE");
+    CLI::Option* paper =
+        app.add_flag("--paper", bench.paper, "Measure Figure 4 of Buatois, Caumon and Levy (2006) on made grids, without FILE");
     paper->excludes(file);
     add_count(
         app, "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",

@@ -17,18 +17,20 @@
 
 namespace isotet::cli {
 
-inline constexpr std::array all_bench_methods{BenchMethod::brute,     BenchMethod::clusters,            BenchMethod::clusters_vulkan,
-                                              BenchMethod::registers, BenchMethod::registers_instanced, BenchMethod::textures};
+inline constexpr std::array all_bench_methods{BenchMethod::brute,     BenchMethod::clusters,
+                                              BenchMethod::clusters_vulkan, BenchMethod::registers,
+                                              BenchMethod::registers_instanced, BenchMethod::textures,
+                                              BenchMethod::mesh};
 
 const char* name_of(BenchMethod method) noexcept;
 
-/// The vertex-shader methods draw lists of tets that a filter finds; the others find theirs themselves.
+/// Methods of DrawMethod draw lists of tets that a filter finds; the others find theirs themselves.
 std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept;
 bool needs_device(BenchMethod method) noexcept;
 
 struct BenchPair {
     BenchMethod method = BenchMethod::brute;
-    Filter filter = Filter::none; ///< of a vertex-shader method
+    Filter filter = Filter::none; ///< of a method that takes lists
 
     std::string name() const; ///< "textures + interval_tree", "clusters"
 };

@@ -1,12 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "bench_report.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <string>
 
 #include <fmt/format.h>
 
+#include "bench_advice.hpp"
 #include "number_format.hpp"
 #include "report.hpp"
 
@@ -16,25 +16,36 @@ namespace {
 
 std::string milliseconds(double seconds) { return fmt::format("{:.2f}", 1e3 * seconds); }
 
-std::string count_or_nothing(std::uint64_t count) { return count > 0 ? grouped(count) : ""; }
+std::string count_or_nothing(std::optional<std::uint64_t> count) { return count ? grouped(*count) : ""; }
+
+Json count_or_null(std::optional<std::uint64_t> count) { return count ? Json(*count) : Json(nullptr); }
 
 Table rows_table(const BenchNumbers& numbers) {
     using enum Table::Align;
-    Table table({left, right, right, right, right, right, right, right, right, right, right});
-    table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "memory", "on the device", "tets looked at", "bytes sent", "ask, ms",
-               "extract, ms", numbers.device ? "draw, ms" : "", "all, ms", "tets a second"});
+    Table table({left, right, right, right, right, right, right, right, right, right, right, right, right});
+    table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut", "triangles",
+               "bytes sent", "ask, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms", "best, ms", "tets a second"});
     for (const BenchRow& row : numbers.rows) {
         const std::string name = numbers.command->paper ? fmt::format("{} {}", grouped(row.tets), row.pair.name()) : row.pair.name();
         if (!row.missing.empty()) {
-            table.row({name, "not measured: " + row.missing});
+            table.row({name, "not measured"});
             continue;
         }
         table.row({name, seconds_text(row.costs.prepare_seconds), bytes_text(row.costs.host_bytes), bytes_text(row.costs.device_bytes),
-                   count_or_nothing(row.outcome.tets_looked_at), grouped(row.outcome.sent_bytes + row.costs.crossing_bytes), milliseconds(row.median.ask),
-                   milliseconds(row.median.extract), numbers.device ? milliseconds(row.median.draw) : "", milliseconds(row.median.total()),
+                   count_or_nothing(row.outcome.tets_looked_at), count_or_nothing(row.outcome.triangles),
+                   grouped(row.outcome.sent_bytes + row.costs.crossing_bytes), milliseconds(row.median.ask), milliseconds(row.median.extract),
+                   numbers.device ? milliseconds(row.median.draw) : "", milliseconds(row.median.total()), milliseconds(row.best.total()),
                    grouped(static_cast<std::uint64_t>(row.tets_per_second()))});
     }
     return table;
+}
+
+/// Why rows are missing, a line each.
+std::string missing_text(const BenchNumbers& numbers) {
+    std::string text;
+    for (const BenchRow& row : numbers.rows)
+        if (!row.missing.empty()) text += fmt::format("not measured: {} on {}: {}\n", row.pair.name(), row.grid, row.missing);
+    return text;
 }
 
 std::string advice_text(const BenchNumbers& numbers) {
@@ -61,46 +72,6 @@ Json json_of(const BenchTimes& times) { return {{"ask", times.ask}, {"extract", 
 
 } // namespace
 
-std::vector<Advice> advice_of(const std::vector<BenchRow>& rows) {
-    std::vector<Advice> advice;
-    const auto cost = [&](std::size_t row, double surfaces) { return rows[row].costs.prepare_seconds + surfaces * rows[row].median.total(); };
-    for (double surfaces = 1;;) {
-        std::optional<std::size_t> fastest;
-        for (std::size_t row = 0; row < rows.size(); ++row)
-            if (rows[row].missing.empty() && (!fastest || cost(row, surfaces) < cost(*fastest, surfaces))) fastest = row;
-        if (!fastest) return advice;
-        // The next row that overtakes it, which must be one with less a surface.
-        double upto = std::numeric_limits<double>::infinity();
-        for (std::size_t row = 0; row < rows.size(); ++row) {
-            const double saved = rows[*fastest].median.total() - rows[row].median.total();
-            if (!rows[row].missing.empty() || saved <= 0) continue;
-            const double even = (rows[row].costs.prepare_seconds - rows[*fastest].costs.prepare_seconds) / saved;
-            upto = std::min(upto, std::max(surfaces, std::floor(even)));
-        }
-        advice.push_back({*fastest, upto});
-        if (upto > 1e15) {
-            advice.back().upto = std::numeric_limits<double>::infinity();
-            return advice;
-        }
-        surfaces = upto + 1;
-    }
-}
-
-std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, BenchMethod method) {
-    double sum = 0;
-    int grids = 0;
-    for (const BenchRow& with : rows) {
-        if (with.pair.method != method || with.pair.filter != Filter::interval_tree || !with.missing.empty()) continue;
-        const auto without = std::ranges::find_if(rows, [&](const BenchRow& row) {
-            return row.grid == with.grid && row.pair.method == method && row.pair.filter == Filter::none && row.missing.empty();
-        });
-        if (without == rows.end()) continue;
-        sum += without->median.total() / with.median.total();
-        ++grids;
-    }
-    return grids > 0 ? std::optional(sum / grids) : std::nullopt;
-}
-
 std::string bench_table(const BenchNumbers& numbers) {
     Table table = facts();
     if (numbers.command->paper) table.row({"grids", "regular, six tets a cube (make:kuhn), field gyroid"});
@@ -117,9 +88,10 @@ std::string bench_table(const BenchNumbers& numbers) {
                                                       bench_picture().width, bench_picture().height)
                                         : "none: nothing is drawn"});
     const std::string gains = gains_text(numbers.rows);
-    std::string text = table.text() + "\n" + rows_table(numbers).text() + "\n";
+    std::string text = table.text() + "\n" + rows_table(numbers).text() + "\n" + missing_text(numbers);
     if (!numbers.command->paper) text += "fastest: " + advice_text(numbers) + "\n";
-    if (!gains.empty()) text += "with the interval tree: " + gains + (numbers.command->paper ? ", the mean over the grids" : "") + "\n";
+    if (!gains.empty())
+        text += fmt::format("with the interval tree: {}{}\n", gains, numbers.command->paper ? ", the mean over the grids" : "");
     return text;
 }
 
@@ -129,17 +101,24 @@ Json bench_json(const BenchNumbers& numbers) {
     report["field"] = json_text(numbers.field);
     report["isovalues"] = numbers.isovalues;
     report["threads"] = numbers.threads;
-    report["device"] = numbers.device ? Json({{"name", json_text(numbers.device->name)}, {"kind", name_of(numbers.device->kind)}}) : Json(nullptr);
+    report["device"] = nullptr;
+    if (numbers.device) report["device"] = {{"name", json_text(numbers.device->name)}, {"kind", name_of(numbers.device->kind)}};
     Json rows = Json::array();
     for (const BenchRow& row : numbers.rows) {
-        Json one = {{"grid", json_text(row.grid)}, {"tets", row.tets}, {"points", row.points}, {"method", name_of(row.pair.method)},
+        Json one = {{"grid", json_text(row.grid)},
+                    {"tets", row.tets},
+                    {"points", row.points},
+                    {"method", name_of(row.pair.method)},
                     {"filter", draw_method_of(row.pair.method) ? Json(name_of(row.pair.filter)) : Json(nullptr)}};
         one["missing"] = row.missing.empty() ? Json(nullptr) : json_text(row.missing);
         if (row.missing.empty()) {
             one["prepare_seconds"] = row.costs.prepare_seconds;
-            one["bytes"] = {{"host", row.costs.host_bytes}, {"device", row.costs.device_bytes}, {"crossing", row.costs.crossing_bytes}, {"sent", row.outcome.sent_bytes}};
-            one["tets_looked_at"] = row.outcome.tets_looked_at;
-            one["triangles"] = row.outcome.triangles;
+            one["bytes"] = {{"host", row.costs.host_bytes},
+                            {"device", row.costs.device_bytes},
+                            {"crossing", row.costs.crossing_bytes},
+                            {"sent", row.outcome.sent_bytes}};
+            one["tets_looked_at"] = count_or_null(row.outcome.tets_looked_at);
+            one["triangles"] = count_or_null(row.outcome.triangles);
             one["seconds"] = json_of(row.median);
             one["best_seconds"] = json_of(row.best);
             one["tets_per_second"] = row.tets_per_second();
@@ -174,9 +153,11 @@ std::string bench_csv(const BenchNumbers& numbers) {
             text += ",,,,,,,,,,,,," + quoted(row.missing) + "\n";
             continue;
         }
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},\n", row.costs.prepare_seconds, row.costs.host_bytes, row.costs.device_bytes,
-                            row.costs.crossing_bytes, row.outcome.sent_bytes, row.outcome.tets_looked_at, row.outcome.triangles, row.median.ask,
-                            row.median.extract, row.median.draw, row.median.total(), row.best.total(), row.tets_per_second());
+        const auto count = [](std::optional<std::uint64_t> known) { return known ? std::to_string(*known) : ""; };
+        text += fmt::format("{},{},{},{},{},{},{},", row.costs.prepare_seconds, row.costs.host_bytes, row.costs.device_bytes,
+                            row.costs.crossing_bytes, row.outcome.sent_bytes, count(row.outcome.tets_looked_at), count(row.outcome.triangles));
+        text += fmt::format("{},{},{},{},{},{},\n", row.median.ask, row.median.extract, row.median.draw, row.median.total(), row.best.total(),
+                            row.tets_per_second());
     }
     return text;
 }

@@ -37,13 +37,17 @@ BenchTimes mean_of(const std::vector<BenchTimes>& all) {
 }
 
 BenchOutcome mean_of(const std::vector<BenchOutcome>& all) {
-    BenchOutcome sum;
-    for (const BenchOutcome& one : all) {
-        sum.tets_looked_at += one.tets_looked_at;
-        sum.triangles += one.triangles;
-        sum.sent_bytes += one.sent_bytes;
-    }
-    return {sum.tets_looked_at / all.size(), sum.triangles / all.size(), sum.sent_bytes / all.size()};
+    const auto mean = [&](const auto& count_of) -> std::optional<std::uint64_t> {
+        std::uint64_t sum = 0;
+        for (const BenchOutcome& one : all) {
+            const std::optional<std::uint64_t> count = count_of(one);
+            if (!count) return {};
+            sum += *count;
+        }
+        return sum / all.size();
+    };
+    return {mean([](const BenchOutcome& one) { return one.tets_looked_at; }), mean([](const BenchOutcome& one) { return one.triangles; }),
+            *mean([](const BenchOutcome& one) { return std::optional(one.sent_bytes); })};
 }
 
 Result<void> measure_into(BenchRow& row, BenchBed& bed, const std::vector<double>& isovalues, std::uint64_t rounds) {
@@ -68,7 +72,7 @@ Result<void> measure_into(BenchRow& row, BenchBed& bed, const std::vector<double
     }
     std::ranges::sort(means, {}, &BenchTimes::total);
     row.best = means.front();
-    row.median = means[means.size() / 2];
+    row.median = means[(means.size() - 1) / 2];
     return {};
 }
 

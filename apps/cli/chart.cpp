@@ -17,6 +17,7 @@ namespace {
 constexpr double width = 900, height = 560;
 constexpr double left = 90, top = 64, plot_width = 560, plot_height = 420;
 constexpr double label_height = 16;
+constexpr std::array dashes{"", " stroke-dasharray=\"2 3\"", " stroke-dasharray=\"9 3\""}; // when colours begin anew
 constexpr std::array colors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7f7f7f",
                             "#8c564b", "#999933", "#4b0082", "#800000"}; // those of Okabe and Ito, and four more
 
@@ -85,6 +86,11 @@ std::vector<double> label_places(const std::vector<double>& wanted) {
         places[i] = std::max(wanted[i], free_from);
         free_from = places[i] + label_height;
     }
+    double free_to = height - label_height; // and back up where they leave the picture
+    for (auto i = order.rbegin(); i != order.rend(); ++i) {
+        places[*i] = std::min(places[*i], free_to);
+        free_to = places[*i] - label_height;
+    }
     return places;
 }
 
@@ -130,7 +136,7 @@ std::string Chart::svg() const {
         for (const ChartPoint& point : shown[i].points) path += fmt::format("{:.1f},{:.1f} ", x.place(point.x), y.place(point.y));
         path.pop_back();
         out += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>\n", path, color,
-                           shown[i].dashed ? " stroke-dasharray=\"6 4\"" : "");
+                           shown[i].dashed ? " stroke-dasharray=\"6 4\"" : dashes[i / colors.size() % dashes.size()]);
         for (const ChartPoint& point : shown[i].points)
             out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x.place(point.x), y.place(point.y), color);
         out += text_at(left + plot_width + 12, labels[i], shown[i].name, "start", color);

@@ -70,18 +70,25 @@ Result<void> BenchRun::choose_pairs() {
             if (device_ || !needs_device(method)) methods.push_back(method);
     for (const BenchMethod method : methods)
         if (needs_device(method) && !device_)
-            return Error{ErrorCode::invalid_argument, fmt::format("--methods has {}, which needs a device, but there is none", name_of(method))};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("--methods has {}, which needs a device, but there is none", name_of(method))};
     const std::vector<Filter> filters = command_.filters.empty() ? std::vector{Filter::none, Filter::interval_tree} : command_.filters;
     if (!command_.filters.empty() && std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
         return Error{ErrorCode::invalid_argument, "--filters was given, but none of the methods takes lists of tets: registers, "
-                                                  "registers_instanced and textures do"};
+                                                  "registers_instanced, textures and mesh do"};
     pairs_ = pairs_of(methods, filters);
     return {};
 }
 
 Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
-    BenchBed bed{.grid = grid, .field = field, .threads = command_.common.threads, .progress = console_.progress(), .device = device_, .renderer = {},
-                 .packed = {}, .pack_seconds = 0};
+    BenchBed bed{.grid = grid,
+                 .field = field,
+                 .threads = command_.common.threads,
+                 .progress = console_.progress(),
+                 .device = device_,
+                 .renderer = {},
+                 .packed = {},
+                 .pack_seconds = 0};
     if (device_) {
         Result<Renderer> renderer = Renderer::make(*device_);
         if (!renderer) return renderer.error();
@@ -113,29 +120,41 @@ Result<void> BenchRun::run_file() {
     numbers_.isovalues = command_.isovalues.empty() ? levels_within(*field, levels_without_a_word) : command_.isovalues;
     if (numbers_.isovalues.empty())
         return Error{ErrorCode::invalid_data, fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};
-    return measure_all(command_.grid.file, grid, *field);
+    for (double& isovalue : numbers_.isovalues)
+        if (isovalue == 0) isovalue = 0; // -0 is called 0
+    if (Result<void> done = measure_all(command_.grid.file, grid, *field); !done) return done;
+    const auto empty = [](const BenchRow& row) { return row.missing.empty() && row.outcome.triangles == std::uint64_t{0}; };
+    if (std::ranges::any_of(numbers_.rows, empty)) console_.note("there is no surface: what was measured is how long it takes to find that out");
+    return {};
 }
 
-/// Regular grids from 100 thousand tets on, the sizes of the figure and beyond.
+/// Sides of regular grids from 100 thousand tets on, the sizes of the figure and beyond, ascending: the last is the largest grid
+/// that has no more than `most` tets.
+std::vector<std::uint64_t> sides_of_paper(std::uint64_t most) {
+    const auto tets = [](std::uint64_t side) { return 6 * side * side * side; };
+    auto largest = static_cast<std::uint64_t>(std::lround(std::cbrt(static_cast<double>(most) / 6)));
+    while (largest > 1 && tets(largest) > most) --largest;
+    std::vector<std::uint64_t> sides;
+    for (double decade = 1e5; decade <= static_cast<double>(most); decade *= 10)
+        for (const double step : {1.0, 2.0, 4.0, 6.0})
+            if (const auto side = static_cast<std::uint64_t>(std::lround(std::cbrt(decade * step / 6))); side < largest) sides.push_back(side);
+    sides.push_back(largest);
+    return sides;
+}
+
 Result<void> BenchRun::run_paper() {
     numbers_.field = "gyroid";
     numbers_.isovalues = {isovalue_of_paper};
-    const auto most = static_cast<double>(command_.most_tets);
-    std::vector<double> sizes;
-    for (double decade = 1e5; decade <= most; decade *= 10)
-        for (const double step : {1.0, 2.0, 4.0, 6.0})
-            if (decade * step <= most) sizes.push_back(decade * step);
-    if (sizes.empty() || sizes.back() < most) sizes.push_back(most);
-    for (const double size : sizes) {
+    for (const std::uint64_t side : sides_of_paper(command_.most_tets)) {
         MakeOptions options;
-        options.side = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(std::cbrt(size / 6))));
+        options.side = side;
         options.fields = {numbers_.field};
         options.threads = command_.common.threads;
         const Result<Grid> grid = make_grid(options, console_.progress());
         if (!grid) return grid.error();
         const Result<PointField> field = find_field(*grid, numbers_.field);
         if (!field) return field.error();
-        if (Result<void> done = measure_all(fmt::format("make:kuhn:{}:gyroid", options.side), *grid, *field); !done) return done;
+        if (Result<void> done = measure_all(fmt::format("make:kuhn:{}:gyroid", side), *grid, *field); !done) return done;
     }
     return {};
 }
@@ -143,9 +162,14 @@ Result<void> BenchRun::run_paper() {
 Result<void> BenchRun::run() {
     if (command_.paper == !command_.grid.file.empty())
         return Error{ErrorCode::invalid_argument, "isotet bench takes a FILE, or --paper"};
+    if (command_.device.name == "none" && command_.device.memory)
+        return Error{ErrorCode::invalid_argument, "--device-memory is given, but --device is none"};
+    for (const auto& [option, path] : {std::pair("--csv", &command_.csv), {"--svg", &command_.svg}})
+        if (*path == "-") return Error{ErrorCode::invalid_argument, fmt::format("{} got '-', but it writes a file; --json - writes to standard output", option)};
     if (Result<void> paths = check_output_paths({command_.grid.file}, {command_.csv, command_.svg, command_.common.json}); !paths) return paths;
     numbers_.command = &command_;
-    numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads) : std::max(1U, std::thread::hardware_concurrency());
+    numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads)
+                                                   : std::max(1U, std::thread::hardware_concurrency());
     if (Result<void> opened = open_device(); !opened) return opened;
     if (Result<void> chosen = choose_pairs(); !chosen) return chosen;
     return command_.paper ? run_paper() : run_file();
@@ -164,6 +188,8 @@ Result<ExitCode> run_bench(const BenchCommand& command) {
     Json report = bench_json(run.numbers());
     report["notes"] = json_texts(console.noted());
     if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
+    const bool nothing = std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
+    if (nothing) return Error{ErrorCode::machine, "nothing could be measured: " + run.numbers().rows.front().missing};
     return ExitCode::done;
 }
 

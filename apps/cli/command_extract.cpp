@@ -79,6 +79,7 @@ Result<void> ExtractRun::open() {
         !paths) {
         return paths;
     }
+    if (Result<void> method = check_method(command_, extractor_); !method) return method;
     if (Result<void> opened = extractor_.open(); !opened) return opened;
     console_.detail("looking at " + command_.grid.file);
     Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
@@ -135,8 +136,8 @@ Result<void> ExtractRun::load(std::size_t step) {
 Result<void> ExtractRun::choose(const Grid& grid) {
     const Result<FieldSample> sample = FieldSample::take(grid, field_);
     if (!sample) return sample.error();
-    const std::vector<double> isovalues =
-        command_.isovalues.empty() ? levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1)) : command_.isovalues;
+    const std::vector<double> levels = levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
+    const std::vector<double>& isovalues = command_.isovalues.empty() ? levels : command_.isovalues;
     const bool one_file = !plan_.names.none() && !plan_.names.by_value();
     const std::size_t together = one_file ? isovalues.size() : isovalues_a_pass;
     double all = 0, most = 0;
@@ -151,6 +152,8 @@ Result<void> ExtractRun::choose(const Grid& grid) {
     task.points = sample->points();
     task.tets = sample->tets();
     task.surfaces = count * static_cast<double>(plan_.steps.size());
+    task.gradients = command_.normals == Normals::gradient;
+    task.find_range = command_.isovalues.empty();
     task.triangles = all / count;
     task.triangles_together = most;
     task.memory_free = core::free_memory();
@@ -158,18 +161,19 @@ Result<void> ExtractRun::choose(const Grid& grid) {
     if (!choice) return choice.error();
     numbers_.choice = *std::move(choice);
     console_.detail(fmt::format("{} ({})", name_of(numbers_.choice.way), numbers_.choice.why));
+    numbers_.peak_before = core::peak_resident_memory().value_or(0);
     if (core::forget_peak_memory()) resident_before_ = core::resident_memory();
     return {};
 }
 
-/// For isovalues that are chosen by the range of the field. It counts as reading.
+/// For isovalues that are chosen by the range of the field.
 Result<void> ExtractRun::look_at_field() {
     const Stopwatch looking;
     console_.detail("looking at the field");
     const Result<ExtractedOnce> looked = extract_once(grid_, field_, {}, {plan_.extract, command_.precision}, console_.progress());
     if (!looked) return looked.error();
     numbers_.field = looked->field;
-    numbers_.read_seconds += looking.seconds();
+    numbers_.look_seconds += looking.seconds();
     return {};
 }
 
@@ -268,6 +272,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     if (!extractions) return extractions.error();
     const double seconds = extracting.seconds() / static_cast<double>(isovalues.size());
     numbers_.engine = extractor_.engine_name();
+    if (!extractor_.device() && numbers_.choice.way == Way::device_clusters) numbers_.choice.way = Way::clusters; // the CPU stood in
     numbers_.engine_text = extractor_.engine_text();
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
@@ -280,7 +285,9 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         numbers.report = (*extractions)[i].report;
         numbers.vertices = surface.vertices();
         numbers.triangles = surface.triangle_count();
+        const Stopwatch measuring;
         numbers.area = area(surface);
+        numbers_.measure_seconds += measuring.seconds();
         say_what_extracting_found(numbers);
     }
     return surfaces;

@@ -9,7 +9,6 @@
 
 #include "number_format.hpp"
 #include "output_paths.hpp"
-#include "way_choice.hpp"
 
 namespace isotet::cli {
 
@@ -95,7 +94,6 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     if (!steps) return steps.error();
     plan.steps = *std::move(steps);
     if (Result<void> names = check_names(command, plan, source.info()); !names) return names.error();
-    if (Result<void> method = check_method(command); !method) return method.error();
 
     Result<FoundField> field = choose_field(source, command.field);
     if (!field) return field.error();

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 
-#include <sys/resource.h>
-
 #include <fmt/format.h>
 
+#include "core/memory.hpp"
 #include "number_format.hpp"
 #include "report.hpp"
 
@@ -19,22 +18,21 @@ std::uint64_t ExtractNumbers::transient_peak() const {
 }
 
 double ExtractNumbers::work_seconds() const {
-    double seconds = pack_seconds + upload_seconds;
+    double seconds = pack_seconds + upload_seconds + look_seconds;
     for (const SurfaceNumbers& surface : surfaces) seconds += surface.extract_seconds;
     return seconds;
 }
 
 namespace {
 
-std::uint64_t process_peak_bytes() {
-    struct rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+/// The system's own count begins anew when a way is chosen.
+std::uint64_t process_peak_bytes(const ExtractNumbers& numbers) {
+    return std::max(numbers.peak_before, core::peak_resident_memory().value_or(0));
 }
 
 std::string memory_text(const ExtractNumbers& numbers) {
     const std::string rest =
-        fmt::format("extracting {}, whole process {}", bytes_text(numbers.transient_peak()), bytes_text(process_peak_bytes()));
+        fmt::format("extracting {}, whole process {}", bytes_text(numbers.transient_peak()), bytes_text(process_peak_bytes(numbers)));
     if (!numbers.pack) return rest;
     const PackReport& pack = *numbers.pack;
     std::string text = "packed " + bytes_text(pack.bytes);
@@ -83,6 +81,8 @@ void add_pack_rows(const PackReport& pack, Table& table) {
 std::string time_text(const ExtractNumbers& numbers) {
     std::string text = "read " + seconds_text(numbers.read_seconds);
     if (numbers.pack) text += ", pack " + seconds_text(numbers.pack_seconds);
+    if (numbers.look_seconds > 0) text += ", range " + seconds_text(numbers.look_seconds);
+    text += ", areas " + seconds_text(numbers.measure_seconds);
     if (numbers.engine == "vulkan") text += ", upload " + seconds_text(numbers.upload_seconds);
     return text;
 }
@@ -122,12 +122,17 @@ std::string ties_text(const ExtractReport& report) {
 Json choice_json(const ExtractNumbers& numbers) {
     Json ways = Json::array();
     for (const Forecast& one : numbers.choice.forecasts)
-        ways.push_back({{"way", name_of(one.way)}, {"seconds", one.seconds}, {"bytes", one.bytes}, {"device_bytes", one.device_bytes}, {"fits", one.fits}});
+        ways.push_back({{"way", name_of(one.way)},
+                        {"seconds", one.seconds},
+                        {"bytes", one.bytes},
+                        {"device_bytes", one.device_bytes},
+                        {"fits", one.fits}});
     const Forecast* chosen = numbers.choice.forecast();
     return {{"way", name_of(numbers.choice.way)},
             {"speeds", chosen ? Json(numbers.choice.measured ? "measured" : "typical") : Json(nullptr)},
             {"predicted", chosen ? Json({{"seconds", chosen->seconds}, {"bytes", chosen->bytes}}) : Json(nullptr)},
-            {"measured", {{"seconds", numbers.work_seconds()}, {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}}},
+            {"measured",
+             {{"seconds", numbers.work_seconds()}, {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}}},
             {"ways", std::move(ways)}};
 }
 
@@ -161,7 +166,8 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["tets"] = numbers.pack ? Json(numbers.pack->tets) : Json(nullptr);
     report["cells_left_out"] = numbers.cells_left_out;
     report["field"] = json_text(numbers.field.name);
-    report["range"] = {numbers.field.lower, numbers.field.upper};
+    const bool finite = numbers.field.lower <= numbers.field.upper;
+    report["range"] = finite ? Json({numbers.field.lower, numbers.field.upper}) : Json(nullptr);
     report["no_data_points"] = numbers.field.no_data;
     report["engine"] = numbers.engine;
     report["method"] = numbers.choice.method();
@@ -170,7 +176,10 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["choice"] = choice_json(numbers);
     report["precision"] = numbers.precision == Precision::single ? "float" : "double";
     report["threads"] = numbers.threads;
-    report["seconds"] = {{"read", numbers.read_seconds}, {"pack", numbers.pack_seconds}};
+    report["seconds"] = {{"read", numbers.read_seconds},
+                         {"pack", numbers.pack_seconds},
+                         {"range", numbers.look_seconds},
+                         {"areas", numbers.measure_seconds}};
     if (numbers.engine == "vulkan") report["seconds"]["upload"] = numbers.upload_seconds;
     const PackReport pack = numbers.pack.value_or(PackReport{});
     report["bytes"] = {{"packed", pack.bytes},

@@ -41,10 +41,13 @@ struct ExtractNumbers {
     bool averaged = false;
     Precision precision = Precision::single;
     ChosenWay choice;
-    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, from the choice to the end; nothing where the system does not tell
+    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid since the choice, if the system tells
     std::string engine = "cpu", engine_text = "cpu"; ///< of the last surface; in words
     unsigned threads = 1;
     double read_seconds = 0, pack_seconds = 0, upload_seconds = 0;
+    double look_seconds = 0;    ///< for the range of the field, where nothing is packed and isovalues follow it
+    double measure_seconds = 0; ///< for the areas
+    std::uint64_t peak_before = 0; ///< of the process, until its way was chosen
     std::vector<SurfaceNumbers> surfaces;
 
     std::uint64_t transient_peak() const;

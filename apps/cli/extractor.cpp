@@ -31,7 +31,7 @@ Result<void> Extractor::open() {
 }
 
 bool Extractor::open_unasked() {
-    Result<Device> device = Device::open({});
+    Result<Device> device = Device::open({{}, command_.device.memory.value_or(0)});
     if (!device) return false;
     console_.notes(device->notices());
     device_ = *std::move(device);

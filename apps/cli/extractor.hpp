@@ -62,8 +62,9 @@ public:
     const char* engine_name() const;
     const std::optional<DeviceNumbers>& last() const noexcept { return last_; } ///< of the surface extracted last
 
+    bool wants_device() const; ///< one is named, or asked for by --engine
+
 private:
-    bool wants_device() const;
     /// The error, or nothing after a note where the CPU may stand in.
     Result<void> without_device(const Error& error);
     /// Whether the CPU must do what the device did not; the error where it may not, or where it could not either.

@@ -51,9 +51,11 @@ using Numbers = std::vector<std::pair<const char*, double*>>;
 Numbers numbers_of(Speeds& speeds) {
     return {{"pack_call", &speeds.pack_call},
             {"pack_tet", &speeds.pack_tet},
+            {"pack_gradient_tet", &speeds.pack_gradient_tet},
             {"brute_call", &speeds.brute_call},
             {"brute_tet", &speeds.brute_tet},
             {"brute_triangle", &speeds.brute_triangle},
+            {"brute_gradient_tet", &speeds.brute_gradient_tet},
             {"clusters_call", &speeds.clusters_call},
             {"clusters_tet", &speeds.clusters_tet},
             {"clusters_triangle", &speeds.clusters_triangle}};
@@ -73,7 +75,8 @@ std::optional<AnySpeeds> find(const std::string& key) {
         *number = kept[key][name].template get<double>();
         if (!std::isfinite(*number) || *number < 0) return {};
     }
-    return speeds;
+    const bool any = std::ranges::any_of(numbers_of(speeds), [](const auto& named) { return *named.second > 0; });
+    return any ? std::optional(speeds) : std::nullopt;
 }
 
 template <class AnySpeeds>

@@ -220,6 +220,8 @@ CLI::App& add_bench(CLI::App& program, BenchCommand& bench) {
     add_device_memory(app, bench.device);
     add_time(app, bench.grid);
     add_reading(app, bench.grid, "--format");
+    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces", "--allow-outside", "--cell-field"})
+        app.get_option(name)->excludes(app.get_option("--paper"));
     add_common(app, bench.common);
     return app;
 }

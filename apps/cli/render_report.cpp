@@ -46,7 +46,8 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
     table.row({input.surface ? "surface" : "grid", fmt::format("{} ({})", command.grid.file, input.format)});
     if (input.packed) {
         table.row({"cells", grouped(input.cells)});
-        table.row({"field", fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper))});
+        const bool finite = input.lower <= input.upper;
+        table.row({"field", finite ? fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper)) : input.field});
     }
     if (input.boundary) table.row({"boundary", grouped(input.boundary->triangle_count()) + " faces"});
     if (!command.sweep.empty())
@@ -86,7 +87,7 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     report["input"] = json_text(command.grid.file);
     report["format"] = input.format;
     report["field"] = input.packed ? json_text(input.field) : Json(nullptr);
-    report["range"] = input.packed ? Json({input.lower, input.upper}) : Json(nullptr);
+    report["range"] = input.packed && input.lower <= input.upper ? Json({input.lower, input.upper}) : Json(nullptr);
     report["color_by"] = input.colors ? json_text(input.colors->name) : Json(nullptr);
     report["color_range"] = input.colors ? Json({input.colors->scale.lower, input.colors->scale.upper}) : Json(nullptr);
     report["boundary_faces"] = input.boundary ? Json(input.boundary->triangle_count()) : Json(nullptr);

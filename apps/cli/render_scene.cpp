@@ -90,9 +90,11 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         counts_[i].isovalue = isovalues[i];
         if (!is_empty(i)) continue;
-        console_.note(fmt::format("there is no surface at {}: the values of '{}' go from {} to {}",
-                                  shortest(isovalues[i]), input_.field, shortest(input_.lower),
-                                  shortest(input_.upper)));
+        const std::string values = input_.lower <= input_.upper
+                                       ? fmt::format("the values of '{}' go from {} to {}", input_.field,
+                                                     shortest(input_.lower), shortest(input_.upper))
+                                       : fmt::format("'{}' has no finite value", input_.field);
+        console_.note(fmt::format("there is no surface at {}: {}", shortest(isovalues[i]), values));
     }
     dress();
     return {};

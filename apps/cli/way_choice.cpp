@@ -13,12 +13,7 @@ namespace isotet::cli {
 namespace {
 
 constexpr double worth_measuring = 4;  ///< seconds of work: twice what measuring takes
-constexpr double worth_a_device = 1.5; ///< seconds of extraction: opening a device and building its pipelines takes about one
-
-bool device_is_named(const ExtractCommand& command) {
-    return command.engine == EngineChoice::vulkan ||
-           (command.engine == EngineChoice::automatic && !command.device.name.empty() && command.device.name != "none");
-}
+constexpr double worth_a_device = 5; ///< seconds of extraction: opening a device and measuring it takes about half of that
 
 bool device_may_be_taken(const ExtractCommand& command) {
     return command.engine == EngineChoice::automatic && command.device.name.empty() && command.method != MethodChoice::brute;
@@ -53,10 +48,10 @@ Result<Speeds> speeds_for(const ExtractCommand& command, const Task& task, Conso
 }
 
 /// Opens a graphics card and measures it, if there is one and it may pay.
-Result<std::optional<DeviceSpeeds>> consider_device(const ExtractCommand& command, const Task& task, const Speeds& speeds, Extractor& extractor,
-                                                    Console& console) {
-    const Forecast best = weigh(task, speeds).front();
-    const double packing = speeds.pack_call + static_cast<double>(task.tets) * speeds.pack_tet;
+Result<std::optional<DeviceSpeeds>> consider_device(const ExtractCommand& command, const Task& task, const Speeds& speeds,
+                                                    Extractor& extractor, Console& console) {
+    const Forecast best = weigh_open(command, task, speeds, nullptr).front();
+    const double packing = speeds.pack_call + static_cast<double>(task.tets) * speeds.pack_tet; // which a device needs, too
     if (!device_may_be_taken(command) || best.seconds - packing < worth_a_device || !extractor.open_unasked())
         return std::optional<DeviceSpeeds>();
     const std::string key = device_key(extractor.device()->info(), command.common.threads);
@@ -83,15 +78,15 @@ const Forecast* ChosenWay::forecast() const noexcept {
     return found == forecasts.end() ? nullptr : &*found;
 }
 
-Result<void> check_method(const ExtractCommand& command) {
-    if (command.method != MethodChoice::brute || !device_is_named(command)) return {};
+Result<void> check_method(const ExtractCommand& command, const Extractor& extractor) {
+    if (command.method != MethodChoice::brute || !extractor.wants_device()) return {};
     return Error{ErrorCode::invalid_argument, "--method brute was asked for, but devices take packed grids only: clusters"};
 }
 
 Result<ChosenWay> choose_way(const ExtractCommand& command, const Task& task, Extractor& extractor, Console& console) {
     ChosenWay choice;
     const bool method_asked = command.method != MethodChoice::automatic;
-    if (device_is_named(command)) {
+    if (extractor.device()) { // named, or asked for
         choice.way = Way::device_clusters;
         choice.why = method_asked ? "asked for" : "auto: devices take packed grids";
         return choice;
@@ -106,7 +101,8 @@ Result<ChosenWay> choose_way(const ExtractCommand& command, const Task& task, Ex
     choice.way = choice.forecasts.front().way;
     choice.why = method_asked && choice.forecasts.size() == 1 ? "asked for" : why_of(choice, task);
     if (choice.way != Way::device_clusters) extractor.close();
-    if (command.engine == EngineChoice::reference) choice.forecasts.clear(); // chosen as for the CPU engine, but how long it takes nobody asked
+    // Chosen as for the CPU engine; how long it takes nobody foretells.
+    if (command.engine == EngineChoice::reference) choice.forecasts.clear();
     return choice;
 }
 

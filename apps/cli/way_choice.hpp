@@ -38,6 +38,6 @@ struct ChosenWay {
 Result<ChosenWay> choose_way(const ExtractCommand& command, const Task& task, Extractor& extractor, Console& console);
 
 /// --method brute does not go with a device.
-Result<void> check_method(const ExtractCommand& command);
+Result<void> check_method(const ExtractCommand& command, const Extractor& extractor);
 
 } // namespace isotet::cli

@@ -10,35 +10,37 @@ import json
 import subprocess
 import sys
 
-# A grid, and how many isovalues are asked for. Stated before anything was measured: small and large grids, regular and
-# shuffled, tets and other cells, few and many surfaces; three stand near where packing begins to pay.
+# A grid, how many isovalues are asked for, and which normals: small and large grids, regular and shuffled, tets and other
+# cells, few and many surfaces; three stand near where packing begins to pay.
 CASES = [
-    ("make:kuhn:17:sphere", 1),
-    ("make:kuhn:17:sphere", 300),
-    ("make:kuhn:59:gyroid", 1),
-    ("make:kuhn:59:gyroid", 40),
-    ("make:kuhn:59:gyroid", 300),
-    ("make:shuffled:59:gyroid", 10),
-    ("make:hex:70:torus", 60),
-    ("make:mixed:60:sphere", 5),
-    ("make:kuhn:94:gyroid", 20),
-    ("make:kuhn:94:gyroid", 120),
+    ("make:kuhn:17:sphere", 1, "none"),
+    ("make:kuhn:17:sphere", 300, "none"),
+    ("make:kuhn:59:gyroid", 1, "none"),
+    ("make:kuhn:59:gyroid", 40, "none"),
+    ("make:kuhn:59:gyroid", 300, "none"),
+    ("make:kuhn:59:gyroid", 10, "gradient"),
+    ("make:shuffled:59:gyroid", 10, "none"),
+    ("make:hex:70:torus", 60, "none"),
+    ("make:kuhn:94:gyroid", 20, "none"),
+    ("make:kuhn:94:gyroid", 120, "none"),
 ]
 FIXED = ("brute", "clusters")
 GOOD = 1.2
 
 
-def run(program, threads, grid, levels, method):
-    command = [program, "extract", grid, "--levels", str(levels), "--method", method, "--device", "none", "-j", str(threads), "--json", "-"]
+def run(program, threads, case, method):
+    grid, levels, normals = case
+    command = [program, "extract", grid, "--levels", str(levels), "--normals", normals, "--method", method]
+    command += ["-j", str(threads), "--json", "-"]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
-def measure(program, threads, rounds, grid, levels):
+def measure(program, threads, rounds, case):
     """The shortest time of every choice, and the report of the fastest automatic run."""
     best = {}
     for _ in range(rounds):
         for method in (*FIXED, "auto"):
-            report = run(program, threads, grid, levels, method)
+            report = run(program, threads, case, method)
             if method not in best or seconds(report) < seconds(best[method]):
                 best[method] = report
     return best
@@ -48,14 +50,16 @@ def seconds(report):
     return report["choice"]["measured"]["seconds"]
 
 
-def row(grid, levels, best):
+def row(case, best):
     fastest = min(seconds(best[method]) for method in FIXED)
     auto = best["auto"]["choice"]
     ratio = seconds(best["auto"]) / fastest
-    cells = [grid.removeprefix("make:"), f"{best['auto']['cells']:,}", str(levels)]
+    grid, levels, normals = case
+    cells = [grid.removeprefix("make:"), f"{best['auto']['cells']:,}", f"{levels}, {normals} normals"]
     cells += [f"{1e3 * seconds(best[method]):.0f}" for method in FIXED]
     cells += [best["auto"]["method"], f"{1e3 * seconds(best['auto']):.0f}", f"{ratio:.2f}", f"{1e3 * auto['predicted']['seconds']:.0f}"]
-    cells += [f"{auto['predicted']['bytes'] / 1e6:.0f}", f"{auto['measured']['bytes'] / 1e6:.0f}", auto["speeds"]]
+    taken = auto["measured"]["bytes"]
+    cells += [f"{auto['predicted']['bytes'] / 1e6:.0f}", "" if taken is None else f"{taken / 1e6:.0f}", auto["speeds"]]
     return ratio, "| " + " | ".join(cells) + " |"
 
 
@@ -65,11 +69,12 @@ def main():
     options.add_argument("--rounds", type=int, default=5)
     options.add_argument("--threads", type=int, default=0)
     given = options.parse_args()
-    print("| grid | cells | surfaces | brute, ms | clusters, ms | chosen | took, ms | of the best | predicted, ms | predicted, MB | took, MB | speeds |")
-    print("|---|---:|---:|---:|---:|---|---:|---:|---:|---:|---:|---|")
+    print("| grid | cells | surfaces | brute, ms | clusters, ms | chosen | took, ms | of the best | predicted, ms "
+          "| predicted, MB | took, MB | speeds |")
+    print("|---|---:|---|---:|---:|---|---:|---:|---:|---:|---:|---|")
     ratios = []
-    for grid, levels in CASES:
-        ratio, line = row(grid, levels, measure(given.program, given.threads, given.rounds, grid, levels))
+    for case in CASES:
+        ratio, line = row(case, measure(given.program, given.threads, given.rounds, case))
         ratios.append(ratio)
         print(line, flush=True)
     print(f"\n{sum(ratio <= GOOD for ratio in ratios)} of {len(ratios)} within 20 % of the best fixed choice")

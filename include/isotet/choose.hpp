@@ -62,6 +62,8 @@ private:
 struct Task {
     std::uint64_t points = 0, tets = 0;
     double surfaces = 1;              ///< expected: isovalues times time steps
+    bool gradients = false;           ///< gradient normals are asked for
+    bool find_range = false;          ///< isovalues follow the range of the field, which brute must look for first
     double triangles = 0;             ///< of a surface, on the average
     double triangles_together = 0;    ///< of the surfaces that are in memory at the same time, at most
     std::uint64_t memory_free = 0;    ///< of the machine, beside the grid
@@ -71,8 +73,8 @@ struct Task {
 /// Seconds that a machine takes, with a number of threads. Those of calls come once a grid or a surface, besides tets and
 /// triangles.
 struct Speeds {
-    double pack_call = 0, pack_tet = 0;
-    double brute_call = 0, brute_tet = 0, brute_triangle = 0;
+    double pack_call = 0, pack_tet = 0, pack_gradient_tet = 0; ///< the last: with gradients, besides
+    double brute_call = 0, brute_tet = 0, brute_triangle = 0, brute_gradient_tet = 0;
     double clusters_call = 0, clusters_tet = 0, clusters_triangle = 0;
 };
 
@@ -102,12 +104,14 @@ struct Forecast {
     double seconds = 0;
     std::uint64_t bytes = 0;        ///< needed beyond the grid, at the peak; rather too many than too few. Memory that is free is
                                     ///< used beyond that, to keep blocks for later: up to 1/64 of the machine's
-    std::uint64_t device_bytes = 0; ///< all of the packed grid; less will do, slower
+    std::uint64_t device_bytes = 0; ///< the packed grid and a surface; less will do, slower, but does not count as fitting
     bool fits = false;              ///< into the memory that is free
 };
 
-/// All ways that there are, those that fit first, then the fastest first. Ways on a device are there if the device is.
+/// All ways that there are: those that fit, the fastest first, then those that do not, the smallest first. Ways on a device are
+/// there if the device is.
 ///
+/// `task`    numbers that are finite and not negative
 /// `device`  of the device; null: none is weighed
 std::vector<Forecast> weigh(const Task& task, const Speeds& speeds, const DeviceSpeeds* device = nullptr);
 

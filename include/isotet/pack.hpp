@@ -43,7 +43,7 @@ struct PackReport {
 /// How a field's values are stored; see docs/inside/precision.md.
 struct FieldReport {
     std::string name;
-    double lower = 0, upper = 0;       ///< smallest and largest finite value at the points that tets use, as the user gave them
+    double lower = 0, upper = 0;       ///< smallest and largest finite value at the points that tets use, as the user gave them; lower > upper: there is none
     std::uint64_t no_data = 0;         ///< points with NaN
     std::uint64_t infinite = 0;
     std::uint64_t flushed = 0;         ///< non-zero values that are stored as 0

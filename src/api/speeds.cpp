@@ -15,6 +15,8 @@
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 
+#include "core/block.hpp"
+
 namespace isotet {
 
 namespace {
@@ -77,13 +79,15 @@ Result<Parts> measure_parts(const Sample& small, const Sample& large,
 
 Speeds typical_speeds() noexcept {
     return {.pack_call = 1e-3,
-            .pack_tet = 180e-9,
+            .pack_tet = 120e-9,
+            .pack_gradient_tet = 30e-9,
             .brute_call = 4e-5,
-            .brute_tet = 2.5e-9,
-            .brute_triangle = 60e-9,
+            .brute_tet = 2e-9,
+            .brute_triangle = 50e-9,
+            .brute_gradient_tet = 40e-9,
             .clusters_call = 5e-6,
             .clusters_tet = 0.2e-9,
-            .clusters_triangle = 35e-9};
+            .clusters_triangle = 25e-9};
 }
 
 namespace api {
@@ -107,6 +111,25 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
 
     ExtractOptions options;
     options.threads = threads;
+    // Gradients cost passes over the tets; what they cost a triangle is little beside.
+    const Result<double> packing_gradients = best_of(1, progress, [&]() -> Result<void> {
+        const Result<PackedGrid> made = pack(large->grid, large->field, {.gradients = true, .threads = threads}, progress);
+        return made ? Result<void>() : made.error();
+    });
+    if (!packing_gradients) return packing_gradients.error();
+    const auto once_with = [&](Normals normals) {
+        return best_of(2, progress, [&]() -> Result<void> {
+            OnceOptions once_options;
+            once_options.extract.threads = threads;
+            once_options.extract.normals = normals;
+            const auto once = extract_once(large->grid, large->field, std::span(&cuts_much, 1), once_options, progress);
+            return once ? Result<void>() : once.error();
+        });
+    };
+    const Result<double> brute_plain = once_with(Normals::none);
+    if (!brute_plain) return brute_plain.error();
+    const Result<double> brute_gradients = once_with(Normals::gradient);
+    if (!brute_gradients) return brute_gradients.error();
     const Result<Parts> brute = measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) {
         return best_of(rounds, progress, [&]() -> Result<void> {
             const auto once = extract_once(sample.grid, sample.field, std::span(&isovalue, 1), {options, Precision::single}, progress);
@@ -125,11 +148,14 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
         });
     });
     if (!clusters) return clusters.error();
+    core::drop_kept_blocks(); // what measuring took is not needed for the work to come
     return Speeds{.pack_call = *pack_call,
                   .pack_tet = std::max(0.0, *packing - *pack_call) / large->tets,
+                  .pack_gradient_tet = std::max(0.0, *packing_gradients - *packing) / large->tets,
                   .brute_call = brute->call,
                   .brute_tet = brute->tet,
                   .brute_triangle = brute->triangle,
+                  .brute_gradient_tet = std::max(0.0, *brute_gradients - *brute_plain) / large->tets,
                   .clusters_call = clusters->call,
                   .clusters_tet = clusters->tet,
                   .clusters_triangle = clusters->triangle};
@@ -163,6 +189,7 @@ Result<DeviceSpeeds> measure_speeds(const Device& device, std::uint64_t side, in
         });
     });
     if (!parts) return parts.error();
+    core::drop_kept_blocks();
     return DeviceSpeeds{.upload_tet = upload_seconds / large->tets, .call = parts->call, .tet = parts->tet, .triangle = parts->triangle};
 }
 

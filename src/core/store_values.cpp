@@ -25,10 +25,8 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
     FieldReport& report = packed.field_report;
     report = {};
     report.name = field.name;
-    if (statistics.lower <= statistics.upper) {
-        report.lower = statistics.lower;
-        report.upper = statistics.upper;
-    }
+    report.lower = statistics.lower;
+    report.upper = statistics.upper;
     report.no_data = statistics.no_data;
     report.infinite = statistics.infinite;
     report.flushed = stored.flushed;

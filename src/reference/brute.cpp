@@ -72,10 +72,8 @@ Looked look_at(const Array& values, const std::set<std::uint64_t>& used, Precisi
 FieldReport report_on(const PointField& field, const Looked& looked) {
     FieldReport report;
     report.name = field.name;
-    if (looked.statistics.lower <= looked.statistics.upper) {
-        report.lower = looked.statistics.lower;
-        report.upper = looked.statistics.upper;
-    }
+    report.lower = looked.statistics.lower;
+    report.upper = looked.statistics.upper;
     report.no_data = looked.statistics.no_data;
     report.infinite = looked.statistics.infinite;
     report.offset = looked.storage.offset;

@@ -62,8 +62,13 @@ TEST(FieldSample, PassesOverWhatHasNoDataAndWhatIsBroken) {
 }
 
 Task task_of(double surfaces) {
-    return {.points = 200'000, .tets = 1'000'000, .surfaces = surfaces, .triangles = 50'000, .triangles_together = 50'000,
-            .memory_free = 1'000'000'000, .device_memory_free = {}};
+    Task task;
+    task.points = 200'000;
+    task.tets = 1'000'000;
+    task.surfaces = surfaces;
+    task.triangles = task.triangles_together = 50'000;
+    task.memory_free = 1'000'000'000;
+    return task;
 }
 
 TEST(Weigh, PacksOnlyWhereManySurfacesPayForIt) {
@@ -82,6 +87,21 @@ TEST(Weigh, TakesADeviceWhereThereIsOneThatIsFaster) {
     EXPECT_EQ(weigh(task, typical_speeds(), &slow).front().way, Way::clusters);
     task.device_memory_free = 1'000'000;
     EXPECT_EQ(weigh(task, typical_speeds(), &fast).front().way, Way::clusters);
+}
+
+TEST(Weigh, KnowsThatGradientsCostBruteAPassForEachSurface) {
+    Task task = task_of(10);
+    EXPECT_EQ(weigh(task, typical_speeds()).front().way, Way::brute);
+    task.gradients = true;
+    EXPECT_EQ(weigh(task, typical_speeds()).front().way, Way::clusters);
+}
+
+TEST(Weigh, PutsTheSmallestFirstWhereNothingFits) {
+    Task task = task_of(10'000);
+    task.memory_free = 1'000;
+    const std::vector<Forecast> ways = weigh(task, typical_speeds());
+    EXPECT_FALSE(ways.front().fits);
+    EXPECT_LT(ways.front().bytes, ways.back().bytes);
 }
 
 TEST(Weigh, PutsWhatDoesNotFitLast) {

@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet extract`: files, names, numbers.
+#include <limits>
+
 #include <fmt/format.h>
 
 #include <isotet/read.hpp>
@@ -108,6 +110,19 @@ TEST_F(Program, ExtractByBruteTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {
     const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--method", "brute"});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.err.find("isotet: note: no isovalue was given: 4.5"), std::string::npos) << run.err;
+}
+
+TEST_F(Program, ExtractSaysWhenAFieldHasNoFiniteValue) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    put_content(path("g.msh"), small_grid({{"p", {nan, nan, nan, nan, nan}}}));
+    for (const char* method : {"brute", "clusters"}) {
+        const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--method", method});
+        EXPECT_EQ(run.status, 3) << method;
+        EXPECT_NE(run.err.find("field 'p' has no finite value"), std::string::npos) << run.err;
+        const json report = json_of({"extract", path("g.msh"), "-f", "p", "-i", "1", "--method", method});
+        EXPECT_TRUE(report["range"].is_null()) << method;
+        EXPECT_EQ(report["surfaces"][0]["triangles"], 0);
+    }
 }
 
 TEST_F(Program, ExtractOnADeviceByBruteIsRefused) {

@@ -13,12 +13,27 @@ namespace {
 
 class KeptSpeeds : public testing::Test {
 protected:
-    void SetUp() override { ASSERT_EQ(setenv("XDG_CACHE_HOME", folder.file("").c_str(), 1), 0); }
-    void TearDown() override { unsetenv("XDG_CACHE_HOME"); }
+    void SetUp() override {
+        if (const char* cache = std::getenv("XDG_CACHE_HOME")) before = cache;
+        ASSERT_EQ(setenv("XDG_CACHE_HOME", folder.file("").c_str(), 1), 0);
+    }
+    void TearDown() override {
+        if (before) setenv("XDG_CACHE_HOME", before->c_str(), 1);
+        else unsetenv("XDG_CACHE_HOME");
+    }
     void put(const std::string& text) { folder.write("isotet/speeds.json", text); }
 
+    std::optional<std::string> before;
     test::TemporaryFolder folder;
-    const Speeds speeds{.pack_call = 1, .pack_tet = 2, .brute_call = 3, .brute_tet = 4, .brute_triangle = 5, .clusters_call = 6, .clusters_tet = 7,
+    const Speeds speeds{.pack_call = 1,
+                        .pack_tet = 2,
+                        .pack_gradient_tet = 9,
+                        .brute_call = 3,
+                        .brute_tet = 4,
+                        .brute_triangle = 5,
+                        .brute_gradient_tet = 10,
+                        .clusters_call = 6,
+                        .clusters_tet = 7,
                         .clusters_triangle = 8};
 };
 
@@ -31,6 +46,7 @@ TEST_F(KeptSpeeds, AreFoundUnderTheirKeyOnly) {
     EXPECT_EQ(found->pack_call, 1);
     EXPECT_EQ(found->brute_triangle, 5);
     EXPECT_EQ(found->clusters_triangle, 8);
+    EXPECT_EQ(found->brute_gradient_tet, 10);
     ASSERT_TRUE(kept_device_speeds("card"));
     EXPECT_EQ(kept_device_speeds("card")->triangle, 4);
     EXPECT_FALSE(kept_speeds("b"));
@@ -40,7 +56,7 @@ TEST_F(KeptSpeeds, AreFoundUnderTheirKeyOnly) {
 TEST_F(KeptSpeeds, OfABrokenFileAreMeasuredAgain) {
     keep("a", speeds);
     const std::string whole = test::content_of(folder.file("isotet/speeds.json"));
-    for (std::size_t length = 0; length < whole.size(); length += 7) {
+    for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
         put(whole.substr(0, length));
         EXPECT_FALSE(kept_speeds("a")) << length;
     }
@@ -53,6 +69,8 @@ TEST_F(KeptSpeeds, OfABrokenFileAreMeasuredAgain) {
         put(whole.substr(0, place).append(wrong).append(whole, place + 3));
         EXPECT_FALSE(kept_speeds("a")) << wrong;
     }
+    keep("a", Speeds{});
+    EXPECT_FALSE(kept_speeds("a")) << "nothing takes no time";
     keep("a", speeds);
     EXPECT_TRUE(kept_speeds("a"));
 }

@@ -147,7 +147,7 @@ TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndFilter) {
     const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", "software", "--rounds", "1", "--filters",
                                  "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
     EXPECT_EQ(report["device"]["kind"], "software");
-    ASSERT_EQ(report["rows"].size(), 3 + 3 * 6u);
+    ASSERT_EQ(report["rows"].size(), 3 + 4 * 6u);
     const std::uint64_t tets = 6 * 6 * 6 * 6;
     for (const auto& row : report["rows"]) {
         EXPECT_TRUE(row["missing"].is_null()) << row;
@@ -173,6 +173,13 @@ TEST_F(Render, OfWhatDoesNotFitCrossesTheBusWhenBenchMeasuresIt) {
     EXPECT_EQ(all["bytes"]["crossing"], 0);
     EXPECT_GT(some["bytes"]["crossing"], 0) << some;
     EXPECT_EQ(all["bytes"]["device"], some["bytes"]["device"].get<std::uint64_t>() + some["bytes"]["crossing"].get<std::uint64_t>());
+}
+
+TEST_F(Render, IsNothingThatBenchCouldMeasureWithoutMemory) {
+    const RunResult run = isotet({"bench", "make:kuhn:4:sphere", "--device", "software", "--device-memory", "1kB", "--rounds", "1"});
+    EXPECT_EQ(run.status, 4);
+    EXPECT_NE(run.err.find("nothing could be measured: "), std::string::npos) << run.err;
+    EXPECT_NE(run.out.find("not measured: brute on make:kuhn:4:sphere: "), std::string::npos) << run.out;
 }
 
 TEST_F(Render, RefusesWhatCannotBe) {

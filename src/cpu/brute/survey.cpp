@@ -179,10 +179,8 @@ bool PointSurvey::decides_as(const PointSurvey& other) const {
 FieldReport PointSurvey::report(const std::string& name) const {
     FieldReport report;
     report.name = name;
-    if (field.statistics.lower <= field.statistics.upper) {
-        report.lower = field.statistics.lower;
-        report.upper = field.statistics.upper;
-    }
+    report.lower = field.statistics.lower;
+    report.upper = field.statistics.upper;
     report.no_data = field.statistics.no_data;
     report.infinite = field.statistics.infinite;
     report.flushed = flushed;
