@@ -67,7 +67,8 @@ Row measure(const Device& device, std::uint64_t side, int rounds) {
     DeviceGrid on_device = DeviceGrid::upload(device, packed).value();
     row.upload = seconds_since(begin);
     DeviceSurface surface;
-    for (const double isovalue : isovalues) on_device.extract(isovalue, surface).value(); // arrays grow, kernels are made
+    for (const double isovalue : isovalues)
+        on_device.extract(isovalue, surface).value(); // arrays grow, kernels are made
     std::vector<double> device_seconds, waited, cpu;
     std::map<std::string, std::vector<double>> passes;
     for (int round = 0; round < rounds; ++round)
@@ -104,9 +105,10 @@ void print(const Row& row, double bandwidth) {
         return found == row.passes.end() ? 0.0 : 1e3 * found->second;
     };
     std::printf("%11llu %10llu %8.2f %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %8.1f %7.1f%% %6llu\n",
-                static_cast<unsigned long long>(row.pack.tets), static_cast<unsigned long long>(row.triangles), row.pack_seconds,
-                row.upload, milliseconds("select"), milliseconds("count"), milliseconds("scan"), milliseconds("emit"),
-                1e3 * row.device, 1e3 * row.waited, 1e3 * row.cpu, 100 * row.must_move / bandwidth / std::max(row.device, 1e-9),
+                static_cast<unsigned long long>(row.pack.tets), static_cast<unsigned long long>(row.triangles),
+                row.pack_seconds, row.upload, milliseconds("select"), milliseconds("count"), milliseconds("scan"),
+                milliseconds("emit"), 1e3 * row.device, 1e3 * row.waited, 1e3 * row.cpu,
+                100 * row.must_move / bandwidth / std::max(row.device, 1e-9),
                 static_cast<unsigned long long>(row.down));
     std::fflush(stdout);
 }
@@ -126,10 +128,11 @@ int main(int count, char** words) {
     }
     const double bandwidth = copy_bandwidth(*device->context());
     std::printf("device %s, %s; copies %.1f GB/s%s\n", device->info().name.c_str(), device->info().driver.c_str(),
-                bandwidth / 1e9, device->info().kind == DeviceKind::software ? "; a software device says nothing of a GPU" : "");
+                bandwidth / 1e9,
+                device->info().kind == DeviceKind::software ? "; a software device says nothing of a GPU" : "");
     for (const std::string& notice : device->notices()) std::printf("notice: %s\n", notice.c_str());
-    std::printf("%11s %10s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %6s\n", "tets", "triangles", "pack s", "upload s", "select",
-                "count", "scan", "emit", "all ms", "wait ms", "cpu ms", "of copy", "bus B");
+    std::printf("%11s %10s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %6s\n", "tets", "triangles", "pack s", "upload s",
+                "select", "count", "scan", "emit", "all ms", "wait ms", "cpu ms", "of copy", "bus B");
     double last = 0;
     for (const std::uint64_t side : {20, 55, 94, 170, 255, 368, 550}) {
         const double tets = 6.0 * static_cast<double>(side) * static_cast<double>(side) * static_cast<double>(side);

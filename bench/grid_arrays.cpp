@@ -34,9 +34,8 @@ Grid load(const std::string& source, const std::string& field, int threads) {
 /// The array itself where it is float32 or float64, else its values as float64.
 Array as_reals(const Array& array) {
     if (is_floating(array.type())) return array;
-    return array.visit([&](auto values) {
-        return Array::own(std::vector<double>(values.begin(), values.end()), array.components());
-    });
+    return array.visit(
+        [&](auto values) { return Array::own(std::vector<double>(values.begin(), values.end()), array.components()); });
 }
 
 void write_reals(const std::string& folder, const std::string& name, const Array& array) {

@@ -129,8 +129,7 @@ Reply IsotetContestant::extract_from(const std::string& name, double isovalue, c
     const Stopwatch watch;
     const Extraction extraction = extract(from, isovalue, options).value();
     const double seconds = watch.seconds();
-    return describe(extraction, seconds)
-        .count("must_move", extraction_must_move(from, isovalue, extraction.surface));
+    return describe(extraction, seconds).count("must_move", extraction_must_move(from, isovalue, extraction.surface));
 }
 
 Reply IsotetContestant::extract_once(double isovalue) {

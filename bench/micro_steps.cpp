@@ -49,14 +49,15 @@ const Subject& subject(benchmark::State& state) {
 }
 
 void count_tets(benchmark::State& state, const Subject& of) {
-    state.counters["tets"] = benchmark::Counter(static_cast<double>(of.grid.cells.count()),
-                                                benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["tets"] =
+        benchmark::Counter(static_cast<double>(of.grid.cells.count()), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void sort_tets(benchmark::State& state) {
     const Subject& of = subject(state);
     const auto cells = core::CellReader::open(of.grid).value();
-    for (auto _ : state) benchmark::DoNotOptimize(core::sort_tets(of.grid, cells, core::count_tets(cells), false, {}).value());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(core::sort_tets(of.grid, cells, core::count_tets(cells), false, {}).value());
     count_tets(state, of);
 }
 

@@ -99,8 +99,8 @@ private:
         grid_->SetCells(VTK_TETRA, cells);
         grid_->GetPointData()->SetScalars(field);
 
-        must_read_ = static_cast<std::uint64_t>(tets) * (ids == "int32" ? 16 : 32) +
-                     isotet::bench::bytes(arrays_.field);
+        must_read_ =
+            static_cast<std::uint64_t>(tets) * (ids == "int32" ? 16 : 32) + isotet::bench::bytes(arrays_.field);
         return Reply()
             .text("version", vtkVersion::GetVTKVersion())
             .text("backend", vtkSMPTools::GetBackend())
@@ -153,10 +153,10 @@ private:
         auto* surface = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
         if (!surface) throw std::runtime_error("the filter made no vtkPolyData");
         const Reply reply = Reply()
-            .number("seconds", seconds)
-            .count("vertices", static_cast<std::uint64_t>(surface->GetNumberOfPoints()))
-            .count("triangles", static_cast<std::uint64_t>(surface->GetNumberOfPolys()))
-            .count("must_move", must_read_ + std::uint64_t{1024} * surface->GetActualMemorySize());
+                                .number("seconds", seconds)
+                                .count("vertices", static_cast<std::uint64_t>(surface->GetNumberOfPoints()))
+                                .count("triangles", static_cast<std::uint64_t>(surface->GetNumberOfPolys()))
+                                .count("must_move", must_read_ + std::uint64_t{1024} * surface->GetActualMemorySize());
         surface->Initialize();
         return reply;
     }

@@ -10,11 +10,14 @@ namespace isotet::cli {
 std::vector<Advice> advice_of(const std::vector<BenchRow>& rows) {
     std::vector<Advice> advice;
     // By the best rounds: what slows a round down is other programs, and rounds of different rows do not meet the same ones.
-    const auto cost = [&](std::size_t row, double surfaces) { return rows[row].costs.prepare_seconds + surfaces * rows[row].best.total(); };
+    const auto cost = [&](std::size_t row, double surfaces) {
+        return rows[row].costs.prepare_seconds + surfaces * rows[row].best.total();
+    };
     for (double surfaces = 1;;) {
         std::optional<std::size_t> fastest;
         for (std::size_t row = 0; row < rows.size(); ++row)
-            if (rows[row].missing.empty() && (!fastest || cost(row, surfaces) < cost(*fastest, surfaces))) fastest = row;
+            if (rows[row].missing.empty() && (!fastest || cost(row, surfaces) < cost(*fastest, surfaces)))
+                fastest = row;
         if (!fastest) return advice;
         // The next row that overtakes it, which must be one with less a surface.
         double upto = std::numeric_limits<double>::infinity();
@@ -39,7 +42,8 @@ std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, B
     for (const BenchRow& with : rows) {
         if (with.pair.method != method || with.pair.filter != Filter::interval_tree || !with.missing.empty()) continue;
         const auto without = std::ranges::find_if(rows, [&](const BenchRow& row) {
-            return row.grid == with.grid && row.pair.method == method && row.pair.filter == Filter::none && row.missing.empty();
+            return row.grid == with.grid && row.pair.method == method && row.pair.filter == Filter::none &&
+                   row.missing.empty();
         });
         if (without == rows.end()) continue;
         sum += without->best.total() / with.best.total();

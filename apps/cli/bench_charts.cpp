@@ -12,7 +12,9 @@ namespace {
 
 /// Figure 4 as far as its text has numbers: GPU(R) on a card of 256 MB. It gives GPU(T) twice the speed of the CPU, both
 /// constant up to 5 million tets, but no number for them.
-ChartLine registers_in_the_paper() { return {"GPU(R) in the paper, 2006", {{1e5, 6.7e6}, {6e5, 6.7e6}, {1e6, 4e6}}, true}; }
+ChartLine registers_in_the_paper() {
+    return {"GPU(R) in the paper, 2006", {{1e5, 6.7e6}, {6e5, 6.7e6}, {1e6, 4e6}}, true};
+}
 
 std::string name_in_chart(const BenchPair& pair) {
     std::string name = pair.name();

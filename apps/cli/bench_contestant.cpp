@@ -167,7 +167,8 @@ Result<void> BenchBed::pack() {
 }
 
 std::unique_ptr<Contestant> make_contestant(const BenchPair& pair) {
-    if (const std::optional<DrawMethod> method = draw_method_of(pair.method)) return std::make_unique<InTheVertexShader>(*method, pair.filter);
+    if (const std::optional<DrawMethod> method = draw_method_of(pair.method))
+        return std::make_unique<InTheVertexShader>(*method, pair.filter);
     if (pair.method == BenchMethod::brute) return std::make_unique<Brute>();
     if (pair.method == BenchMethod::clusters) return std::make_unique<Clusters>();
     return std::make_unique<ClustersOnDevice>();

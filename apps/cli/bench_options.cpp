@@ -34,14 +34,17 @@ Examples:
 
 /// Words separated by commas, each one of `all` by its name.
 template <class Value, class All>
-void add_list(CLI::App& app, const std::string& option, std::vector<Value>& target, const All& all, const std::string& description) {
+void add_list(CLI::App& app, const std::string& option, std::vector<Value>& target, const All& all,
+              const std::string& description) {
     app.add_option_function<std::vector<std::string>>(
            option,
            [&target, &all, option](const std::vector<std::string>& words) {
                for (const std::string& word : words) {
-                   const auto found = std::ranges::find_if(all, [&](Value value) { return std::string_view(name_of(value)) == word; });
+                   const auto found =
+                       std::ranges::find_if(all, [&](Value value) { return std::string_view(name_of(value)) == word; });
                    std::string names;
-                   for (const Value value : all) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(value));
+                   for (const Value value : all)
+                       names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(value));
                    if (found == all.end()) throw wrong_value(option, word, "one or more of " + names);
                    if (std::ranges::find(target, *found) == target.end()) target.push_back(*found);
                }
@@ -69,7 +72,9 @@ const char* name_of(BenchMethod method) noexcept {
 
 std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept { return parse_draw_method(name_of(method)); }
 
-bool needs_device(BenchMethod method) noexcept { return method != BenchMethod::brute && method != BenchMethod::clusters; }
+bool needs_device(BenchMethod method) noexcept {
+    return method != BenchMethod::brute && method != BenchMethod::clusters;
+}
 
 std::string BenchPair::name() const {
     std::string name = name_of(method);
@@ -90,22 +95,29 @@ std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const s
 CLI::App& add_bench_command(CLI::App& program, BenchCommand& bench) {
     CLI::App& app = *program.add_subcommand("bench", "Measure methods and filters on a grid, and say which to take");
     CLI::Option* file = add_file(app, "FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
-    CLI::Option* paper =
-        app.add_flag("--paper", bench.paper, "Measure Figure 4 of Buatois, Caumon and Levy (2006) on made grids, without FILE");
+    CLI::Option* paper = app.add_flag(
+        "--paper", bench.paper, "Measure Figure 4 of Buatois, Caumon and Levy (2006) on made grids, without FILE");
     paper->excludes(file);
     add_count(
         app, "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",
         "Largest grid of --paper; without it 5000000")
         ->needs(paper);
-    add_text(app, "-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")->excludes(paper);
-    app.add_flag("--cell-field", bench.field.cell_field, "Of a name that is both a point and a cell field, the cell field");
-    add_numbers(app, "-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")->excludes(paper);
-    add_list(app, "--methods", bench.methods, all_bench_methods, "Methods, separated by commas; without it all that this machine can");
-    add_list(app, "--filters", bench.filters, all_filters, "Filters, separated by commas; without it none and interval_tree");
+    add_text(app, "-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")
+        ->excludes(paper);
+    app.add_flag("--cell-field", bench.field.cell_field,
+                 "Of a name that is both a point and a cell field, the cell field");
+    add_numbers(app, "-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")
+        ->excludes(paper);
+    add_list(app, "--methods", bench.methods, all_bench_methods,
+             "Methods, separated by commas; without it all that this machine can");
+    add_list(app, "--filters", bench.filters, all_filters,
+             "Filters, separated by commas; without it none and interval_tree");
     add_count(
-        app, "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N", "How often everything is measured; without it 5");
+        app, "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",
+        "How often everything is measured; without it 5");
     add_file(app, "--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
-    add_file(app, "--svg", bench.svg, "OUT_FILE", "Draw a chart: with --paper tets a second against tets, else time against surfaces");
+    add_file(app, "--svg", bench.svg, "OUT_FILE",
+             "Draw a chart: with --paper tets a second against tets, else time against surfaces");
     app.footer(details);
     return app;
 }

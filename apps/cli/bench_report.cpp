@@ -23,19 +23,22 @@ Json count_or_null(std::optional<std::uint64_t> count) { return count ? Json(*co
 Table rows_table(const BenchNumbers& numbers) {
     using enum Table::Align;
     Table table({left, right, right, right, right, right, right, right, right, right, right, right, right});
-    table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut", "triangles",
-               "bytes sent", "ask, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms", "best, ms", "tets a second"});
+    table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut",
+               "triangles", "bytes sent", "ask, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms",
+               "best, ms", "tets a second"});
     for (const BenchRow& row : numbers.rows) {
-        const std::string name = numbers.command->paper ? fmt::format("{} {}", grouped(row.tets), row.pair.name()) : row.pair.name();
+        const std::string name =
+            numbers.command->paper ? fmt::format("{} {}", grouped(row.tets), row.pair.name()) : row.pair.name();
         if (!row.missing.empty()) {
             table.row({name, "not measured"});
             continue;
         }
-        table.row({name, seconds_text(row.costs.prepare_seconds), bytes_text(row.costs.host_bytes), bytes_text(row.costs.device_bytes),
-                   count_or_nothing(row.outcome.tets_looked_at), count_or_nothing(row.outcome.triangles),
-                   grouped(row.outcome.sent_bytes + row.costs.crossing_bytes), milliseconds(row.median.ask), milliseconds(row.median.extract),
-                   numbers.device ? milliseconds(row.median.draw) : "", milliseconds(row.median.total()), milliseconds(row.best.total()),
-                   grouped(static_cast<std::uint64_t>(row.tets_per_second()))});
+        table.row({name, seconds_text(row.costs.prepare_seconds), bytes_text(row.costs.host_bytes),
+                   bytes_text(row.costs.device_bytes), count_or_nothing(row.outcome.tets_looked_at),
+                   count_or_nothing(row.outcome.triangles), grouped(row.outcome.sent_bytes + row.costs.crossing_bytes),
+                   milliseconds(row.median.ask), milliseconds(row.median.extract),
+                   numbers.device ? milliseconds(row.median.draw) : "", milliseconds(row.median.total()),
+                   milliseconds(row.best.total()), grouped(static_cast<std::uint64_t>(row.tets_per_second()))});
     }
     return table;
 }
@@ -44,7 +47,8 @@ Table rows_table(const BenchNumbers& numbers) {
 std::string missing_text(const BenchNumbers& numbers) {
     std::string text;
     for (const BenchRow& row : numbers.rows)
-        if (!row.missing.empty()) text += fmt::format("not measured: {} on {}: {}\n", row.pair.name(), row.grid, row.missing);
+        if (!row.missing.empty())
+            text += fmt::format("not measured: {} on {}: {}\n", row.pair.name(), row.grid, row.missing);
     return text;
 }
 
@@ -52,8 +56,9 @@ std::string advice_text(const BenchNumbers& numbers) {
     std::string text;
     double from = 1;
     for (const Advice& one : advice_of(numbers.rows)) {
-        const std::string range = std::isinf(one.upto) ? fmt::format("from {:.0f} surface{} on", from, from == 1 ? "" : "s")
-                                                       : fmt::format("up to {:.0f} surface{}", one.upto, one.upto == 1 ? "" : "s");
+        const std::string range = std::isinf(one.upto)
+                                      ? fmt::format("from {:.0f} surface{} on", from, from == 1 ? "" : "s")
+                                      : fmt::format("up to {:.0f} surface{}", one.upto, one.upto == 1 ? "" : "s");
         text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", range, numbers.rows[one.row].pair.name());
         from = one.upto + 1;
     }
@@ -68,7 +73,9 @@ std::string gains_text(const std::vector<BenchRow>& rows) {
     return text;
 }
 
-Json json_of(const BenchTimes& times) { return {{"ask", times.ask}, {"extract", times.extract}, {"draw", times.draw}, {"all", times.total()}}; }
+Json json_of(const BenchTimes& times) {
+    return {{"ask", times.ask}, {"extract", times.extract}, {"draw", times.draw}, {"all", times.total()}};
+}
 
 } // namespace
 
@@ -84,14 +91,16 @@ std::string bench_table(const BenchNumbers& numbers) {
     for (const double isovalue : numbers.isovalues) isovalues += (isovalues.empty() ? "" : ", ") + shortest(isovalue);
     table.row({"isovalues", isovalues});
     table.row({"threads", std::to_string(numbers.threads)});
-    table.row({"device", numbers.device ? fmt::format("{} ({}); pictures of {} x {}", numbers.device->name, name_of(numbers.device->kind),
-                                                      bench_picture().width, bench_picture().height)
-                                        : "none: nothing is drawn"});
+    table.row({"device", numbers.device
+                             ? fmt::format("{} ({}); pictures of {} x {}", numbers.device->name,
+                                           name_of(numbers.device->kind), bench_picture().width, bench_picture().height)
+                             : "none: nothing is drawn"});
     const std::string gains = gains_text(numbers.rows);
     std::string text = table.text() + "\n" + rows_table(numbers).text() + "\n" + missing_text(numbers);
     if (!numbers.command->paper) text += "fastest: " + advice_text(numbers) + "\n";
     if (!gains.empty())
-        text += fmt::format("with the interval tree: {}{}\n", gains, numbers.command->paper ? ", the mean over the grids" : "");
+        text += fmt::format("with the interval tree: {}{}\n", gains,
+                            numbers.command->paper ? ", the mean over the grids" : "");
     return text;
 }
 
@@ -102,7 +111,8 @@ Json bench_json(const BenchNumbers& numbers) {
     report["isovalues"] = numbers.isovalues;
     report["threads"] = numbers.threads;
     report["device"] = nullptr;
-    if (numbers.device) report["device"] = {{"name", json_text(numbers.device->name)}, {"kind", name_of(numbers.device->kind)}};
+    if (numbers.device)
+        report["device"] = {{"name", json_text(numbers.device->name)}, {"kind", name_of(numbers.device->kind)}};
     Json rows = Json::array();
     for (const BenchRow& row : numbers.rows) {
         Json one = {{"grid", json_text(row.grid)},
@@ -129,17 +139,20 @@ Json bench_json(const BenchNumbers& numbers) {
     Json advice = Json::array();
     if (!numbers.command->paper)
         for (const Advice& one : advice_of(numbers.rows))
-            advice.push_back({{"row", one.row}, {"up_to_surfaces", std::isinf(one.upto) ? Json(nullptr) : Json(one.upto)}});
+            advice.push_back(
+                {{"row", one.row}, {"up_to_surfaces", std::isinf(one.upto) ? Json(nullptr) : Json(one.upto)}});
     report["advice"] = std::move(advice);
     Json gains = Json::object();
     for (const BenchMethod method : all_bench_methods)
-        if (const std::optional<double> gain = gain_of_interval_tree(numbers.rows, method)) gains[name_of(method)] = *gain;
+        if (const std::optional<double> gain = gain_of_interval_tree(numbers.rows, method))
+            gains[name_of(method)] = *gain;
     report["gain_of_interval_tree"] = std::move(gains);
     return report;
 }
 
 std::string bench_csv(const BenchNumbers& numbers) {
-    std::string text = "grid,tets,points,method,filter,prepare_s,host_bytes,device_bytes,crossing_bytes,sent_bytes,tets_looked_at,triangles,"
+    std::string text = "grid,tets,points,method,filter,prepare_s,host_bytes,device_bytes,crossing_bytes,sent_bytes,"
+                       "tets_looked_at,triangles,"
                        "ask_s,extract_s,draw_s,all_s,best_all_s,tets_per_s,missing\n";
     const auto quoted = [](std::string word) {
         std::string out = "\"";
@@ -154,10 +167,11 @@ std::string bench_csv(const BenchNumbers& numbers) {
             continue;
         }
         const auto count = [](std::optional<std::uint64_t> known) { return known ? std::to_string(*known) : ""; };
-        text += fmt::format("{},{},{},{},{},{},{},", row.costs.prepare_seconds, row.costs.host_bytes, row.costs.device_bytes,
-                            row.costs.crossing_bytes, row.outcome.sent_bytes, count(row.outcome.tets_looked_at), count(row.outcome.triangles));
-        text += fmt::format("{},{},{},{},{},{},\n", row.median.ask, row.median.extract, row.median.draw, row.median.total(), row.best.total(),
-                            row.tets_per_second());
+        text += fmt::format("{},{},{},{},{},{},{},", row.costs.prepare_seconds, row.costs.host_bytes,
+                            row.costs.device_bytes, row.costs.crossing_bytes, row.outcome.sent_bytes,
+                            count(row.outcome.tets_looked_at), count(row.outcome.triangles));
+        text += fmt::format("{},{},{},{},{},{},\n", row.median.ask, row.median.extract, row.median.draw,
+                            row.median.total(), row.best.total(), row.tets_per_second());
     }
     return text;
 }

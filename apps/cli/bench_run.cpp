@@ -11,8 +11,8 @@ namespace isotet::cli {
 namespace {
 
 /// One isovalue, from the question to the picture.
-Result<void> measure_isovalue(Contestant& contestant, BenchBed& bed, double isovalue, const PictureOptions& picture, BenchTimes& times,
-                              BenchOutcome& outcome) {
+Result<void> measure_isovalue(Contestant& contestant, BenchBed& bed, double isovalue, const PictureOptions& picture,
+                              BenchTimes& times, BenchOutcome& outcome) {
     const Result<DrawnSurface> drawn = contestant.make(bed, isovalue, times, outcome);
     if (!drawn) return drawn.error();
     if (!bed.renderer) return {};
@@ -46,7 +46,8 @@ BenchOutcome mean_of(const std::vector<BenchOutcome>& all) {
         }
         return sum / all.size();
     };
-    return {mean([](const BenchOutcome& one) { return one.tets_looked_at; }), mean([](const BenchOutcome& one) { return one.triangles; }),
+    return {mean([](const BenchOutcome& one) { return one.tets_looked_at; }),
+            mean([](const BenchOutcome& one) { return one.triangles; }),
             *mean([](const BenchOutcome& one) { return std::optional(one.sent_bytes); })};
 }
 
@@ -60,12 +61,15 @@ Result<void> measure_into(BenchRow& row, BenchBed& bed, const std::vector<double
     PictureOptions picture = bench_picture();
     if (bed.packed) picture.camera.fit(bounds_of(*bed.packed), 1);
     std::vector<BenchTimes> means;
-    for (std::uint64_t round = 0; round <= rounds; ++round) { // the first makes pipelines and takes memory, and does not count
+    for (std::uint64_t round = 0; round <= rounds;
+         ++round) { // the first makes pipelines and takes memory, and does not count
         std::vector<BenchTimes> times(isovalues.size());
         std::vector<BenchOutcome> outcomes(isovalues.size());
         for (std::size_t i = 0; i < isovalues.size(); ++i) {
             if (bed.progress.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-            if (Result<void> done = measure_isovalue(*contestant, bed, isovalues[i], picture, times[i], outcomes[i]); !done) return done;
+            if (Result<void> done = measure_isovalue(*contestant, bed, isovalues[i], picture, times[i], outcomes[i]);
+                !done)
+                return done;
         }
         if (round > 0) means.push_back(mean_of(times));
         row.outcome = mean_of(outcomes);
@@ -86,7 +90,8 @@ PictureOptions bench_picture() {
     return picture;
 }
 
-Result<BenchRow> measure(const BenchPair& pair, BenchBed& bed, const std::vector<double>& isovalues, std::uint64_t rounds) {
+Result<BenchRow> measure(const BenchPair& pair, BenchBed& bed, const std::vector<double>& isovalues,
+                         std::uint64_t rounds) {
     BenchRow row;
     row.pair = pair;
     const Result<void> done = measure_into(row, bed, isovalues, rounds);

@@ -18,8 +18,9 @@ constexpr double width = 900, height = 560;
 constexpr double left = 90, top = 64, plot_width = 560, plot_height = 420;
 constexpr double label_height = 16;
 constexpr std::array dashes{"", " stroke-dasharray=\"2 3\"", " stroke-dasharray=\"9 3\""}; // when colours begin anew
-constexpr std::array colors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7f7f7f",
-                            "#8c564b", "#999933", "#4b0082", "#800000"}; // those of Okabe and Ito, and four more
+constexpr std::array colors{
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
+    "#000000", "#7f7f7f", "#8c564b", "#999933", "#4b0082", "#800000"}; // those of Okabe and Ito, and four more
 
 std::string xml_text(std::string_view text) {
     std::string out;
@@ -34,13 +35,15 @@ std::string xml_text(std::string_view text) {
     return out;
 }
 
-std::string text_at(double x, double y, const std::string& text, const char* anchor, const char* color = "#222222", int size = 12) {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\" fill=\"{}\">{}</text>\n", x, y, anchor, size, color,
-                       xml_text(text));
+std::string text_at(double x, double y, const std::string& text, const char* anchor, const char* color = "#222222",
+                    int size = 12) {
+    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\" fill=\"{}\">{}</text>\n", x,
+                       y, anchor, size, color, xml_text(text));
 }
 
 std::string line_between(double x1, double y1, double x2, double y2) {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#dddddd\"/>\n", x1, y1, x2, y2);
+    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#dddddd\"/>\n", x1, y1,
+                       x2, y2);
 }
 
 /// "100", "10 k", "1 M".
@@ -59,7 +62,9 @@ std::string decade_text(double value) {
 class LogAxis {
 public:
     LogAxis(double lowest, double highest, double start, double length)
-        : first_(std::floor(std::log10(lowest) + 1e-9)), last_(std::max(std::ceil(std::log10(highest) - 1e-9), first_ + 1)), start_(start),
+        : first_(std::floor(std::log10(lowest) + 1e-9)),
+          last_(std::max(std::ceil(std::log10(highest) - 1e-9), first_ + 1)),
+          start_(start),
           length_(length) {}
 
     double place(double value) const { return start_ + length_ * (std::log10(value) - first_) / (last_ - first_); }
@@ -73,7 +78,9 @@ private:
     double first_, last_, start_, length_;
 };
 
-bool can_be_shown(const ChartPoint& point) { return std::isfinite(point.x) && std::isfinite(point.y) && point.x > 0 && point.y > 0; }
+bool can_be_shown(const ChartPoint& point) {
+    return std::isfinite(point.x) && std::isfinite(point.y) && point.x > 0 && point.y > 0;
+}
 
 /// Places for names beside the ends of their lines, moved apart where they would touch.
 std::vector<double> label_places(const std::vector<double>& wanted) {
@@ -111,9 +118,10 @@ std::string Chart::svg() const {
     if (shown.empty()) lowest = highest = {1, 1};
 
     const LogAxis x(lowest.x, highest.x, left, plot_width), y(lowest.y, highest.y, top + plot_height, -plot_height);
-    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-                                  "font-family=\"sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
-                                  width, height);
+    std::string out =
+        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+                    "font-family=\"sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
+                    width, height);
     out += text_at(left, 24, title, "start", "#222222", 16) + text_at(left, 44, subtitle, "start", "#555555");
     for (const double value : x.decades()) {
         out += line_between(x.place(value), top, x.place(value), top + plot_height);
@@ -133,12 +141,14 @@ std::string Chart::svg() const {
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const char* const color = colors[i % colors.size()];
         std::string path;
-        for (const ChartPoint& point : shown[i].points) path += fmt::format("{:.1f},{:.1f} ", x.place(point.x), y.place(point.y));
+        for (const ChartPoint& point : shown[i].points)
+            path += fmt::format("{:.1f},{:.1f} ", x.place(point.x), y.place(point.y));
         path.pop_back();
         out += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}/>\n", path, color,
                            shown[i].dashed ? " stroke-dasharray=\"6 4\"" : dashes[i / colors.size() % dashes.size()]);
         for (const ChartPoint& point : shown[i].points)
-            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x.place(point.x), y.place(point.y), color);
+            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x.place(point.x),
+                               y.place(point.y), color);
         out += text_at(left + plot_width + 12, labels[i], shown[i].name, "start", color);
     }
     return out + "</svg>\n";

@@ -59,7 +59,8 @@ Result<void> BenchRun::open_device() {
         return {};
     }
     if (!command_.device.name.empty() || device.error().code != ErrorCode::machine) return device.error();
-    console_.note(fmt::format("{}: only what needs no device is measured, and no pictures are drawn", device.error().message));
+    console_.note(
+        fmt::format("{}: only what needs no device is measured, and no pictures are drawn", device.error().message));
     return {};
 }
 
@@ -72,10 +73,13 @@ Result<void> BenchRun::choose_pairs() {
         if (needs_device(method) && !device_)
             return Error{ErrorCode::invalid_argument,
                          fmt::format("--methods has {}, which needs a device, but there is none", name_of(method))};
-    const std::vector<Filter> filters = command_.filters.empty() ? std::vector{Filter::none, Filter::interval_tree} : command_.filters;
-    if (!command_.filters.empty() && std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
-        return Error{ErrorCode::invalid_argument, "--filters was given, but none of the methods takes lists of tets: registers, "
-                                                  "registers_instanced, textures and mesh do"};
+    const std::vector<Filter> filters =
+        command_.filters.empty() ? std::vector{Filter::none, Filter::interval_tree} : command_.filters;
+    if (!command_.filters.empty() &&
+        std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
+        return Error{ErrorCode::invalid_argument,
+                     "--filters was given, but none of the methods takes lists of tets: registers, "
+                     "registers_instanced, textures and mesh do"};
     pairs_ = pairs_of(methods, filters);
     return {};
 }
@@ -114,17 +118,22 @@ Result<void> BenchRun::run_file() {
     const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
     if (!steps) return steps.error();
     Grid grid;
-    const Result<PointField> field = read_field(*source, steps->front(), command_.field, {}, command_.common.threads, console_, grid);
+    const Result<PointField> field =
+        read_field(*source, steps->front(), command_.field, {}, command_.common.threads, console_, grid);
     if (!field) return field.error();
     numbers_.field = field->name;
     numbers_.isovalues = command_.isovalues.empty() ? levels_within(*field, levels_without_a_word) : command_.isovalues;
     if (numbers_.isovalues.empty())
-        return Error{ErrorCode::invalid_data, fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};
     for (double& isovalue : numbers_.isovalues)
         if (isovalue == 0) isovalue = 0; // -0 is called 0
     if (Result<void> done = measure_all(command_.grid.file, grid, *field); !done) return done;
-    const auto empty = [](const BenchRow& row) { return row.missing.empty() && row.outcome.triangles == std::uint64_t{0}; };
-    if (std::ranges::any_of(numbers_.rows, empty)) console_.note("there is no surface: what was measured is how long it takes to find that out");
+    const auto empty = [](const BenchRow& row) {
+        return row.missing.empty() && row.outcome.triangles == std::uint64_t{0};
+    };
+    if (std::ranges::any_of(numbers_.rows, empty))
+        console_.note("there is no surface: what was measured is how long it takes to find that out");
     return {};
 }
 
@@ -137,7 +146,8 @@ std::vector<std::uint64_t> sides_of_paper(std::uint64_t most) {
     std::vector<std::uint64_t> sides;
     for (double decade = 1e5; decade <= static_cast<double>(most); decade *= 10)
         for (const double step : {1.0, 2.0, 4.0, 6.0})
-            if (const auto side = static_cast<std::uint64_t>(std::lround(std::cbrt(decade * step / 6))); side < largest) sides.push_back(side);
+            if (const auto side = static_cast<std::uint64_t>(std::lround(std::cbrt(decade * step / 6))); side < largest)
+                sides.push_back(side);
     sides.push_back(largest);
     return sides;
 }
@@ -154,7 +164,8 @@ Result<void> BenchRun::run_paper() {
         if (!grid) return grid.error();
         const Result<PointField> field = find_field(*grid, numbers_.field);
         if (!field) return field.error();
-        if (Result<void> done = measure_all(fmt::format("make:kuhn:{}:gyroid", side), *grid, *field); !done) return done;
+        if (Result<void> done = measure_all(fmt::format("make:kuhn:{}:gyroid", side), *grid, *field); !done)
+            return done;
     }
     return {};
 }
@@ -165,8 +176,13 @@ Result<void> BenchRun::run() {
     if (command_.device.name == "none" && command_.device.memory)
         return Error{ErrorCode::invalid_argument, "--device-memory is given, but --device is none"};
     for (const auto& [option, path] : {std::pair("--csv", &command_.csv), {"--svg", &command_.svg}})
-        if (*path == "-") return Error{ErrorCode::invalid_argument, fmt::format("{} got '-', but it writes a file; --json - writes to standard output", option)};
-    if (Result<void> paths = check_output_paths({command_.grid.file}, {command_.csv, command_.svg, command_.common.json}); !paths) return paths;
+        if (*path == "-")
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("{} got '-', but it writes a file; --json - writes to standard output", option)};
+    if (Result<void> paths =
+            check_output_paths({command_.grid.file}, {command_.csv, command_.svg, command_.common.json});
+        !paths)
+        return paths;
     numbers_.command = &command_;
     numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads)
                                                    : std::max(1U, std::thread::hardware_concurrency());
@@ -184,11 +200,14 @@ Result<ExitCode> run_bench(const BenchCommand& command) {
     if (Result<void> printed = console.print(bench_table(run.numbers())); !printed) return printed.error();
     for (const auto& [path, text] : {std::pair(command.csv, &bench_csv), {command.svg, &bench_svg}})
         if (!path.empty())
-            if (Result<void> written = write_text_file(path, text(run.numbers()), console.progress()); !written) return written.error();
+            if (Result<void> written = write_text_file(path, text(run.numbers()), console.progress()); !written)
+                return written.error();
     Json report = bench_json(run.numbers());
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written) return written.error();
-    const bool nothing = std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
+    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+        return written.error();
+    const bool nothing =
+        std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
     if (nothing) return Error{ErrorCode::machine, "nothing could be measured: " + run.numbers().rows.front().missing};
     return ExitCode::done;
 }

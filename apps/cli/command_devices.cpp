@@ -37,8 +37,9 @@ void add_rows(Table& table, const DeviceInfo& device, const DeviceList& list) {
     if (device.memory == 0) return; // nothing more is known of devices before Vulkan 1.2
     table.row({"memory", memory_text(device)});
     table.row({"largest buffer", bytes_text(device.allocation_limit)});
-    table.row({"workgroups", fmt::format("{} x {} x {} of up to {}", grouped(device.workgroups[0]), grouped(device.workgroups[1]),
-                                         grouped(device.workgroups[2]), grouped(device.workgroup_size))});
+    table.row({"workgroups",
+               fmt::format("{} x {} x {} of up to {}", grouped(device.workgroups[0]), grouped(device.workgroups[1]),
+                           grouped(device.workgroups[2]), grouped(device.workgroup_size))});
     table.row({"shared memory", fmt::format("{} a workgroup", bytes_text(device.shared_memory))});
     table.row({"subgroup", grouped(device.subgroup_size)});
     table.row({"copies", device.transfer_queue ? "on a queue of their own" : "on the queue of the kernels"});
@@ -96,7 +97,8 @@ Result<ExitCode> run_devices(const DevicesCommand& command) {
     }
     if (tested->opened) table.row({"arithmetic", tested->exact ? "exact" : "not exact"});
     if (!list->unavailable.empty()) console.note(list->unavailable + "; isotet works on the CPU");
-    else if (!list->best && !tested->opened) console.note("there is no graphics card that can be used; isotet works on the CPU");
+    else if (!list->best && !tested->opened)
+        console.note("there is no graphics card that can be used; isotet works on the CPU");
     if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
 
     Json report = json_report("devices");

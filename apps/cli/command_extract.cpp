@@ -64,8 +64,8 @@ private:
     Grid grid_; ///< of the step at hand, where nothing is packed
     PointField field_;
     StepFields fields_;
-    std::vector<double> isovalues_;  ///< of the step at hand: levels follow its range
-    std::uint64_t coarse_tets_ = 0; ///< of the step at hand, where nothing is packed
+    std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
+    std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, where nothing is packed
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step, when its way was chosen
     ExtractNumbers numbers_;
 };
@@ -136,14 +136,16 @@ Result<void> ExtractRun::load(std::size_t step) {
 Result<void> ExtractRun::choose(const Grid& grid) {
     const Result<FieldSample> sample = FieldSample::take(grid, field_);
     if (!sample) return sample.error();
-    const std::vector<double> levels = levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
+    const std::vector<double> levels =
+        levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
     const std::vector<double>& isovalues = command_.isovalues.empty() ? levels : command_.isovalues;
     const bool one_file = !plan_.names.none() && !plan_.names.by_value();
     const std::size_t together = one_file ? isovalues.size() : isovalues_a_pass;
     double all = 0, most = 0;
     for (std::size_t i = 0; i < isovalues.size(); i += together) {
         double pass = 0;
-        for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k) pass += sample->triangles(isovalues[k]);
+        for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k)
+            pass += sample->triangles(isovalues[k]);
         all += pass;
         most = std::max(most, pass);
     }
@@ -170,7 +172,8 @@ Result<void> ExtractRun::choose(const Grid& grid) {
 Result<void> ExtractRun::look_at_field() {
     const Stopwatch looking;
     console_.detail("looking at the field");
-    const Result<ExtractedOnce> looked = extract_once(grid_, field_, {}, {plan_.extract, command_.precision}, console_.progress());
+    const Result<ExtractedOnce> looked =
+        extract_once(grid_, field_, {}, {plan_.extract, command_.precision}, console_.progress());
     if (!looked) return looked.error();
     numbers_.field = looked->field;
     numbers_.look_seconds += looking.seconds();
@@ -224,11 +227,13 @@ void ExtractRun::say_what_the_step_holds(const Grid& grid) {
 void ExtractRun::say_what_rounding_moves() {
     std::string where;
     if (numbers_.pack && numbers_.pack->coarse_clusters > 0)
-        where = fmt::format("in {} of {} clusters", grouped(numbers_.pack->coarse_clusters), grouped(numbers_.pack->clusters));
-    else if (coarse_tets_ > 0)
-        where = fmt::format("in {} cut tets", grouped(coarse_tets_));
+        where = fmt::format("in {} of {} clusters", grouped(numbers_.pack->coarse_clusters),
+                            grouped(numbers_.pack->clusters));
+    else if (coarse_tets_ > 0) where = fmt::format("in {} cut tets", grouped(coarse_tets_));
     if (where.empty()) return;
-    console_.note(where + " rounding to float32 moves points by over a thousandth of the shortest edge; --precision double keeps them");
+    console_.note(
+        where +
+        " rounding to float32 moves points by over a thousandth of the shortest edge; --precision double keeps them");
 }
 
 void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
@@ -272,7 +277,8 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     if (!extractions) return extractions.error();
     const double seconds = extracting.seconds() / static_cast<double>(isovalues.size());
     numbers_.engine = extractor_.engine_name();
-    if (!extractor_.device() && numbers_.choice.way == Way::device_clusters) numbers_.choice.way = Way::clusters; // the CPU stood in
+    if (!extractor_.device() && numbers_.choice.way == Way::device_clusters)
+        numbers_.choice.way = Way::clusters; // the CPU stood in
     numbers_.engine_text = extractor_.engine_text();
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {

@@ -10,7 +10,9 @@
 namespace isotet::cli {
 
 Console::Console(const CommonOptions& options)
-    : quiet_(options.quiet), verbose_(options.verbose), table_(!options.quiet && options.json != "-"),
+    : quiet_(options.quiet),
+      verbose_(options.verbose),
+      table_(!options.quiet && options.json != "-"),
       bar_(!options.quiet && stderr_is_terminal()) {
     progress_.report = [this](std::string_view step, double fraction) { bar_.show(step, fraction); };
     progress_.cancel = &interrupted;

@@ -18,7 +18,8 @@ CLI::Option* add_device(CLI::App& app, DeviceChoice& choice) {
                 if (name.empty()) throw wrong_value("--device", name, "a device of isotet devices, software or none");
                 choice.name = name;
             },
-            "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
+            "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the "
+            "best "
             "graphics card")
         ->type_name("DEVICE");
 }
@@ -29,7 +30,8 @@ CLI::Option* add_device_memory(CLI::App& app, DeviceChoice& choice) {
             "--device-memory",
             [&choice](const std::string& text) {
                 choice.memory = parse_bytes(text);
-                if (!choice.memory || *choice.memory == 0) throw wrong_value("--device-memory", text, "bytes, such as 2GB");
+                if (!choice.memory || *choice.memory == 0)
+                    throw wrong_value("--device-memory", text, "bytes, such as 2GB");
             },
             "Memory of the device to take at most, such as 2GB; without it what is free")
         ->type_name("BYTES");
@@ -45,11 +47,14 @@ Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& c
 }
 
 Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console) {
-    if (choice.name == "none") return Error{ErrorCode::invalid_argument, "--device is none, but only a device can draw"};
+    if (choice.name == "none")
+        return Error{ErrorCode::invalid_argument, "--device is none, but only a device can draw"};
     Result<std::optional<Device>> device = open_device(choice, console);
     if (!device && choice.name.empty() && device.error().code == ErrorCode::machine) {
         const Result<DeviceList> list = list_devices();
-        const auto draws = [](const DeviceInfo& one) { return one.kind == DeviceKind::software && one.unusable.empty(); };
+        const auto draws = [](const DeviceInfo& one) {
+            return one.kind == DeviceKind::software && one.unusable.empty();
+        };
         if (!list || std::ranges::none_of(list->devices, draws))
             return Error{ErrorCode::machine, "nothing can be drawn: " + device.error().message};
         DeviceChoice software = choice;
@@ -57,7 +62,8 @@ Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console)
         device = open_device(software, console);
     }
     if (!device) return device.error();
-    if ((*device)->info().kind == DeviceKind::software) console.note(fmt::format("a software device draws: {}", (*device)->info().name));
+    if ((*device)->info().kind == DeviceKind::software)
+        console.note(fmt::format("a software device draws: {}", (*device)->info().name));
     return **std::move(device);
 }
 

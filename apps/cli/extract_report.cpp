@@ -31,8 +31,8 @@ std::uint64_t process_peak_bytes(const ExtractNumbers& numbers) {
 }
 
 std::string memory_text(const ExtractNumbers& numbers) {
-    const std::string rest =
-        fmt::format("extracting {}, whole process {}", bytes_text(numbers.transient_peak()), bytes_text(process_peak_bytes(numbers)));
+    const std::string rest = fmt::format("extracting {}, whole process {}", bytes_text(numbers.transient_peak()),
+                                         bytes_text(process_peak_bytes(numbers)));
     if (!numbers.pack) return rest;
     const PackReport& pack = *numbers.pack;
     std::string text = "packed " + bytes_text(pack.bytes);
@@ -91,7 +91,8 @@ std::string choice_text(const ExtractNumbers& numbers) {
     std::string text = fmt::format("took {}", seconds_text(numbers.work_seconds()));
     if (numbers.peak_bytes) text += " and " + bytes_text(*numbers.peak_bytes);
     if (const Forecast* forecast = numbers.choice.forecast())
-        text = fmt::format("{} and {} predicted, {}", seconds_text(forecast->seconds), bytes_text(forecast->bytes), text);
+        text =
+            fmt::format("{} and {} predicted, {}", seconds_text(forecast->seconds), bytes_text(forecast->bytes), text);
     return text;
 }
 
@@ -132,7 +133,8 @@ Json choice_json(const ExtractNumbers& numbers) {
             {"speeds", chosen ? Json(numbers.choice.measured ? "measured" : "typical") : Json(nullptr)},
             {"predicted", chosen ? Json({{"seconds", chosen->seconds}, {"bytes", chosen->bytes}}) : Json(nullptr)},
             {"measured",
-             {{"seconds", numbers.work_seconds()}, {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}}},
+             {{"seconds", numbers.work_seconds()},
+              {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}}},
             {"ways", std::move(ways)}};
 }
 

@@ -14,7 +14,8 @@ namespace isotet::cli {
 
 bool Extractor::wants_device() const {
     if (command_.engine == EngineChoice::vulkan) return true;
-    return command_.engine == EngineChoice::automatic && !command_.device.name.empty() && command_.device.name != "none";
+    return command_.engine == EngineChoice::automatic && !command_.device.name.empty() &&
+           command_.device.name != "none";
 }
 
 Result<void> Extractor::open() {
@@ -54,15 +55,17 @@ Result<void> Extractor::load(const PackedGrid& packed) {
     options.page_bytes = std::clamp<std::uint64_t>(device_->memory_free() / 16, 16 << 10, options.page_bytes);
     const DeviceGridNeeds needs = DeviceGrid::needs(packed, options);
     if (needs.pages > 0) {
-        console_.detail(fmt::format("the packed grid takes {} of device memory, {} at least; {} are free", bytes_text(needs.all()),
-                                    bytes_text(needs.least()), bytes_text(device_->memory_free())));
+        console_.detail(fmt::format("the packed grid takes {} of device memory, {} at least; {} are free",
+                                    bytes_text(needs.all()), bytes_text(needs.least()),
+                                    bytes_text(device_->memory_free())));
     }
     Result<DeviceGrid> grid = DeviceGrid::upload(*device_, packed, options, console_.progress());
     if (!grid) return without_device(grid.error());
     grid_ = *std::move(grid);
     if (!grid_->complete()) {
-        console_.note(fmt::format("not all of the packed grid, {}, fits into the device's memory: its parts come and go",
-                                  bytes_text(needs.all())));
+        console_.note(
+            fmt::format("not all of the packed grid, {}, fits into the device's memory: its parts come and go",
+                        bytes_text(needs.all())));
     }
     return {};
 }
@@ -94,7 +97,8 @@ Result<void> Extractor::set_points(PackedGrid& packed, const Array& points, int 
 }
 
 Result<Extraction> Extractor::extract_on_device(double isovalue, const ExtractOptions& options) {
-    if (Result<void> done = grid_->extract(isovalue, surface_, options, console_.progress()); !done) return done.error();
+    if (Result<void> done = grid_->extract(isovalue, surface_, options, console_.progress()); !done)
+        return done.error();
     DeviceWork work = grid_->work();
     Result<Extraction> extraction = grid_->download(surface_, console_.progress());
     if (!extraction) return extraction;

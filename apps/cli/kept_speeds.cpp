@@ -41,8 +41,8 @@ Json read_file() {
     if (path.empty() || std::filesystem::file_size(path, failed) > most_bytes || failed) return empty;
     std::ifstream file(path);
     Json kept = Json::parse(file, nullptr, false);
-    const bool whole = kept.is_object() && kept.contains("build") && kept["build"].is_string() && kept.contains("speeds") &&
-                       kept["speeds"].is_object();
+    const bool whole = kept.is_object() && kept.contains("build") && kept["build"].is_string() &&
+                       kept.contains("speeds") && kept["speeds"].is_object();
     return whole && kept["build"].get<std::string>() == build ? kept : empty;
 }
 
@@ -62,7 +62,10 @@ Numbers numbers_of(Speeds& speeds) {
 }
 
 Numbers numbers_of(DeviceSpeeds& speeds) {
-    return {{"upload_tet", &speeds.upload_tet}, {"call", &speeds.call}, {"tet", &speeds.tet}, {"triangle", &speeds.triangle}};
+    return {{"upload_tet", &speeds.upload_tet},
+            {"call", &speeds.call},
+            {"tet", &speeds.tet},
+            {"triangle", &speeds.triangle}};
 }
 
 template <class AnySpeeds>
@@ -102,7 +105,9 @@ std::string name_of_processor() {
     return "a processor";
 }
 
-int threads_of(int threads) { return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+int threads_of(int threads) {
+    return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
 
 } // namespace
 
@@ -117,7 +122,8 @@ std::string processor_key(int threads) {
 }
 
 std::string device_key(const DeviceInfo& info, int threads) {
-    return json_text(fmt::format("{}, {}, beside {} threads", info.name, info.driver, threads_of(threads))).get<std::string>();
+    return json_text(fmt::format("{}, {}, beside {} threads", info.name, info.driver, threads_of(threads)))
+        .get<std::string>();
 }
 
 } // namespace isotet::cli

@@ -186,16 +186,18 @@ CLI::App& add_extract(CLI::App& program, ExtractCommand& extract) {
     add_choice<MethodChoice>(
         app, "--method", extract.method,
         {{"auto", MethodChoice::automatic}, {"clusters", MethodChoice::clusters}, {"brute", MethodChoice::brute}},
-        "How: clusters packs the grid first, which pays for many surfaces; brute goes through all cells for each surface; auto "
+        "How: clusters packs the grid first, which pays for many surfaces; brute goes through all cells for each "
+        "surface; auto "
         "takes what is expected to be done first within the memory that is free, and says why");
-    add_choice<EngineChoice>(
-        app, "--engine", extract.engine,
-        {{"auto", EngineChoice::automatic},
-         {"cpu", EngineChoice::cpu},
-         {"vulkan", EngineChoice::vulkan},
-         {"reference", EngineChoice::reference}},
-        "What extracts: auto is the device that --device names, with the CPU where that fails, or without --device the CPU, or "
-        "a graphics card where that is expected to be faster; vulkan is a device or an error; reference is slow and obvious");
+    add_choice<EngineChoice>(app, "--engine", extract.engine,
+                             {{"auto", EngineChoice::automatic},
+                              {"cpu", EngineChoice::cpu},
+                              {"vulkan", EngineChoice::vulkan},
+                              {"reference", EngineChoice::reference}},
+                             "What extracts: auto is the device that --device names, with the CPU where that fails, or "
+                             "without --device the CPU, or "
+                             "a graphics card where that is expected to be faster; vulkan is a device or an error; "
+                             "reference is slow and obvious");
     add_device(app, extract.device);
     add_device_memory(app, extract.device);
     add_reading(app, extract.grid, "--format");
@@ -220,7 +222,8 @@ CLI::App& add_bench(CLI::App& program, BenchCommand& bench) {
     add_device_memory(app, bench.device);
     add_time(app, bench.grid);
     add_reading(app, bench.grid, "--format");
-    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces", "--allow-outside", "--cell-field"})
+    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces",
+                             "--allow-outside", "--cell-field"})
         app.get_option(name)->excludes(app.get_option("--paper"));
     add_common(app, bench.common);
     return app;

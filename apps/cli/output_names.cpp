@@ -16,7 +16,8 @@ constexpr std::string_view time_mark = "{time}";
 } // namespace
 
 OutputNames::OutputNames(std::string pattern)
-    : pattern_(std::move(pattern)), by_value_(pattern_.find(value_mark) != std::string::npos),
+    : pattern_(std::move(pattern)),
+      by_value_(pattern_.find(value_mark) != std::string::npos),
       by_time_(pattern_.find(time_mark) != std::string::npos) {}
 
 std::string OutputNames::name(double value, std::optional<double> time) const {

@@ -26,7 +26,8 @@ Result<PackedSeries::Work> PackedSeries::load(const Grid& grid, const PointField
     if (!same_points) {
         const Result<void> moved = extractor.set_points(packed_, grid.points, options_.threads);
         // A tet that turned over, or coordinates that packing has more to say about.
-        if (!moved && moved.error().code == ErrorCode::invalid_data) return pack_again(grid, field, extractor, progress);
+        if (!moved && moved.error().code == ErrorCode::invalid_data)
+            return pack_again(grid, field, extractor, progress);
         if (!moved) return moved.error();
     }
     if (const Result<void> set = extractor.set_field(packed_, field, options_.threads); !set) return set.error();

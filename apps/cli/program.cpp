@@ -36,10 +36,10 @@ Result<void> complete_bare_file(std::vector<std::string>& words, const CLI::App&
         if (words[1] == own) return {};
     }
     if (looks_like_command(words[1])) {
-        return Error{
-            ErrorCode::invalid_argument,
-            fmt::format("'{}' is neither a command nor a file; commands are info, extract, render, bench, check, make, formats and devices",
-                        words[1])};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("'{}' is neither a command nor a file; commands are info, extract, render, bench, "
+                                 "check, make, formats and devices",
+                                 words[1])};
     }
     words.insert(words.begin() + 1, "info");
     return {};

@@ -10,8 +10,8 @@
 
 namespace isotet::cli {
 
-Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice, const std::string& beside, int threads,
-                              Console& console, Grid& grid) {
+Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
+                              const std::string& beside, int threads, Console& console, Grid& grid) {
     FieldsToRead read;
     std::string name = choice.name;
     const std::size_t fields = source.info().fields.size();
@@ -33,9 +33,10 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
     if (name.empty()) {
         name = most_varied_field(grid);
         if (name.empty()) {
-            return Error{ErrorCode::invalid_data, fmt::format("none of the {} fields has two different values: there is nothing to contour; "
-                                                              "-f x, y or z contours a coordinate",
-                                                              fields)};
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("none of the {} fields has two different values: there is nothing to contour; "
+                                     "-f x, y or z contours a coordinate",
+                                     fields)};
         }
         console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
     }

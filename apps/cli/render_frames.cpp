@@ -63,9 +63,9 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return wrong(fmt::format(
-        "the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} and ends in .png",
-        out, pictures, number_stands_here));
+    return wrong(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
+                             "holds {} and ends in .png",
+                             out, pictures, number_stands_here));
 }
 
 std::string PictureFiles::name(std::size_t picture) const {

@@ -41,11 +41,10 @@ Kinds kinds_of(const std::string& file) {
 Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file, double seconds, Console& console) {
     if (!command.isovalues.empty() || !command.sweep.empty() || command.levels > 0 || !command.field.name.empty() ||
         command.boundary || command.method) {
-        return Error{
-            ErrorCode::invalid_argument,
-            fmt::format(
-                "{} is a surface: it has no isovalues, no field to contour (--color-by colours it), no boundary and no tets",
-                command.grid.file)};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("{} is a surface: it has no isovalues, no field to contour (--color-by colours it), "
+                                 "no boundary and no tets",
+                                 command.grid.file)};
     }
     RenderInput input;
     input.format = file.format;

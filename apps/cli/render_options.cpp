@@ -121,10 +121,10 @@ CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
         "CPU");
     std::vector<std::pair<std::string, std::optional<DrawMethod>>> methods{{"clusters", std::nullopt}};
     for (const DrawMethod method : all_draw_methods) methods.emplace_back(name_of(method), method);
-    add_choice(
-        app, "--method", render.method, methods,
-        "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be compared with; "
-        "without it clusters");
+    add_choice(app, "--method", render.method, methods,
+               "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be "
+               "compared with; "
+               "without it clusters");
     std::vector<std::pair<std::string, std::optional<Filter>>> filters;
     for (const Filter filter : all_filters) filters.emplace_back(name_of(filter), filter);
     add_choice(app, "--filter", render.filter, filters,

@@ -47,7 +47,9 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
     if (input.packed) {
         table.row({"cells", grouped(input.cells)});
         const bool finite = input.lower <= input.upper;
-        table.row({"field", finite ? fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper)) : input.field});
+        table.row({"field", finite
+                                ? fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper))
+                                : input.field});
     }
     if (input.boundary) table.row({"boundary", grouped(input.boundary->triangle_count()) + " faces"});
     if (!command.sweep.empty())
@@ -111,12 +113,9 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
         report["store"] = {
             {"bytes", store.stored_bytes}, {"on_device", store.device_bytes}, {"sent_every_time", store.host_bytes}};
     }
-    report["seconds"] = {{"read", input.read_seconds},
-                         {"pack", input.pack_seconds},
-                         {"boundary", input.boundary_seconds},
-                         {"upload", scene.upload_seconds()},
-                         {"extract", scene.extract_seconds()},
-                         {"draw", picture.draw_seconds},
+    report["seconds"] = {{"read", input.read_seconds},         {"pack", input.pack_seconds},
+                         {"boundary", input.boundary_seconds}, {"upload", scene.upload_seconds()},
+                         {"extract", scene.extract_seconds()}, {"draw", picture.draw_seconds},
                          {"write", picture.write_seconds}};
     report["extracting"] = json_of(scene.extract_work());
     report["drawing"] = json_of(picture.drawing);

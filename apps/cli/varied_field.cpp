@@ -48,7 +48,8 @@ double score_of(const Array& array) {
     if (!(*low < *high)) return 0;
     std::array<double, 64> bins{};
     for (const double value : sample.values)
-        bins[std::min(bins.size() - 1, static_cast<std::size_t>((value / 2 - *low / 2) / (*high / 2 - *low / 2) * bins.size()))] += 1;
+        bins[std::min(bins.size() - 1,
+                      static_cast<std::size_t>((value / 2 - *low / 2) / (*high / 2 - *low / 2) * bins.size()))] += 1;
     double entropy = 0;
     const auto count = static_cast<double>(sample.values.size());
     for (const double bin : bins)

@@ -12,11 +12,13 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr double worth_measuring = 4;  ///< seconds of work: twice what measuring takes
-constexpr double worth_a_device = 5; ///< seconds of extraction: opening a device and measuring it takes about half of that
+constexpr double worth_measuring = 4; ///< seconds of work: twice what measuring takes
+constexpr double worth_a_device =
+    5; ///< seconds of extraction: opening a device and measuring it takes about half of that
 
 bool device_may_be_taken(const ExtractCommand& command) {
-    return command.engine == EngineChoice::automatic && command.device.name.empty() && command.method != MethodChoice::brute;
+    return command.engine == EngineChoice::automatic && command.device.name.empty() &&
+           command.method != MethodChoice::brute;
 }
 
 bool is_open(const ExtractCommand& command, Way way) {
@@ -24,7 +26,8 @@ bool is_open(const ExtractCommand& command, Way way) {
     return (way == Way::brute) == (command.method == MethodChoice::brute);
 }
 
-std::vector<Forecast> weigh_open(const ExtractCommand& command, const Task& task, const Speeds& speeds, const DeviceSpeeds* device) {
+std::vector<Forecast> weigh_open(const ExtractCommand& command, const Task& task, const Speeds& speeds,
+                                 const DeviceSpeeds* device) {
     std::vector<Forecast> forecasts = weigh(task, speeds, device);
     std::erase_if(forecasts, [&](const Forecast& one) { return !is_open(command, one.way); });
     return forecasts;
@@ -48,16 +51,18 @@ Result<Speeds> speeds_for(const ExtractCommand& command, const Task& task, Conso
 }
 
 /// Opens a graphics card and measures it, if there is one and it may pay.
-Result<std::optional<DeviceSpeeds>> consider_device(const ExtractCommand& command, const Task& task, const Speeds& speeds,
-                                                    Extractor& extractor, Console& console) {
+Result<std::optional<DeviceSpeeds>> consider_device(const ExtractCommand& command, const Task& task,
+                                                    const Speeds& speeds, Extractor& extractor, Console& console) {
     const Forecast best = weigh_open(command, task, speeds, nullptr).front();
-    const double packing = speeds.pack_call + static_cast<double>(task.tets) * speeds.pack_tet; // which a device needs, too
+    const double packing =
+        speeds.pack_call + static_cast<double>(task.tets) * speeds.pack_tet; // which a device needs, too
     if (!device_may_be_taken(command) || best.seconds - packing < worth_a_device || !extractor.open_unasked())
         return std::optional<DeviceSpeeds>();
     const std::string key = device_key(extractor.device()->info(), command.common.threads);
     if (const std::optional<DeviceSpeeds> kept = kept_device_speeds(key)) return kept;
     console.detail("measuring the speed of " + key);
-    const Result<DeviceSpeeds> measured = measure_speeds(*extractor.device(), command.common.threads, console.progress());
+    const Result<DeviceSpeeds> measured =
+        measure_speeds(*extractor.device(), command.common.threads, console.progress());
     if (!measured && measured.error().code == ErrorCode::cancelled) return measured.error();
     if (!measured) return std::optional<DeviceSpeeds>();
     keep(key, *measured);
@@ -67,7 +72,8 @@ Result<std::optional<DeviceSpeeds>> consider_device(const ExtractCommand& comman
 std::string why_of(const ChosenWay& choice, const Task& task) {
     std::string text = fmt::format("auto: {} surface{}", rounded(task.surfaces), task.surfaces == 1 ? "" : "s");
     for (const Forecast& one : choice.forecasts)
-        text += fmt::format(", {} {}{}", name_of(one.way), seconds_text(one.seconds), one.fits ? "" : " and too much memory");
+        text += fmt::format(", {} {}{}", name_of(one.way), seconds_text(one.seconds),
+                            one.fits ? "" : " and too much memory");
     return text + (choice.measured ? "" : ", by typical speeds");
 }
 
@@ -80,7 +86,8 @@ const Forecast* ChosenWay::forecast() const noexcept {
 
 Result<void> check_method(const ExtractCommand& command, const Extractor& extractor) {
     if (command.method != MethodChoice::brute || !extractor.wants_device()) return {};
-    return Error{ErrorCode::invalid_argument, "--method brute was asked for, but devices take packed grids only: clusters"};
+    return Error{ErrorCode::invalid_argument,
+                 "--method brute was asked for, but devices take packed grids only: clusters"};
 }
 
 Result<ChosenWay> choose_way(const ExtractCommand& command, const Task& task, Extractor& extractor, Console& console) {

@@ -18,7 +18,9 @@ constexpr std::size_t grain = 1 << 13;
 
 template <class Real, class Index>
 core::Vector<Real> normal_of(const Real* positions, const Index* triangle) {
-    const auto corner = [&](Index v) { return core::Vector<Real>{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]}; };
+    const auto corner = [&](Index v) {
+        return core::Vector<Real>{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
+    };
     return core::face_normal(corner(triangle[0]), corner(triangle[1]), corner(triangle[2]));
 }
 
@@ -55,7 +57,8 @@ SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw) {
     field.values.visit([&]<class T>(std::span<const T> values) {
         core::Buffer<T> copy(cells.size() * components);
         core::parallel_each(cells.size(), grain, [&](std::size_t t) {
-            std::copy_n(values.data() + static_cast<std::size_t>(cells[t]) * components, components, copy.data() + t * components);
+            std::copy_n(values.data() + static_cast<std::size_t>(cells[t]) * components, components,
+                        copy.data() + t * components);
         });
         out.values = std::move(copy).to_array(components);
     });
@@ -108,7 +111,8 @@ Array fill_normals(const ops::RawSurface& raw) {
     float* const normals = const_cast<float*>(raw.normals.as<float>().data());
     with_indices(raw.triangles, [&](auto triangles) {
         core::parallel_each(triangles.size(), grain, [&](std::size_t corner) {
-            const std::uint64_t* const zero = std::lower_bound(zeros.begin(), zeros.end(), std::uint64_t{triangles[corner]});
+            const std::uint64_t* const zero =
+                std::lower_bound(zeros.begin(), zeros.end(), std::uint64_t{triangles[corner]});
             if (zero == zeros.end() || *zero != triangles[corner]) return;
             std::atomic_ref<std::uint64_t> slot(lowest[static_cast<std::size_t>(zero - zeros.begin())]);
             std::uint64_t seen = slot.load(std::memory_order_relaxed);

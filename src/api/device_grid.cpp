@@ -25,10 +25,11 @@ struct DeviceSurface::Data {
     vulkan::SurfaceBuffers buffers;
     double isovalue = 0;
     float stored = 0;
-    double stored_in_unit = 0;     ///< of the field
+    double stored_in_unit = 0; ///< of the field
     std::array<double, 3> origin{};
-    std::uint64_t changes = 0;     ///< of the packed grid, when it was extracted
-    std::vector<core::Storage> storages; ///< of the point fields that were interpolated on the device: of all, or of none
+    std::uint64_t changes = 0; ///< of the packed grid, when it was extracted
+    std::vector<core::Storage>
+        storages; ///< of the point fields that were interpolated on the device: of all, or of none
     ExtractOptions options;
 
     Result<Extraction> download(const core::Packed* packed) const;
@@ -44,7 +45,10 @@ struct GridFacts {
     bool gradients = false;
 
     explicit GridFacts(const core::Packed& packed)
-        : storage(packed.storage), origin(packed.origin), changes(packed.changes), user_points(packed.user_points),
+        : storage(packed.storage),
+          origin(packed.origin),
+          changes(packed.changes),
+          user_points(packed.user_points),
           gradients(!packed.gradients.empty()) {}
 };
 
@@ -56,8 +60,8 @@ struct DeviceGrid::Data {
     GridFacts facts() const { return given_up ? *given_up : GridFacts(*grid->packed()); }
     Result<void> check_fit(const ExtractOptions& options) const;
 
-    Result<void> extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
-                         const FieldsOnDevice& fields, const Progress& progress);
+    Result<void> extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
+                         const ExtractOptions& options, const FieldsOnDevice& fields, const Progress& progress);
 };
 
 DeviceSurface::DeviceSurface() = default;
@@ -80,8 +84,10 @@ DeviceGrid::~DeviceGrid() = default;
 namespace {
 
 vulkan::SurfaceParts parts_of(const ExtractOptions& options, const FieldsOnDevice& fields) {
-    vulkan::SurfaceParts parts{options.normals, options.edge_ends || !options.point_fields.empty(),
-                               options.source_cells || !options.cell_fields.empty(), {}};
+    vulkan::SurfaceParts parts{options.normals,
+                               options.edge_ends || !options.point_fields.empty(),
+                               options.source_cells || !options.cell_fields.empty(),
+                               {}};
     for (const auto& field : fields) parts.fields.push_back(field->components);
     return parts;
 }
@@ -104,8 +110,8 @@ Result<FieldsOnDevice> carry(vulkan::GridOnDevice& grid, const ExtractOptions& o
 }
 
 Error numbers_are_gone() {
-    return {ErrorCode::invalid_argument,
-            "edge ends, source cells and cell fields need the numbers of points and cells of the packed grid, but it was given up"};
+    return {ErrorCode::invalid_argument, "edge ends, source cells and cell fields need the numbers of points and cells "
+                                         "of the packed grid, but it was given up"};
 }
 
 DeviceWork work_of(vulkan::WorkDone&& done) {
@@ -123,9 +129,11 @@ DeviceWork work_of(vulkan::WorkDone&& done) {
 } // namespace
 
 Result<void> DeviceGrid::check_same(const PackedGrid& packed) const {
-    if (data_->given_up) return Error{ErrorCode::invalid_argument, "the packed grid was given up: nothing can be set on the device"};
+    if (data_->given_up)
+        return Error{ErrorCode::invalid_argument, "the packed grid was given up: nothing can be set on the device"};
     if (&packed.data() != data_->grid->packed())
-        return Error{ErrorCode::invalid_argument, "the packed grid to change is not the one that was uploaded to the device"};
+        return Error{ErrorCode::invalid_argument,
+                     "the packed grid to change is not the one that was uploaded to the device"};
     return data_->grid->check_current();
 }
 
@@ -160,7 +168,8 @@ Result<Extraction> DeviceSurface::Data::download(const core::Packed* packed) con
     without_normals.normals = Normals::none;
     std::vector<core::Storage> stored_as = storages;
     if (!fields_are_there)
-        for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field.values, *packed));
+        for (const Field& field : options.point_fields)
+            stored_as.push_back(core::choose_storage(field.values, *packed));
     Extraction out;
     out.surface = api::finish<float>(origin, without_normals, stored_as, *raw);
     out.surface.normals_kind = options.normals;
@@ -244,13 +253,15 @@ Result<DeviceSurface> DeviceGrid::extract(double isovalue, const ExtractOptions&
     return surface;
 }
 
-Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options, const Progress& progress) {
+Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options,
+                                 const Progress& progress) {
     return extract_into(std::span(&isovalue, 1), std::span(&surface, 1), options, progress);
 }
 
 /// `fields`   of the options, on the device; empty: they are interpolated after the download
-Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
-                                       const FieldsOnDevice& fields, const Progress& progress) {
+Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
+                                       const ExtractOptions& options, const FieldsOnDevice& fields,
+                                       const Progress& progress) {
     const GridFacts packed = facts();
     std::vector<vulkan::Task> tasks;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {

@@ -20,13 +20,15 @@ template <class Real>
 Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span<const double> isovalues,
                                            const ExtractOptions& options, const Progress& progress) {
     ops::Request<Real> request;
-    for (const double isovalue : isovalues) request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
+    for (const double isovalue : isovalues)
+        request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
     request.ties = options.ties;
     const bool reference = options.engine == Engine::reference;
     std::vector<core::Storage> storages;
     for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
     if (!reference)
-        for (std::size_t i = 0; i < storages.size(); ++i) request.fields.push_back({options.point_fields[i].values, storages[i]});
+        for (std::size_t i = 0; i < storages.size(); ++i)
+            request.fields.push_back({options.point_fields[i].values, storages[i]});
     request.ends = options.edge_ends || (reference && !options.point_fields.empty());
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
@@ -73,7 +75,8 @@ Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<cons
     });
 }
 
-Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options, const Progress& progress) {
+Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options,
+                           const Progress& progress) {
     auto all = extract(packed, std::span(&isovalue, 1), options, progress);
     if (!all) return std::move(all).error();
     return std::move(all->front());

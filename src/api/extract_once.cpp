@@ -23,7 +23,8 @@ Result<void> check_fields(const Grid& grid, const PointField& field, const Extra
         return wrong(fmt::format("field '{}' has {} components, but the contoured field must have 1", field.name,
                                  field.values.components()));
     if (field.values.tuples() != points)
-        return wrong(fmt::format("field '{}' has {} values, but the grid has {} points", field.name, field.values.tuples(), points));
+        return wrong(fmt::format("field '{}' has {} values, but the grid has {} points", field.name,
+                                 field.values.tuples(), points));
     for (const Field& carried : options.point_fields)
         if (carried.values.tuples() != points)
             return wrong(fmt::format("point field '{}' has {} tuples, but the grid has {} points", carried.name,
@@ -36,8 +37,8 @@ Result<void> check_fields(const Grid& grid, const PointField& field, const Extra
 }
 
 template <class Real>
-Result<ExtractedOnce> extract_as(const ops::BruteInput& input, std::span<const double> isovalues, const ExtractOptions& options,
-                                 const Progress& progress) {
+Result<ExtractedOnce> extract_as(const ops::BruteInput& input, std::span<const double> isovalues,
+                                 const ExtractOptions& options, const Progress& progress) {
     ops::BruteRequest request;
     request.isovalues = isovalues;
     request.ties = options.ties;

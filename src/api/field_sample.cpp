@@ -37,7 +37,8 @@ Result<FieldSample> FieldSample::take(const Grid& grid, const PointField& field)
         if (!cells) return cells.error();
         if (field.values.tuples() != cells->points() || (field.values.components() != 1 && !field.values.empty()))
             return Error{ErrorCode::invalid_argument,
-                         fmt::format("field '{}' has {} values of {} components, but the grid has {} points and the contoured field must have 1 component",
+                         fmt::format("field '{}' has {} values of {} components, but the grid has {} points and the "
+                                     "contoured field must have 1 component",
                                      field.name, field.values.tuples(), field.values.components(), cells->points())};
         FieldSample sample;
         const std::uint64_t count = cells->count(), looked_at = std::min(count, most_cells);
@@ -76,7 +77,8 @@ Result<FieldSample> FieldSample::take(const Grid& grid, const PointField& field)
 }
 
 double FieldSample::triangles(double isovalue) const noexcept {
-    const auto cut = std::ranges::count_if(tets_seen_, [&](const Range& range) { return range.lower < isovalue && isovalue <= range.upper; });
+    const auto cut = std::ranges::count_if(
+        tets_seen_, [&](const Range& range) { return range.lower < isovalue && isovalue <= range.upper; });
     return triangles_a_cut_tet * tets_each_ * static_cast<double>(cut);
 }
 

@@ -20,8 +20,8 @@ Result<void> check_isovalues(std::span<const double> isovalues) {
 }
 
 template <class Real>
-Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options, std::span<const core::Storage> storages,
-               const ops::RawSurface& raw) {
+Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
+               std::span<const core::Storage> storages, const ops::RawSurface& raw) {
     Surface surface;
     surface.origin = origin;
     surface.positions = raw.positions;
@@ -52,7 +52,8 @@ MoreBytes more_bytes(const ExtractOptions& options) {
     MoreBytes more;
     if (options.normals == Normals::gradient) more.vertex += fill_normals_bytes;
     if (options.normals == Normals::face) more.triangle += 3 * sizeof(float);
-    for (const Field& field : options.cell_fields) more.triangle += field.values.components() * size_of(field.values.type());
+    for (const Field& field : options.cell_fields)
+        more.triangle += field.values.components() * size_of(field.values.type());
     return more;
 }
 

@@ -45,8 +45,11 @@ bool DeviceGrid::complete() const noexcept { return false; }
 const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }
 
 Result<DeviceSurface> DeviceGrid::extract(double, const ExtractOptions&, const Progress&) { return built_without(); }
-Result<void> DeviceGrid::extract(double, DeviceSurface&, const ExtractOptions&, const Progress&) { return built_without(); }
-Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double>, const ExtractOptions&, const Progress&) {
+Result<void> DeviceGrid::extract(double, DeviceSurface&, const ExtractOptions&, const Progress&) {
+    return built_without();
+}
+Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double>, const ExtractOptions&,
+                                                       const Progress&) {
     return built_without();
 }
 Result<Extraction> DeviceGrid::download(const DeviceSurface&, const Progress&) { return built_without(); }

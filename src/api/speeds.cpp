@@ -21,8 +21,9 @@ namespace isotet {
 
 namespace {
 
-constexpr std::uint64_t small_side = 8, large_side = 80; ///< 3,072 and 3,072,000 tets: the larger one beyond most caches
-constexpr double cuts_much = 0.25, cuts_nothing = 10;    ///< isovalues of the gyroid, which goes from -1.5 to 1.5
+constexpr std::uint64_t small_side = 8,
+                        large_side = 80;              ///< 3,072 and 3,072,000 tets: the larger one beyond most caches
+constexpr double cuts_much = 0.25, cuts_nothing = 10; ///< isovalues of the gyroid, which goes from -1.5 to 1.5
 constexpr int rounds = 3;
 
 struct Sample {
@@ -63,8 +64,9 @@ struct Parts {
 };
 
 /// `seconds(sample, isovalue)` takes the time of a surface, and sets `triangles`.
-Result<Parts> measure_parts(const Sample& small, const Sample& large,
-                            const std::function<Result<double>(const Sample&, double isovalue, double& triangles)>& seconds) {
+Result<Parts>
+measure_parts(const Sample& small, const Sample& large,
+              const std::function<Result<double>(const Sample&, double isovalue, double& triangles)>& seconds) {
     double triangles = 0;
     const Result<double> call = seconds(small, cuts_nothing, triangles);
     if (!call) return call.error();
@@ -72,7 +74,8 @@ Result<Parts> measure_parts(const Sample& small, const Sample& large,
     if (!empty) return empty.error();
     const Result<double> full = seconds(large, cuts_much, triangles);
     if (!full) return full.error();
-    return Parts{*call, std::max(0.0, *empty - *call) / large.tets, std::max(0.0, *full - *empty) / std::max(1.0, triangles)};
+    return Parts{*call, std::max(0.0, *empty - *call) / large.tets,
+                 std::max(0.0, *full - *empty) / std::max(1.0, triangles)};
 }
 
 } // namespace
@@ -93,7 +96,8 @@ Speeds typical_speeds() noexcept {
 namespace api {
 
 Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& progress) {
-    const Result<Sample> small = make_sample(small_side, threads, progress), large = make_sample(side, threads, progress);
+    const Result<Sample> small = make_sample(small_side, threads, progress),
+                         large = make_sample(side, threads, progress);
     if (!small) return small.error();
     if (!large) return large.error();
     PackedGrid packed_small, packed_large;
@@ -113,7 +117,8 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
     options.threads = threads;
     // Gradients cost passes over the tets; what they cost a triangle is little beside.
     const Result<double> packing_gradients = best_of(1, progress, [&]() -> Result<void> {
-        const Result<PackedGrid> made = pack(large->grid, large->field, {.gradients = true, .threads = threads}, progress);
+        const Result<PackedGrid> made =
+            pack(large->grid, large->field, {.gradients = true, .threads = threads}, progress);
         return made ? Result<void>() : made.error();
     });
     if (!packing_gradients) return packing_gradients.error();
@@ -130,23 +135,27 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
     if (!brute_plain) return brute_plain.error();
     const Result<double> brute_gradients = once_with(Normals::gradient);
     if (!brute_gradients) return brute_gradients.error();
-    const Result<Parts> brute = measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) {
-        return best_of(rounds, progress, [&]() -> Result<void> {
-            const auto once = extract_once(sample.grid, sample.field, std::span(&isovalue, 1), {options, Precision::single}, progress);
-            if (!once) return once.error();
-            triangles = static_cast<double>(once->surfaces.front().surface.triangle_count());
-            return {};
+    const Result<Parts> brute =
+        measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) {
+            return best_of(rounds, progress, [&]() -> Result<void> {
+                const auto once = extract_once(sample.grid, sample.field, std::span(&isovalue, 1),
+                                               {options, Precision::single}, progress);
+                if (!once) return once.error();
+                triangles = static_cast<double>(once->surfaces.front().surface.triangle_count());
+                return {};
+            });
         });
-    });
     if (!brute) return brute.error();
-    const Result<Parts> clusters = measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) {
-        return best_of(rounds, progress, [&]() -> Result<void> {
-            const Result<Extraction> one = extract(&sample == &*small ? packed_small : packed_large, isovalue, options, progress);
-            if (!one) return one.error();
-            triangles = static_cast<double>(one->surface.triangle_count());
-            return {};
+    const Result<Parts> clusters =
+        measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) {
+            return best_of(rounds, progress, [&]() -> Result<void> {
+                const Result<Extraction> one =
+                    extract(&sample == &*small ? packed_small : packed_large, isovalue, options, progress);
+                if (!one) return one.error();
+                triangles = static_cast<double>(one->surface.triangle_count());
+                return {};
+            });
         });
-    });
     if (!clusters) return clusters.error();
     core::drop_kept_blocks(); // what measuring took is not needed for the work to come
     return Speeds{.pack_call = *pack_call,
@@ -162,40 +171,47 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
 }
 
 Result<DeviceSpeeds> measure_speeds(const Device& device, std::uint64_t side, int threads, const Progress& progress) {
-    const Result<Sample> small = make_sample(small_side, threads, progress), large = make_sample(side, threads, progress);
+    const Result<Sample> small = make_sample(small_side, threads, progress),
+                         large = make_sample(side, threads, progress);
     if (!small) return small.error();
     if (!large) return large.error();
     double upload_seconds = 0;
-    const Result<Parts> parts = measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) -> Result<double> {
-        const Result<PackedGrid> packed = pack(sample.grid, sample.field, {.threads = threads}, progress);
-        if (!packed) return packed.error();
-        std::optional<DeviceGrid> grid;
-        const Result<double> upload = best_of(2, progress, [&]() -> Result<void> {
-            grid.reset();
-            Result<DeviceGrid> uploaded = DeviceGrid::upload(device, *packed, {}, progress);
-            if (!uploaded) return uploaded.error();
-            grid = *std::move(uploaded);
-            return {};
+    const Result<Parts> parts =
+        measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) -> Result<double> {
+            const Result<PackedGrid> packed = pack(sample.grid, sample.field, {.threads = threads}, progress);
+            if (!packed) return packed.error();
+            std::optional<DeviceGrid> grid;
+            const Result<double> upload = best_of(2, progress, [&]() -> Result<void> {
+                grid.reset();
+                Result<DeviceGrid> uploaded = DeviceGrid::upload(device, *packed, {}, progress);
+                if (!uploaded) return uploaded.error();
+                grid = *std::move(uploaded);
+                return {};
+            });
+            if (!upload) return upload;
+            upload_seconds = *upload;
+            DeviceSurface surface;
+            return best_of(rounds, progress, [&]() -> Result<void> {
+                if (Result<void> done = grid->extract(isovalue, surface, {}, progress); !done) return done;
+                const Result<Extraction> back = grid->download(surface, progress);
+                if (!back) return back.error();
+                triangles = static_cast<double>(surface.triangle_count());
+                return {};
+            });
         });
-        if (!upload) return upload;
-        upload_seconds = *upload;
-        DeviceSurface surface;
-        return best_of(rounds, progress, [&]() -> Result<void> {
-            if (Result<void> done = grid->extract(isovalue, surface, {}, progress); !done) return done;
-            const Result<Extraction> back = grid->download(surface, progress);
-            if (!back) return back.error();
-            triangles = static_cast<double>(surface.triangle_count());
-            return {};
-        });
-    });
     if (!parts) return parts.error();
     core::drop_kept_blocks();
-    return DeviceSpeeds{.upload_tet = upload_seconds / large->tets, .call = parts->call, .tet = parts->tet, .triangle = parts->triangle};
+    return DeviceSpeeds{.upload_tet = upload_seconds / large->tets,
+                        .call = parts->call,
+                        .tet = parts->tet,
+                        .triangle = parts->triangle};
 }
 
 } // namespace api
 
-Result<Speeds> measure_speeds(int threads, const Progress& progress) { return api::measure_speeds(large_side, threads, progress); }
+Result<Speeds> measure_speeds(int threads, const Progress& progress) {
+    return api::measure_speeds(large_side, threads, progress);
+}
 
 Result<DeviceSpeeds> measure_speeds(const Device& device, int threads, const Progress& progress) {
     return api::measure_speeds(device, large_side, threads, progress);

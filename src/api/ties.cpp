@@ -43,12 +43,14 @@ void for_points_with(const core::Packed& packed, Real stored, const F& f) {
 } // namespace
 
 template <class Real>
-void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points, ExtractReport& report) {
+void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points,
+                 ExtractReport& report) {
     report.isovalue_stored = core::restore_value(static_cast<double>(stored), packed.storage);
     report.tied_points = tied_points;
     if (packed.field.tuples() != packed.user_points) return;
     const auto holds_exactly = [&](std::uint64_t point, double value) {
-        return packed.field.visit([&](auto values) { return core::equals_exactly(values[packed.user_point(point)], value); });
+        return packed.field.visit(
+            [&](auto values) { return core::equals_exactly(values[packed.user_point(point)], value); });
     };
     if (tied_points) {
         std::atomic<std::uint64_t> exact{0};

@@ -18,7 +18,8 @@ std::uint64_t whole(double bytes) { return static_cast<std::uint64_t>(std::clamp
 
 Forecast forecast(Way way, const Task& task, const Speeds& speeds, const DeviceSpeeds* device) {
     const auto tets = static_cast<double>(task.tets);
-    const double packing = speeds.pack_call + tets * (speeds.pack_tet + (task.gradients ? speeds.pack_gradient_tet : 0));
+    const double packing =
+        speeds.pack_call + tets * (speeds.pack_tet + (task.gradients ? speeds.pack_gradient_tet : 0));
     const double kept = std::max(tets * packing_a_tet + static_cast<double>(task.points) * packing_a_point,
                                  tets * packed_a_tet + task.triangles_together * clusters_a_triangle);
     Forecast out;
@@ -28,7 +29,8 @@ Forecast forecast(Way way, const Task& task, const Speeds& speeds, const DeviceS
         out.seconds = (task.surfaces + (task.find_range ? 1 : 0)) * (speeds.brute_call + tets * speeds.brute_tet) +
                       task.surfaces * task.triangles * speeds.brute_triangle;
         if (task.gradients) out.seconds += task.surfaces * tets * speeds.brute_gradient_tet;
-        out.bytes = whole(static_cast<double>(task.points) * brute_a_point + task.triangles_together * brute_a_triangle);
+        out.bytes =
+            whole(static_cast<double>(task.points) * brute_a_point + task.triangles_together * brute_a_triangle);
         break;
     case Way::clusters:
         out.seconds = packing + task.surfaces * (speeds.clusters_call + tets * speeds.clusters_tet +
@@ -60,7 +62,8 @@ std::string_view name_of(Way way) noexcept {
 std::vector<Forecast> weigh(const Task& task, const Speeds& speeds, const DeviceSpeeds* device) {
     std::vector<Forecast> forecasts;
     for (const Way way : all_ways)
-        if (way != Way::device_clusters || (device && task.device_memory_free)) forecasts.push_back(forecast(way, task, speeds, device));
+        if (way != Way::device_clusters || (device && task.device_memory_free))
+            forecasts.push_back(forecast(way, task, speeds, device));
     std::ranges::stable_sort(forecasts, [](const Forecast& a, const Forecast& b) {
         if (a.fits != b.fits) return a.fits;
         return a.fits ? a.seconds < b.seconds : a.bytes < b.bytes;

@@ -36,7 +36,10 @@ std::string describe(const EdgeUse& edge) {
 class Checker {
 public:
     Checker(const Surface& surface, const Mesh& mesh, const CheckOptions& options, const Progress& progress)
-        : surface_(surface), mesh_(mesh), options_(options), progress_(progress),
+        : surface_(surface),
+          mesh_(mesh),
+          options_(options),
+          progress_(progress),
           most_(static_cast<std::size_t>(std::max(options.most_findings, 0))) {}
 
     Result<SurfaceReport> run() {

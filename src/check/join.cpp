@@ -109,7 +109,7 @@ std::optional<SurfaceField> join_field(const Parts& parts, const SurfaceField& f
     return SurfaceField{field.name, Array::own(std::move(all), field.values.components()), 0, 1};
 }
 
-std::vector<SurfaceField> join_fields(const Parts& parts, std::vector<SurfaceField> Surface::*list,
+std::vector<SurfaceField> join_fields(const Parts& parts, std::vector<SurfaceField> Surface::* list,
                                       std::size_t (Surface::*count)() const noexcept) {
     std::vector<SurfaceField> joined;
     for (const SurfaceField& field : parts[0]->*list)

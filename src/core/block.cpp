@@ -140,7 +140,9 @@ private:
         munmap(block.data, block.bytes);
         bytes_ -= block.bytes;
     }
-    void forget(std::size_t oldest) { blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(oldest)); }
+    void forget(std::size_t oldest) {
+        blocks_.erase(blocks_.begin(), blocks_.begin() + static_cast<std::ptrdiff_t>(oldest));
+    }
 
     void let_go_of_too_many() {
         if (reuses_) return;

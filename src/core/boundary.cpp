@@ -40,7 +40,9 @@ struct Face {
         order(0, 1);
         return {p, sign};
     }
-    friend bool operator<(const Face& a, const Face& b) { return std::tie(a.points, a.uses) < std::tie(b.points, b.uses); }
+    friend bool operator<(const Face& a, const Face& b) {
+        return std::tie(a.points, a.uses) < std::tie(b.points, b.uses);
+    }
 };
 
 /// Of sorted faces those that do not cancel, each once.
@@ -49,7 +51,8 @@ void cancel(std::vector<Face<Point>>& faces) {
     std::size_t kept = 0;
     for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {
         std::int32_t uses = 0;
-        for (end = begin; end < faces.size() && faces[end].points == faces[begin].points; ++end) uses += faces[end].uses;
+        for (end = begin; end < faces.size() && faces[end].points == faces[begin].points; ++end)
+            uses += faces[end].uses;
         if (uses != 0) faces[kept++] = {faces[begin].points, uses};
     }
     faces.resize(kept);
@@ -62,7 +65,8 @@ using PackedFace = Face<std::uint64_t>;
 void add_faces(const Packed& packed, std::size_t cluster, std::vector<LocalFace>& local, std::vector<PackedFace>& out) {
     local.clear();
     for (const StoredTet& tet : packed.cluster_tets(cluster))
-        for (const auto& f : tet_faces) local.push_back(LocalFace::make({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}));
+        for (const auto& f : tet_faces)
+            local.push_back(LocalFace::make({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}));
     std::sort(local.begin(), local.end());
     cancel(local);
     std::array<std::uint64_t, max_cluster_points> points{};
@@ -96,7 +100,8 @@ Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& point
         [&]<class Real>(const Values<Real>& reals) {
             std::vector<Real> positions(3 * points.size());
             parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
-                for (std::size_t axis = 0; axis < 3; ++axis) positions[3 * i + axis] = reals.positions[3 * points[i] + axis];
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    positions[3 * i + axis] = reals.positions[3 * points[i] + axis];
             });
             return Array::own(std::move(positions), 3);
         },
@@ -115,7 +120,8 @@ Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
         if (faces[i].uses < 0) std::swap(corners[1], corners[2]);
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const auto place = std::lower_bound(points.begin(), points.end(), corners[corner]);
-            triangles[3 * i + corner] = static_cast<std::uint32_t>(place - points.begin()); // a packed grid has fewer than 2^32 points
+            triangles[3 * i + corner] =
+                static_cast<std::uint32_t>(place - points.begin()); // a packed grid has fewer than 2^32 points
         }
     });
     Surface surface;

@@ -31,7 +31,8 @@ ByRank by_rank(const TetBuckets& all, std::size_t bucket) {
         out.tets[at] = tet;
         if (all.has_origins()) out.origins[at] = origin;
     });
-    std::copy_backward(out.first.begin(), out.first.end() - 1, out.first.end()); // each has moved on to where the next began
+    std::copy_backward(out.first.begin(), out.first.end() - 1,
+                       out.first.end()); // each has moved on to where the next began
     out.first[0] = 0;
     return out;
 }
@@ -89,7 +90,9 @@ struct Ascending {
         order(1, 2);
         for (std::size_t k = 0; k < 4; ++k) ranks[k] = tet[keys[k] & 3];
     }
-    RankedTet stored(bool exchange) const { return {ranks[0], ranks[1], ranks[exchange ? 3 : 2], ranks[exchange ? 2 : 3]}; }
+    RankedTet stored(bool exchange) const {
+        return {ranks[0], ranks[1], ranks[exchange ? 3 : 2], ranks[exchange ? 2 : 3]};
+    }
 };
 
 } // namespace
@@ -110,7 +113,8 @@ SortedBucket sort_bucket(const RankedPoints& points, const CellReader& cells, st
             const bool whole = cells.only_tets() || Orienter::is_whole(cells.type(origin.cell()));
             const auto& [a, b, c, d] = tet.ranks;
             const PointReader& at = points.coordinates;
-            const int sign = orientation_sign(at[a], at[b], at[c], at[d]) * (tet.odd ? -1 : 1); // of the tet as the user gave it
+            const int sign =
+                orientation_sign(at[a], at[b], at[c], at[d]) * (tet.odd ? -1 : 1); // of the tet as the user gave it
             if (whole) out.balance += sign;
             if (repeated[i - begin]) {
                 ++out.repeated;

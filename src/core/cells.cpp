@@ -42,9 +42,9 @@ void add_quad(CellTets& out, std::uint64_t a, std::uint64_t b, std::uint64_t c, 
 }
 
 /// Rotations of a hexahedron that bring corner k to position 0 (Dompierre et al. 1999, table 1).
-constexpr int hexahedron_rotations[8][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {1, 2, 3, 0, 5, 6, 7, 4}, {2, 3, 0, 1, 6, 7, 4, 5},
-                                            {3, 0, 1, 2, 7, 4, 5, 6}, {4, 7, 6, 5, 0, 3, 2, 1}, {5, 4, 7, 6, 1, 0, 3, 2},
-                                            {6, 5, 4, 7, 2, 1, 0, 3}, {7, 6, 5, 4, 3, 2, 1, 0}};
+constexpr int hexahedron_rotations[8][8] = {
+    {0, 1, 2, 3, 4, 5, 6, 7}, {1, 2, 3, 0, 5, 6, 7, 4}, {2, 3, 0, 1, 6, 7, 4, 5}, {3, 0, 1, 2, 7, 4, 5, 6},
+    {4, 7, 6, 5, 0, 3, 2, 1}, {5, 4, 7, 6, 1, 0, 3, 2}, {6, 5, 4, 7, 2, 1, 0, 3}, {7, 6, 5, 4, 3, 2, 1, 0}};
 
 // The lowest corner sees the three faces that do not touch it; each of their halves makes a tet with it. If no diagonal of
 // these faces ends in the opposite corner 6, that corner is cut off and five tets are enough.
@@ -131,8 +131,9 @@ Result<CellReader> CellReader::open(const Grid& grid) {
         return invalid(fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
                                    name_of(grid.points.type()), grid.points.components()));
     if (!is_index(cells.connectivity) || (!cells.connectivity.empty() && cells.connectivity.components() != 1))
-        return invalid(fmt::format("the connectivity is {} with {} components, but must be 32- or 64-bit integers with 1",
-                                   name_of(cells.connectivity.type()), cells.connectivity.components()));
+        return invalid(
+            fmt::format("the connectivity is {} with {} components, but must be 32- or 64-bit integers with 1",
+                        name_of(cells.connectivity.type()), cells.connectivity.components()));
     CellReader reader;
     reader.points_ = grid.points.tuples();
     reader.connectivity_ = IndexColumn(cells.connectivity);
@@ -141,8 +142,10 @@ Result<CellReader> CellReader::open(const Grid& grid) {
     reader.uniform_corners_ = static_cast<std::uint64_t>(corners_of(reader.uniform_type_));
     if (!cells.types.empty()) {
         if (cells.types.type() != ScalarType::uint8 || cells.types.components() != 1)
-            return invalid(fmt::format("the cell types are {}, but must be uint8 with 1 component", name_of(cells.types.type())));
-        if (cells.offsets.empty()) return invalid("there are cell types but no offsets, and cells of several types need offsets");
+            return invalid(
+                fmt::format("the cell types are {}, but must be uint8 with 1 component", name_of(cells.types.type())));
+        if (cells.offsets.empty())
+            return invalid("there are cell types but no offsets, and cells of several types need offsets");
         reader.types_ = cells.types.as<std::uint8_t>().data();
     } else if (reader.uniform_corners_ == 0) {
         return invalid(fmt::format("all cells are of type {}, which cannot be contoured", reader.uniform_type_));
@@ -158,15 +161,18 @@ Result<CellReader> CellReader::open(const Grid& grid) {
         reader.has_offsets_ = true;
     } else if (reader.connectivity_size_ % reader.uniform_corners_ != 0) {
         return invalid(fmt::format("the connectivity has {} entries, but must be a multiple of {} for {} cells",
-                                   reader.connectivity_size_, reader.uniform_corners_, name_of_cell_type(reader.uniform_type_)));
+                                   reader.connectivity_size_, reader.uniform_corners_,
+                                   name_of_cell_type(reader.uniform_type_)));
     }
     reader.count_ = cells.count();
     reader.only_tets_ = !reader.types_ && reader.uniform_type_ == tetrahedron;
-    const auto check_fields = [&](const std::vector<Field>& fields, std::size_t expected, const char* what) -> Result<void> {
+    const auto check_fields = [&](const std::vector<Field>& fields, std::size_t expected,
+                                  const char* what) -> Result<void> {
         for (const Field& field : fields)
             if (field.values.tuples() != expected)
-                return Error{ErrorCode::invalid_data, fmt::format("{} field '{}' has {} tuples, but the grid has {} {}s", what,
-                                                                  field.name, field.values.tuples(), expected, what)};
+                return Error{ErrorCode::invalid_data,
+                             fmt::format("{} field '{}' has {} tuples, but the grid has {} {}s", what, field.name,
+                                         field.values.tuples(), expected, what)};
         return {};
     };
     if (auto ok = check_fields(grid.point_fields, reader.points_, "point"); !ok) return ok.error();
@@ -206,7 +212,8 @@ bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::siz
     return cells.connectivity().visit([&](const auto* corners) {
         auto highest = std::make_unsigned_t<std::remove_cvref_t<decltype(*corners)>>{0};
         for (std::size_t i = 4 * begin; i < 4 * end; ++i)
-            highest = std::max(highest, static_cast<decltype(highest)>(corners[i])); // negative numbers become huge ones
+            highest =
+                std::max(highest, static_cast<decltype(highest)>(corners[i])); // negative numbers become huge ones
         return begin == end || highest < cells.points();
     });
 }
@@ -229,27 +236,31 @@ Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
 
 std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std::size_t cell) {
     const std::uint64_t begin = cells.first(cell), corners = cells.corners(cell);
-    const std::string who = cells.only_tets() ? fmt::format("tets[{}]", cell)
-                                              : fmt::format("cells[{}] ({})", cell, name_of_cell_type(cells.type(cell)));
+    const std::string who = cells.only_tets()
+                                ? fmt::format("tets[{}]", cell)
+                                : fmt::format("cells[{}] ({})", cell, name_of_cell_type(cells.type(cell)));
     if (fault == Fault::offset_falls)
-        return fmt::format("{} starts at {} and ends at {}, but offsets must not fall", who, static_cast<std::int64_t>(begin),
-                           static_cast<std::int64_t>(begin + corners));
+        return fmt::format("{} starts at {} and ends at {}, but offsets must not fall", who,
+                           static_cast<std::int64_t>(begin), static_cast<std::int64_t>(begin + corners));
     if (fault == Fault::offset_end)
-        return fmt::format("{} has corners {} to {}, but the connectivity has {} entries", who, static_cast<std::int64_t>(begin),
-                           static_cast<std::int64_t>(begin + corners), cells.connectivity_size());
+        return fmt::format("{} has corners {} to {}, but the connectivity has {} entries", who,
+                           static_cast<std::int64_t>(begin), static_cast<std::int64_t>(begin + corners),
+                           cells.connectivity_size());
     if (fault == Fault::corner_count)
         return fmt::format("{} has {} corners, but must have {}", who, corners, corners_of(cells.type(cell)));
     for (std::uint64_t k = 0; k < corners; ++k) {
         const std::uint64_t point = cells.corner(begin + k);
         if (point >= cells.points()) {
             if (fault != Fault::point_range) continue;
-            return fmt::format("{} has point {}, but the grid has {} points", who, static_cast<std::int64_t>(point), cells.points());
+            return fmt::format("{} has point {}, but the grid has {} points", who, static_cast<std::int64_t>(point),
+                               cells.points());
         }
         for (std::size_t axis = 0; axis < 3 && fault == Fault::coordinate; ++axis)
             if (const double x = grid.points.at(point, axis); !(std::abs(x) < 0x1p91))
-                return fmt::format("points[{}] has {} coordinate {}, but cells use the point, and coordinates must be finite and "
-                                   "below 2^91",
-                                   point, "xyz"[axis], x);
+                return fmt::format(
+                    "points[{}] has {} coordinate {}, but cells use the point, and coordinates must be finite and "
+                    "below 2^91",
+                    point, "xyz"[axis], x);
     }
     return who + " is broken";
 }
@@ -258,8 +269,9 @@ std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std
 
 Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progress& progress) {
     if (grid.cells.offsets.tuples() > 0 && IndexColumn(grid.cells.offsets)[0] > cells.connectivity_size())
-        return Error{ErrorCode::invalid_data, fmt::format("the first offset is {}, but the connectivity has {} entries",
-                                                          IndexColumn(grid.cells.offsets)[0], cells.connectivity_size())};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("the first offset is {}, but the connectivity has {} entries",
+                                 IndexColumn(grid.cells.offsets)[0], cells.connectivity_size())};
     const bool corners_are_enough = cells.bare_tets() && all_points_are_sound(grid);
     // The lowest broken cell is the one reported, whatever the threads do.
     std::atomic<std::size_t> lowest{std::numeric_limits<std::size_t>::max()};
@@ -283,11 +295,13 @@ Error nothing_to_contour(const Grid& grid, const CellReader& cells) {
     std::map<std::uint8_t, std::size_t> counts;
     for (std::size_t cell = 0; cell < cells.count(); ++cell) ++counts[cells.type(cell)];
     std::string list;
-    for (const auto& [type, count] : counts) list += fmt::format("{}{} x {}", list.empty() ? "" : ", ", count, name_of_cell_type(type));
+    for (const auto& [type, count] : counts)
+        list += fmt::format("{}{} x {}", list.empty() ? "" : ", ", count, name_of_cell_type(type));
     return {ErrorCode::invalid_data,
-            fmt::format("the grid with {} points has no cell that can be contoured ({}); tetrahedra, hexahedra, voxels, wedges "
-                        "and pyramids can",
-                        grid.points.tuples(), list.empty() ? "no cells at all" : list)};
+            fmt::format(
+                "the grid with {} points has no cell that can be contoured ({}); tetrahedra, hexahedra, voxels, wedges "
+                "and pyramids can",
+                grid.points.tuples(), list.empty() ? "no cells at all" : list)};
 }
 
 } // namespace core

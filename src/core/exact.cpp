@@ -73,7 +73,9 @@ private:
 struct Difference {
     Expansion x, y, z;
     Difference(const Point& a, const Point& b)
-        : x(Expansion::difference(a[0], b[0])), y(Expansion::difference(a[1], b[1])), z(Expansion::difference(a[2], b[2])) {}
+        : x(Expansion::difference(a[0], b[0])),
+          y(Expansion::difference(a[1], b[1])),
+          z(Expansion::difference(a[2], b[2])) {}
 };
 
 /// Brings the largest coordinate near 1, so that products of small coordinates do not underflow.
@@ -101,7 +103,8 @@ int exact_orientation_sign(const Point& a, const Point& b, const Point& c, const
 bool is_collinear(const Point& a, const Point& b, const Point& c) {
     const auto p = scaled<3>({a, b, c});
     const Difference u(p[1], p[0]), v(p[2], p[0]);
-    return (u.x * v.y - u.y * v.x).sign() == 0 && (u.y * v.z - u.z * v.y).sign() == 0 && (u.z * v.x - u.x * v.z).sign() == 0;
+    return (u.x * v.y - u.y * v.x).sign() == 0 && (u.y * v.z - u.z * v.y).sign() == 0 &&
+           (u.z * v.x - u.x * v.z).sign() == 0;
 }
 
 } // namespace isotet::core

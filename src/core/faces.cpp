@@ -54,7 +54,9 @@ bool in_hand(std::uint64_t point, std::uint64_t hand, std::uint64_t hands) {
     return hands == 1 || (point * 0x9e3779b97f4a7c15u >> 32) % hands == hand;
 }
 
-std::uint64_t hands_for(std::uint64_t bytes, std::uint64_t memory) { return 1 + bytes / std::max<std::uint64_t>(memory, 1); }
+std::uint64_t hands_for(std::uint64_t bytes, std::uint64_t memory) {
+    return 1 + bytes / std::max<std::uint64_t>(memory, 1);
+}
 
 /// Collects what visit(cell, emit) emits for all cells, each chunk of cells to its own place: counted first, so that no
 /// list grows.
@@ -63,7 +65,8 @@ Buffer<Item> collect(std::size_t cells, const Visit& visit) {
     const std::size_t chunks = (cells + cells_a_chunk - 1) / cells_a_chunk;
     std::vector<std::uint64_t> first(chunks + 1, 0);
     const auto for_chunk = [&](std::size_t chunk, const auto& emit) {
-        for (std::size_t cell = chunk * cells_a_chunk; cell < std::min(cells, (chunk + 1) * cells_a_chunk); ++cell) visit(cell, emit);
+        for (std::size_t cell = chunk * cells_a_chunk; cell < std::min(cells, (chunk + 1) * cells_a_chunk); ++cell)
+            visit(cell, emit);
     };
     parallel_each(chunks, 1, [&](std::size_t chunk) {
         std::uint64_t count = 0;
@@ -111,16 +114,18 @@ Result<std::vector<std::uint64_t>> find_repeated(const CellReader& cells, std::u
             for (int piece = 0; piece < pieces.count; ++piece) {
                 Tet corners = pieces.tets[static_cast<std::size_t>(piece)];
                 std::sort(corners.begin(), corners.end());
-                if (in_hand(corners[0], hand, hands)) emit(NumberedTet{corners, TetId::make(cell, static_cast<unsigned>(piece))});
+                if (in_hand(corners[0], hand, hands))
+                    emit(NumberedTet{corners, TetId::make(cell, static_cast<unsigned>(piece))});
             }
         });
         tbb::parallel_sort(all.begin(), all.end());
         tbb::enumerable_thread_specific<std::vector<std::uint64_t>> found;
-        sum_over_runs(all, [](const NumberedTet& a, const NumberedTet& b) { return a.corners == b.corners; },
-                      [&](const NumberedTet* first, const NumberedTet* last) {
-                          for (const NumberedTet* tet = first + 1; tet < last; ++tet) found.local().push_back(tet->id.value);
-                          return std::uint64_t{0};
-                      });
+        sum_over_runs(
+            all, [](const NumberedTet& a, const NumberedTet& b) { return a.corners == b.corners; },
+            [&](const NumberedTet* first, const NumberedTet* last) {
+                for (const NumberedTet* tet = first + 1; tet < last; ++tet) found.local().push_back(tet->id.value);
+                return std::uint64_t{0};
+            });
         for (const auto& part : found) repeated.insert(repeated.end(), part.begin(), part.end());
     }
     std::sort(repeated.begin(), repeated.end());
@@ -137,7 +142,8 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets) {
             faces[4 * t + f] = {face.points, face.mirrored ? 0u : 1u, face.mirrored ? 1u : 0u};
         }
     });
-    tbb::parallel_sort(faces.begin(), faces.end(), [](const StoredFace& a, const StoredFace& b) { return a.points < b.points; });
+    tbb::parallel_sort(faces.begin(), faces.end(),
+                       [](const StoredFace& a, const StoredFace& b) { return a.points < b.points; });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         if (kept && faces[kept - 1].points == faces[i].points) {
@@ -151,8 +157,8 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets) {
     return faces;
 }
 
-Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey, std::uint64_t memory,
-                                const Progress& progress) {
+Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
+                                std::uint64_t memory, const Progress& progress) {
     const auto repeated = find_repeated(cells, survey.tets, memory, progress);
     if (!repeated) return repeated.error();
     FaceSurvey out;
@@ -161,7 +167,8 @@ Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const
     const auto for_stored_tets = [&](std::size_t cell, Orienter::Counts& counts, const auto& visit) {
         const CellTets pieces = cells.tets(cell);
         for (unsigned piece = 0; piece < static_cast<unsigned>(pieces.count); ++piece)
-            if (repeated->empty() || !std::binary_search(repeated->begin(), repeated->end(), TetId::make(cell, piece).value))
+            if (repeated->empty() ||
+                !std::binary_search(repeated->begin(), repeated->end(), TetId::make(cell, piece).value))
                 visit(orienter.stored(cells.type(cell), pieces, piece, counts));
     };
     tbb::enumerable_thread_specific<Orienter::Counts> counts;
@@ -181,7 +188,8 @@ Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const
                 for (std::size_t f = 0; f < 4; ++f) {
                     const DirectedFace face = face_of(tet, f);
                     if (in_hand(face.points[0], hand, hands))
-                        emit(FaceUse{{face.points[0], face.points[1], face.points[2] << 1 | std::uint64_t{face.mirrored}}});
+                        emit(FaceUse{
+                            {face.points[0], face.points[1], face.points[2] << 1 | std::uint64_t{face.mirrored}}});
                 }
             });
         });

@@ -44,7 +44,8 @@ std::uint64_t store_lanes(const typename SummaryLanes<Number>::Values& values, c
 
 /// Looks at the values of `ids` and, unless `out` is null, stores them.
 template <class Number, class Real, class T, class Id>
-Pass pass_over(std::span<const T> values, std::size_t components, std::span<const Id> ids, const Storage& storage, Real* out) {
+Pass pass_over(std::span<const T> values, std::size_t components, std::span<const Id> ids, const Storage& storage,
+               Real* out) {
     constexpr std::size_t lanes = SummaryLanes<Number>::count;
     Pass pass;
     const auto one = [&](std::size_t i, std::size_t component) {
@@ -64,7 +65,8 @@ Pass pass_over(std::span<const T> values, std::size_t components, std::span<cons
             if (!out) continue;
             pass.flushed += store_lanes<Real, Number>(some, storage, out + i);
             if (!finite) // what was made of infinities and NaN is wrong, but counted rightly: not as flushed
-                for (std::size_t k = 0; k < lanes; ++k) out[i + k] = store_value<Real>(static_cast<double>(some[k]), storage);
+                for (std::size_t k = 0; k < lanes; ++k)
+                    out[i + k] = store_value<Real>(static_cast<double>(some[k]), storage);
         }
         pass.summary.combine(summary.summary());
     }
@@ -83,7 +85,8 @@ Pass pass_over(const Array& values, const Packed& packed, const Storage& storage
                 tbb::blocked_range<std::size_t>(0, ids.size(), grain), Pass{},
                 [&](const tbb::blocked_range<std::size_t>& range, Pass pass) {
                     if (progress.cancelled()) return pass;
-                    pass.combine(pass_over<decltype(number)>(typed, components, ids.subspan(range.begin(), range.size()), storage,
+                    pass.combine(pass_over<decltype(number)>(typed, components,
+                                                             ids.subspan(range.begin(), range.size()), storage,
                                                              out ? out + range.begin() : out));
                     return pass;
                 },
@@ -93,7 +96,8 @@ Pass pass_over(const Array& values, const Packed& packed, const Storage& storage
                 });
         };
         const auto with = [&](auto number) {
-            if (packed.wide_point_ids.empty()) return of(number, std::span(packed.point_ids.data(), packed.point_ids.size()));
+            if (packed.wide_point_ids.empty())
+                return of(number, std::span(packed.point_ids.data(), packed.point_ids.size()));
             return of(number, std::span(packed.wide_point_ids.data(), packed.wide_point_ids.size()));
         };
         // Floats that are not scaled need no double.

@@ -43,8 +43,9 @@ const Field* find(const std::vector<Field>& fields, std::string_view name) {
 Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
     const std::size_t components = field.values.components();
     if (!component && components != 1)
-        return invalid(fmt::format("the field '{}' has {} components, but one is needed: ask for '{}:x', '{}:0' or '{}:mag'",
-                                   field.name, components, field.name, field.name, field.name));
+        return invalid(
+            fmt::format("the field '{}' has {} components, but one is needed: ask for '{}:x', '{}:0' or '{}:mag'",
+                        field.name, components, field.name, field.name, field.name));
     if (!component) return core::Scalar{};
     const auto scalar = core::parse_scalar(*component);
     if (!scalar || scalar->component >= components)

@@ -34,7 +34,8 @@ struct Borrowers {
         for (std::size_t c = 0; c < packed.clusters(); ++c) {
             std::uint16_t local = 0;
             for (const Neighbour& n : packed.cluster_links(c).neighbours) {
-                if (n.foreign_points) list[next[n.cluster]++] = {static_cast<std::uint32_t>(c), local, n.foreign_points};
+                if (n.foreign_points)
+                    list[next[n.cluster]++] = {static_cast<std::uint32_t>(c), local, n.foreign_points};
                 local = static_cast<std::uint16_t>(local + n.foreign_points);
             }
         }
@@ -60,9 +61,11 @@ private:
             const Borrower& borrower = borrowers_.list[i];
             Point borrowed[max_cluster_points];
             const auto links = packed_.cluster_links(borrower.cluster);
-            for (std::size_t k = 0; k < borrower.points; ++k) borrowed[k] = sums[links.foreign_points[borrower.first_local + k]];
+            for (std::size_t k = 0; k < borrower.points; ++k)
+                borrowed[k] = sums[links.foreign_points[borrower.first_local + k]];
             add_tets(borrower.cluster, borrower.first_local, borrower.points, borrowed);
-            for (std::size_t k = 0; k < borrower.points; ++k) sums[links.foreign_points[borrower.first_local + k]] = borrowed[k];
+            for (std::size_t k = 0; k < borrower.points; ++k)
+                sums[links.foreign_points[borrower.first_local + k]] = borrowed[k];
         }
         for (std::size_t k = 0; k < h.own_points; ++k) packed_.gradients[h.first_point + k] = encode_normal(sums[k]);
     }
@@ -72,7 +75,9 @@ private:
         Real values[max_cluster_points], positions[3 * max_cluster_points];
         load_values(packed_, cluster, values);
         load_positions(packed_, cluster, positions);
-        const auto wanted = [&](std::uint8_t corner) { return std::size_t{corner} - first < count; }; // wraps below first
+        const auto wanted = [&](std::uint8_t corner) {
+            return std::size_t{corner} - first < count;
+        }; // wraps below first
         for (const StoredTet& tet : packed_.cluster_tets(cluster)) {
             const auto& v = tet.corners;
             if (!wanted(v[0]) && !wanted(v[1]) && !wanted(v[2]) && !wanted(v[3])) continue;

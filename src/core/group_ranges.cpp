@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t group_corners = 4 * group_size;
 
 /// Looks the steps up one by one, so that what is left of the work can be done sixteen bytes at a time.
-void find_portable(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper, GroupRange* out) {
+void find_portable(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
+                   GroupRange* out) {
     for (std::size_t g = 0; g < groups; ++g, tets += group_size) {
         std::array<std::uint8_t, group_corners> low, high;
         for (std::size_t i = 0; i < group_corners; ++i) {
@@ -54,20 +55,24 @@ struct Table {
 
     ISOTET_AVX2 explicit Table(const PointSteps& steps) {
         for (std::size_t k = 0; k < 8; ++k)
-            parts[k] = _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(steps.data() + 16 * k)));
+            parts[k] =
+                _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(steps.data() + 16 * k)));
     }
     /// A shuffle gives 0 where the top bit of an index is set: so it is set for every part but the one that is meant.
     ISOTET_AVX2 __m256i look_up(__m256i indices) const {
         __m256i found = _mm256_setzero_si256();
         for (std::size_t k = 0; k < 8; ++k) {
-            const __m256i inside = _mm256_xor_si256(indices, _mm256_set1_epi8(static_cast<char>(16 * k))); // below 16 in part k
-            found = _mm256_or_si256(found, _mm256_shuffle_epi8(parts[k], _mm256_adds_epu8(inside, _mm256_set1_epi8(0x70))));
+            const __m256i inside =
+                _mm256_xor_si256(indices, _mm256_set1_epi8(static_cast<char>(16 * k))); // below 16 in part k
+            found =
+                _mm256_or_si256(found, _mm256_shuffle_epi8(parts[k], _mm256_adds_epu8(inside, _mm256_set1_epi8(0x70))));
         }
         return found;
     }
 };
 
-ISOTET_AVX2 void find_avx2(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper, GroupRange* out) {
+ISOTET_AVX2 void find_avx2(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
+                           GroupRange* out) {
     const Table low(lower), high(upper);
     for (std::size_t g = 0; g < groups; ++g, tets += group_size) {
         __m256i least = _mm256_set1_epi8(-1), most = _mm256_setzero_si256();
@@ -80,7 +85,8 @@ ISOTET_AVX2 void find_avx2(const StoredTet* tets, std::size_t groups, const Poin
     }
 }
 
-ISOTET_AVX512 void find_avx512(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper, GroupRange* out) {
+ISOTET_AVX512 void find_avx512(const StoredTet* tets, std::size_t groups, const PointSteps& lower,
+                               const PointSteps& upper, GroupRange* out) {
     const __m512i low_0 = _mm512_loadu_si512(lower.data()), low_1 = _mm512_loadu_si512(lower.data() + 64);
     const __m512i high_0 = _mm512_loadu_si512(upper.data()), high_1 = _mm512_loadu_si512(upper.data() + 64);
     for (std::size_t g = 0; g < groups; ++g, tets += group_size) {
@@ -101,7 +107,8 @@ ISOTET_AVX512 void find_avx512(const StoredTet* tets, std::size_t groups, const 
 
 } // namespace
 
-void find_group_ranges(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper, GroupRange* out) {
+void find_group_ranges(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
+                       GroupRange* out) {
     switch (level()) {
 #if defined(__x86_64__)
     case Level::avx512: return find_avx512(tets, groups, lower, upper, out);

@@ -78,7 +78,9 @@ public:
         return static_cast<std::uint32_t>(at);
     }
     /// Scores end at the highest that there is, which only points of over 107 tets reach.
-    void raise(std::uint32_t at, std::int16_t by) { scores_[at] = static_cast<std::int16_t>(std::min(scores_[at] + by, 0x7fff)); }
+    void raise(std::uint32_t at, std::int16_t by) {
+        scores_[at] = static_cast<std::int16_t>(std::min(scores_[at] + by, 0x7fff));
+    }
 
     /// Puts the last candidate where the dropped one was, and returns it.
     std::uint32_t drop(std::uint32_t at) {
@@ -93,7 +95,8 @@ public:
     /// The first of those with the highest score, or none.
     std::uint32_t best() const {
         std::int16_t highest = 0;
-        const std::size_t n = (points_.size() + piece - 1) / piece * piece; // behind the last candidate all scores are 0
+        const std::size_t n =
+            (points_.size() + piece - 1) / piece * piece; // behind the last candidate all scores are 0
         for (std::size_t i = 0; i < n; ++i) highest = std::max(highest, scores_[i]);
         if (highest == 0) return none;
         std::size_t begin = 0;
@@ -173,7 +176,9 @@ private:
 class Grower {
 public:
     explicit Grower(Buffer<RankedTet> tets)
-        : numbers_(tets.empty() ? 0 : lowest_rank(tets[0])), corners_(std::move(tets)), states_(corners_.size()),
+        : numbers_(tets.empty() ? 0 : lowest_rank(tets[0])),
+          corners_(std::move(tets)),
+          states_(corners_.size()),
           tets_of_(4 * corners_.size()) {
         for (RankedTet& tet : corners_)
             for (std::uint32_t& corner : tet) corner = numbers_.number(corner);
@@ -191,7 +196,8 @@ public:
         for (std::size_t i = 0; i < corners_.size(); ++i)
             for (const std::uint32_t v : corners_[i])
                 tets_of_[vertices_[v].first + vertices_[v].listed++] = static_cast<std::uint16_t>(i);
-        for (std::size_t k = 1; k < weight_.size(); ++k) weight_[k] = static_cast<std::int16_t>(score_one + 20 * score_one / k);
+        for (std::size_t k = 1; k < weight_.size(); ++k)
+            weight_[k] = static_cast<std::int16_t>(score_one + 20 * score_one / k);
     }
 
     BlockClusters run() {
@@ -209,8 +215,8 @@ public:
 private:
     struct Vertex {
         std::uint32_t first = 0, listed = 0; ///< its tets: `listed` from tets_of_[first] on
-        std::uint32_t left = 0;              ///< of these, in no cluster; behind by those of taken_ that are not settled
-        std::uint32_t candidate = none;      ///< position among the candidates, or none
+        std::uint32_t left = 0;         ///< of these, in no cluster; behind by those of taken_ that are not settled
+        std::uint32_t candidate = none; ///< position among the candidates, or none
     };
 
     void grow_one() {
@@ -319,7 +325,8 @@ private:
         const std::span<std::uint32_t> tets(out.order.data() + first, taken_.size());
         std::size_t next = 0;
         for (const std::uint32_t tet : taken_) sorter_.add(tet);
-        sorter_.drain([&](std::uint32_t tet) { tets[next++] = tet; }); // along the curve: tets of a group are close together
+        sorter_.drain(
+            [&](std::uint32_t tet) { tets[next++] = tet; }); // along the curve: tets of a group are close together
 
         // A point that joined for a tet which was not taken any more is not in the cluster: places go to those that tets use.
         if (full_) {
@@ -373,14 +380,14 @@ private:
     static_assert(max_cluster_points <= inside);
 
     PointNumbers numbers_;
-    Buffer<RankedTet> corners_;            ///< by the points' numbers in this block
-    Buffer<TetState> states_;            ///< of each tet
+    Buffer<RankedTet> corners_; ///< by the points' numbers in this block
+    Buffer<TetState> states_;   ///< of each tet
     std::vector<Vertex> vertices_;
-    std::vector<std::uint8_t> places_;     ///< of each vertex: whether it is in the growing cluster, in the end also where
+    std::vector<std::uint8_t> places_; ///< of each vertex: whether it is in the growing cluster, in the end also where
     Buffer<std::uint16_t> tets_of_;
     Candidates candidates_;
-    std::vector<std::uint32_t> taken_;     ///< tets of the growing cluster
-    std::size_t settled_ = 0;              ///< of these
+    std::vector<std::uint32_t> taken_; ///< tets of the growing cluster
+    std::size_t settled_ = 0;          ///< of these
     TetSorter sorter_;
     std::vector<std::uint32_t> points_, last_points_;
     std::array<std::int16_t, 256> weight_{};

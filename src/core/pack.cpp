@@ -19,11 +19,12 @@ namespace core {
 
 Result<void> check_field(const PointField& field, std::uint64_t points) {
     if (field.values.components() != 1 && !field.values.empty())
-        return Error{ErrorCode::invalid_argument, fmt::format("field '{}' has {} components, but the contoured field must have 1",
-                                                              field.name, field.values.components())};
-    if (field.values.tuples() != points)
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("field '{}' has {} values, but the grid has {} points", field.name, field.values.tuples(), points)};
+                     fmt::format("field '{}' has {} components, but the contoured field must have 1", field.name,
+                                 field.values.components())};
+    if (field.values.tuples() != points)
+        return Error{ErrorCode::invalid_argument, fmt::format("field '{}' has {} values, but the grid has {} points",
+                                                              field.name, field.values.tuples(), points)};
     return {};
 }
 
@@ -34,7 +35,8 @@ namespace {
 std::uint64_t packing_memory(std::uint64_t tets, const Grid& grid, bool origins) {
     constexpr std::uint64_t a_thread = 3'000'000;
     const std::uint64_t a_point = grid.points.type() == ScalarType::float32 ? 38 : 50;
-    return (origins ? 30 : 22) * tets + a_point * grid.points.tuples() + a_thread * static_cast<std::uint64_t>(threads_here());
+    return (origins ? 30 : 22) * tets + a_point * grid.points.tuples() +
+           a_thread * static_cast<std::uint64_t>(threads_here());
 }
 
 void measure(Packed& packed) {
@@ -42,8 +44,11 @@ void measure(Packed& packed) {
     report.points = packed.points();
     report.bytes = packed.headers.bytes() + packed.tets.bytes() + packed.group_ranges.bytes() + packed.links.bytes() +
                    packed.has_no_data.bytes() + packed.point_ids.bytes() + packed.wide_point_ids.bytes();
-    std::visit([&](const auto& reals) { report.bytes += reals.positions.bytes() + reals.values.bytes() + reals.ranges.bytes(); },
-               packed.reals);
+    std::visit(
+        [&](const auto& reals) {
+            report.bytes += reals.positions.bytes() + reals.values.bytes() + reals.ranges.bytes();
+        },
+        packed.reals);
     report.source_bytes = packed.cell_ids.bytes() + packed.wide_cell_ids.bytes();
 }
 
@@ -73,7 +78,8 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     TetCounts counts = count_tets(*cells);
     if (counts.tets == 0) return nothing_to_contour(grid, *cells);
     const bool origins = options.source_cells || !cells->only_tets();
-    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid, origins)); !ok) return ok.error();
+    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid, origins)); !ok)
+        return ok.error();
 
     const BlockReuse reuse;
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;
@@ -119,10 +125,16 @@ Result<void> check_moved_points(const Packed& packed, const Array& points) {
             turned += orientation_sign(positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]) < 0;
         }
     });
-    if (outside) return Error{ErrorCode::invalid_data, fmt::format("{} of the new coordinates are not finite or 2^91 or more, but "
-                                                                   "points that cells use must be finite and below 2^91", outside)};
-    if (turned) return Error{ErrorCode::invalid_data,
-                             fmt::format("{} tets change their orientation with the new points, and such a grid must be packed again", turned)};
+    if (outside)
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("{} of the new coordinates are not finite or 2^91 or more, but "
+                                 "points that cells use must be finite and below 2^91",
+                                 outside)};
+    if (turned)
+        return Error{
+            ErrorCode::invalid_data,
+            fmt::format("{} tets change their orientation with the new points, and such a grid must be packed again",
+                        turned)};
     return {};
 }
 
@@ -158,8 +170,8 @@ Result<void> PackedGrid::set_points(const Array& points, int threads, const Prog
     return core::guarded("setting the points", [&]() -> Result<void> {
         if (!is_floating(points.type()) || points.components() != 3 || points.tuples() != data_->user_points)
             return Error{ErrorCode::invalid_argument,
-                         fmt::format("the new points are {} x {} {}, but must be {} x 3 of float32 or float64", points.tuples(),
-                                     points.components(), name_of(points.type()), data_->user_points)};
+                         fmt::format("the new points are {} x {} {}, but must be {} x 3 of float32 or float64",
+                                     points.tuples(), points.components(), name_of(points.type()), data_->user_points)};
         Result<void> result;
         core::with_threads(threads, [&] {
             result = core::check_moved_points(*data_, points);
@@ -172,7 +184,8 @@ Result<void> PackedGrid::set_points(const Array& points, int threads, const Prog
     });
 }
 
-Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options, const Progress& progress) {
+Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options,
+                        const Progress& progress) {
     return core::guarded("packing", [&]() -> Result<PackedGrid> {
         Result<std::unique_ptr<core::Packed>> result = Error{};
         core::with_threads(options.threads, [&] { result = core::pack(grid, field, options, progress); });

@@ -66,8 +66,8 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
     if (total.cluster >= limit || total.group >= limit)
         return Error{ErrorCode::invalid_data,
-                     fmt::format("the grid makes {} clusters and {} groups of tets, but there can be {} of each", total.cluster,
-                                 total.group, limit - 1)};
+                     fmt::format("the grid makes {} clusters and {} groups of tets, but there can be {} of each",
+                                 total.cluster, total.group, limit - 1)};
 
     Packed& packed = draft.packed;
     packed.headers = Buffer<ClusterHeader>(total.cluster);

@@ -22,7 +22,8 @@ Buffer<std::uint32_t> find_owners(const Draft& draft) {
         for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i) {
             std::atomic_ref<std::uint32_t> owner(owners[draft.locals[i]]);
             std::uint32_t seen = owner.load(std::memory_order_relaxed);
-            while (c < seen && !owner.compare_exchange_weak(seen, static_cast<std::uint32_t>(c), std::memory_order_relaxed)) {}
+            while (c < seen &&
+                   !owner.compare_exchange_weak(seen, static_cast<std::uint32_t>(c), std::memory_order_relaxed)) {}
         }
     });
     return owners;

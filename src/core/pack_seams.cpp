@@ -112,7 +112,8 @@ public:
 
     /// Puts seams and neighbours into order.
     void finish() {
-        std::sort(table_.begin(), table_.end(), [](const Neighbour& a, const Neighbour& b) { return a.cluster < b.cluster; });
+        std::sort(table_.begin(), table_.end(),
+                  [](const Neighbour& a, const Neighbour& b) { return a.cluster < b.cluster; });
         sorted_.resize(seams_.size());
         std::size_t begin = 0;
         for (const Neighbour& neighbour : table_) {
@@ -181,8 +182,9 @@ private:
     void mark_shared_points() {
         const std::size_t points = packed_.points();
         shared_ = Buffer<std::uint8_t>(points);
-        parallel_ranges(points, 1 << 16,
-                        [&](std::size_t begin, std::size_t end) { std::fill(shared_.begin() + begin, shared_.begin() + end, 0); });
+        parallel_ranges(points, 1 << 16, [&](std::size_t begin, std::size_t end) {
+            std::fill(shared_.begin() + begin, shared_.begin() + end, 0);
+        });
         parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) {
             for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k) {
                 const PointRef point = ref(c, k);
@@ -207,7 +209,8 @@ private:
                 std::uint64_t bits = matrix.rows[a].words[word] & shared.words[word];
                 if (word == a / 64) bits &= ~std::uint64_t{1} << a % 64; // the higher ones
                 for (; bits; bits &= bits - 1)
-                    f(static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
+                    f(static_cast<std::uint8_t>(a),
+                      static_cast<std::uint8_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
             }
         }
     }
@@ -233,7 +236,8 @@ private:
         for (std::size_t c = 0; c < n; ++c) first_candidate_[c + 1] += first_candidate_[c];
         candidates_ = Buffer<SeamEdge>(first_candidate_[n]);
         parallel_each(tasks, 1, [&](std::size_t task) {
-            std::copy(lists[task].begin(), lists[task].end(), candidates_.begin() + first_candidate_[task * clusters_a_task]);
+            std::copy(lists[task].begin(), lists[task].end(),
+                      candidates_.begin() + first_candidate_[task * clusters_a_task]);
             lists[task] = {};
         });
     }
@@ -249,7 +253,8 @@ private:
         if (c < first || ref(c, 0).owner() >= last) return; // no cluster has points of a later one
         const std::span<const SeamEdge> all = candidates(c);
         const auto owner_of = [&](const SeamEdge edge) { return ref(c, edge.lower).owner(); };
-        auto begin = std::partition_point(all.begin(), all.end(), [&](const SeamEdge edge) { return owner_of(edge) < first; });
+        auto begin =
+            std::partition_point(all.begin(), all.end(), [&](const SeamEdge edge) { return owner_of(edge) < first; });
         while (begin != all.end()) {
             const std::uint32_t owner = owner_of(*begin);
             if (owner >= last) return;
@@ -274,26 +279,29 @@ private:
         const std::size_t rounds = std::clamp<std::size_t>(n / 1024, 1, 8);
         const auto begin_of = [&](std::size_t round) { return n / rounds * round + std::min(round, n % rounds); };
         std::uint64_t most = 0;
-        for (std::size_t round = 0; round < rounds; ++round) most = std::max(most, first[begin_of(round + 1)] - first[begin_of(round)]);
+        for (std::size_t round = 0; round < rounds; ++round)
+            most = std::max(most, first[begin_of(round + 1)] - first[begin_of(round)]);
         Buffer<Letter> letters(most);
         answers_ = Answers(candidates_.size());
-        for (std::size_t round = 0; round < rounds; ++round) deliver(begin_of(round), begin_of(round + 1), first, next, letters);
+        for (std::size_t round = 0; round < rounds; ++round)
+            deliver(begin_of(round), begin_of(round + 1), first, next, letters);
     }
 
     /// Sends the letters to the clusters [from, to), and answers them. `next` is where each cluster's next letter goes, at
     /// first as `first`; letters lie in the buffer from first[from] on.
-    void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first, std::vector<std::uint64_t>& next,
-                 Buffer<Letter>& letters) {
+    void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first,
+                 std::vector<std::uint64_t>& next, Buffer<Letter>& letters) {
         Letter* const to_first = letters.data();
         parallel_each(draft_.clusters() - from, clusters_a_task, [&](std::size_t behind) {
             const std::size_t c = from + behind;
             const SeamEdge* const all = candidates(c).data();
             for_runs(c, from, to, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
-                const std::uint64_t slot = std::atomic_ref<std::uint64_t>(next[owner]).fetch_add(end - begin, std::memory_order_relaxed);
+                const std::uint64_t slot =
+                    std::atomic_ref<std::uint64_t>(next[owner]).fetch_add(end - begin, std::memory_order_relaxed);
                 Letter* out = to_first + (slot - first[from]);
                 for (std::size_t place = begin; place < end; ++place)
-                    *out++ = Letter::make(ref(c, all[place].lower), ref(c, all[place].higher), static_cast<std::uint32_t>(c),
-                                          static_cast<std::uint16_t>(place));
+                    *out++ = Letter::make(ref(c, all[place].lower), ref(c, all[place].higher),
+                                          static_cast<std::uint32_t>(c), static_cast<std::uint16_t>(place));
             });
         });
         // Letters arrive in any order; sorting makes it one.
@@ -312,8 +320,10 @@ private:
         for (std::size_t begin = 0; begin < letters.size();) {
             std::size_t end = begin + 1;
             while (end < letters.size() && letters[end].edge == letters[begin].edge) ++end;
-            const Answer answer = end - begin > 1 ? Answer{letters[begin].cluster, letters[begin].place} : Answer{nobody, 0};
-            for (; begin < end; ++begin) answers_.set(first_candidate_[letters[begin].cluster] + letters[begin].place, answer);
+            const Answer answer =
+                end - begin > 1 ? Answer{letters[begin].cluster, letters[begin].place} : Answer{nobody, 0};
+            for (; begin < end; ++begin)
+                answers_.set(first_candidate_[letters[begin].cluster] + letters[begin].place, answer);
         }
     }
 
@@ -324,7 +334,8 @@ private:
             Neighbourhood neighbourhood;
             for (std::size_t c = begin; c < end; ++c) {
                 neighbourhood.clear();
-                for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k) neighbourhood.add_point(ref(c, k).owner());
+                for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k)
+                    neighbourhood.add_point(ref(c, k).owner());
                 f(c, neighbourhood);
             }
         });
@@ -352,7 +363,8 @@ private:
             const Answer answer = answers_[k];
             if (answer.owner == c) own_seams.push_back(candidates_[k]);
             else if (answer.owner != nobody)
-                neighbourhood.add_seam(answer.owner, {candidates_[k], answers_[first_candidate_[answer.owner] + answer.place].place});
+                neighbourhood.add_seam(answer.owner,
+                                       {candidates_[k], answers_[first_candidate_[answer.owner] + answer.place].place});
         }
         neighbourhood.finish();
         std::uint8_t points[max_cluster_points];

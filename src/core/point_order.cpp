@@ -41,7 +41,9 @@ public:
         if (!(scale_ < std::numeric_limits<double>::max())) scale_ = 0;
     }
     std::uint64_t key(const Point& p) const {
-        const auto step = [&](std::size_t axis) { return static_cast<std::uint32_t>((p[axis] - lower_[axis]) * scale_); };
+        const auto step = [&](std::size_t axis) {
+            return static_cast<std::uint32_t>((p[axis] - lower_[axis]) * scale_);
+        };
         return hilbert_index(step(0), step(1), step(2));
     }
 
@@ -56,7 +58,8 @@ Buffer<Keyed> sort_points(const PointReader& points, const Buffer<std::uint8_t>&
     constexpr std::size_t points_a_chunk = 1 << 16;
     const std::size_t chunks = (used.size() + points_a_chunk - 1) / points_a_chunk;
     const auto chunk_of = [&](std::size_t chunk) {
-        return std::span(used.data(), used.size()).subspan(chunk * points_a_chunk, std::min(points_a_chunk, used.size() - chunk * points_a_chunk));
+        return std::span(used.data(), used.size())
+            .subspan(chunk * points_a_chunk, std::min(points_a_chunk, used.size() - chunk * points_a_chunk));
     };
     std::vector<std::size_t> first(chunks + 1, 0);
     parallel_each(chunks, 1, [&](std::size_t chunk) {

@@ -15,7 +15,7 @@ namespace isotet::core {
 
 namespace {
 
-constexpr int most_digit_bits = 11;                       // 2,048 parts: as many lines as the first cache holds twice over
+constexpr int most_digit_bits = 11; // 2,048 parts: as many lines as the first cache holds twice over
 constexpr std::size_t insertion_limit = 24;
 constexpr std::size_t parallel_limit = std::size_t{1} << 18;
 
@@ -66,7 +66,8 @@ void sort_serial(const Part& part) {
         bring_home(part);
         return;
     }
-    const Digit digit = digit_for(differing, std::min<int>(most_digit_bits, static_cast<int>(std::bit_width(part.size)) - 2));
+    const Digit digit =
+        digit_for(differing, std::min<int>(most_digit_bits, static_cast<int>(std::bit_width(part.size)) - 2));
     std::array<std::uint32_t, (std::size_t{1} << most_digit_bits) + 1> next;
     std::fill_n(next.begin(), digit.mask + 2, 0);
     for (std::size_t i = 0; i < part.size; ++i) ++next[digit.of(part.here[i]) + 1];
@@ -94,7 +95,9 @@ std::uint64_t differing_bits(const Part& part) {
 std::vector<std::size_t> split_parallel(const Part& part, Digit digit) {
     const std::size_t digits = digit.mask + 1;
     const std::size_t chunks = std::clamp<std::size_t>(part.size >> 16, 1, 64);
-    const auto chunk_begin = [&](std::size_t chunk) { return part.size / chunks * chunk + std::min(chunk, part.size % chunks); };
+    const auto chunk_begin = [&](std::size_t chunk) {
+        return part.size / chunks * chunk + std::min(chunk, part.size % chunks);
+    };
     std::vector<std::size_t> next(chunks * digits, 0);
     parallel_each(chunks, 1, [&](std::size_t chunk) {
         std::size_t* const count = next.data() + chunk * digits;
@@ -109,7 +112,8 @@ std::vector<std::size_t> split_parallel(const Part& part, Digit digit) {
     begin[digits] = sum;
     parallel_each(chunks, 1, [&](std::size_t chunk) {
         std::size_t* const to = next.data() + chunk * digits;
-        for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i) part.there[to[digit.of(part.here[i])]++] = part.here[i];
+        for (std::size_t i = chunk_begin(chunk); i < chunk_begin(chunk + 1); ++i)
+            part.there[to[digit.of(part.here[i])]++] = part.here[i];
     });
     return begin;
 }

@@ -10,8 +10,8 @@ Storage choose_offset(ScalarType type, const ValueStatistics& statistics, Precis
     if (!(statistics.lower <= statistics.upper)) return storage; // nothing finite
     const double magnitude = std::max(std::abs(statistics.lower), std::abs(statistics.upper));
     const bool single = precision == Precision::single;
-    storage.unchanged = is_floating(type) ? type == ScalarType::float32 || !single
-                                          : magnitude < (single ? 0x1p24 : 0x1p53);
+    storage.unchanged =
+        is_floating(type) ? type == ScalarType::float32 || !single : magnitude < (single ? 0x1p24 : 0x1p53);
     const double range = statistics.upper - statistics.lower;
     if (!storage.unchanged && range < magnitude / 8) storage.offset = statistics.lower + range / 2;
     return storage;

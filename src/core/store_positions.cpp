@@ -45,7 +45,8 @@ bool is_coarse(const PointReader& points, const Packed& packed, std::size_t clus
     for (std::size_t k = 0; k < count; ++k) {
         exact[k] = points[packed.user_point(locals[k])];
         Point stored;
-        for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = positions[3 * locals[k] + axis] + packed.origin[axis];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            stored[axis] = positions[3 * locals[k] + axis] + packed.origin[axis];
         moved = std::max(moved, squared_distance(exact[k], stored));
     }
     if (moved == 0) return false;

@@ -21,7 +21,9 @@ namespace {
 /// Points that contoured cells use, as flags.
 Buffer<std::uint8_t> used_points(const Grid& grid, const CellReader& cells) {
     Buffer<std::uint8_t> used(grid.points.tuples());
-    parallel_ranges(used.size(), 1 << 18, [&](std::size_t begin, std::size_t end) { std::fill(used.begin() + begin, used.begin() + end, 0); });
+    parallel_ranges(used.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
+        std::fill(used.begin() + begin, used.begin() + end, 0);
+    });
     parallel_each(cells.count(), 1 << 14, [&](std::size_t cell) {
         if (!is_contoured(cells.type(cell))) return;
         const std::uint64_t first = cells.first(cell);
@@ -37,11 +39,13 @@ std::size_t count_duplicates(const Grid& grid, const Buffer<std::uint8_t>& used)
     std::vector<std::uint64_t> numbers;
     for (std::size_t i = 0; i < used.size(); ++i)
         if (used[i]) numbers.push_back(i);
-    tbb::parallel_sort(numbers.begin(), numbers.end(), [&](std::uint64_t a, std::uint64_t b) { return points[a] < points[b]; });
+    tbb::parallel_sort(numbers.begin(), numbers.end(),
+                       [&](std::uint64_t a, std::uint64_t b) { return points[a] < points[b]; });
     std::atomic<std::size_t> duplicates{0};
     parallel_ranges(numbers.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
-        for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) count += points[numbers[i - 1]] == points[numbers[i]];
+        for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i)
+            count += points[numbers[i - 1]] == points[numbers[i]];
         duplicates += count;
     });
     return duplicates;
@@ -54,7 +58,8 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
     report.points = grid.points.tuples();
     report.cells = cells->count();
     if (grid.cells.types.empty() && report.cells) report.cells_by_type[cells->type(0)] = report.cells;
-    else for (std::size_t cell = 0; cell < cells->count(); ++cell) ++report.cells_by_type[cells->type(cell)];
+    else
+        for (std::size_t cell = 0; cell < cells->count(); ++cell) ++report.cells_by_type[cells->type(cell)];
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
     progress("check", 0.2);
 

@@ -8,7 +8,7 @@ namespace isotet::core {
 
 namespace {
 
-constexpr unsigned least_shift = 12; ///< 4,096 ranks: some 25,000 tets, 400 kB
+constexpr unsigned least_shift = 12;       ///< 4,096 ranks: some 25,000 tets, 400 kB
 constexpr std::size_t most_buckets = 2048; ///< a writer has a line of each in its second cache
 
 } // namespace

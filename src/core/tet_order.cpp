@@ -30,7 +30,8 @@ Result<Ranks> rank_points(const PointReader& points, const Buffer<std::uint8_t>&
     const Buffer<Keyed> sorted = sort_points(points, used);
     constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
     if (sorted.size() >= limit)
-        return Error{ErrorCode::invalid_data, fmt::format("the tets use {} points, but there can be {}", sorted.size(), limit - 1)};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("the tets use {} points, but there can be {}", sorted.size(), limit - 1)};
     Ranks ranks{Buffer<std::uint64_t>(sorted.size()), Buffer<std::uint32_t>(used.size())};
     parallel_ranges(sorted.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t rank = begin; rank < end; ++rank) {
@@ -99,7 +100,8 @@ Error cancelled() { return Error{ErrorCode::cancelled, "packing was cancelled"};
 
 } // namespace
 
-Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, bool keep_origins, const Progress& progress) {
+Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, bool keep_origins,
+                           const Progress& progress) {
     const PointReader points(grid.points);
     auto ranks = rank_points(points, counts.used);
     if (!ranks) return ranks.error();
@@ -115,7 +117,8 @@ Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts 
         TetBuckets::Writer writer(order.tets, w);
         constexpr std::size_t cells_at_once = 1 << 14;
         const std::size_t last = cells.count() / writers * (w + 1) + std::min(w + 1, cells.count() % writers);
-        for (std::size_t begin = cells.count() / writers * w + std::min(w, cells.count() % writers); begin < last; begin += cells_at_once) {
+        for (std::size_t begin = cells.count() / writers * w + std::min(w, cells.count() % writers); begin < last;
+             begin += cells_at_once) {
             if (progress.cancelled()) return;
             deal_out(points, cells, begin, std::min(begin + cells_at_once, last), ranks->rank_of, writer);
         }

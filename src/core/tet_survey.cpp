@@ -69,7 +69,9 @@ TetSurvey survey_tets(const Grid& grid, const CellReader& cells) {
 TetCounts count_tets(const CellReader& cells) {
     TetCounts counts;
     counts.used = Buffer<std::uint8_t>(cells.points());
-    parallel_ranges(cells.points(), 1 << 18, [&](std::size_t begin, std::size_t end) { std::fill_n(counts.used.data() + begin, end - begin, 0); });
+    parallel_ranges(cells.points(), 1 << 18, [&](std::size_t begin, std::size_t end) {
+        std::fill_n(counts.used.data() + begin, end - begin, 0);
+    });
     std::atomic<std::uint64_t> all_tets{0}, all_collapsed{0}, all_left_out{0};
     parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
         std::uint64_t tets = 0, collapsed = 0, left_out = 0;

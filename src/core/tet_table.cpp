@@ -11,12 +11,14 @@ namespace isotet::core {
 
 Result<TetTable> make_tet_table(const Packed& packed) {
     if (!packed.single())
-        return Error{ErrorCode::invalid_argument, "the grid is packed in double, but tables hold float32: pack it in single precision"};
+        return Error{ErrorCode::invalid_argument,
+                     "the grid is packed in double, but tables hold float32: pack it in single precision"};
     std::uint64_t tets = 0;
     for (const ClusterHeader& header : packed.headers) tets += header.tets;
     constexpr std::uint64_t limit = std::numeric_limits<std::uint32_t>::max();
     if (tets >= limit)
-        return Error{ErrorCode::invalid_data, fmt::format("the grid has {} tets, but tables hold {} at most", tets, limit - 1)};
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("the grid has {} tets, but tables hold {} at most", tets, limit - 1)};
 
     TetTable table;
     table.first_tet = Buffer<std::uint32_t>(packed.clusters() + 1);
@@ -40,7 +42,8 @@ Result<TetTable> make_tet_table(const Packed& packed) {
     table.points = Buffer<std::array<float, 4>>(packed.points());
     parallel_ranges(packed.points(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
-            table.points[p] = {reals.positions[3 * p], reals.positions[3 * p + 1], reals.positions[3 * p + 2], reals.values[p]};
+            table.points[p] = {reals.positions[3 * p], reals.positions[3 * p + 1], reals.positions[3 * p + 2],
+                               reals.values[p]};
     });
     return table;
 }

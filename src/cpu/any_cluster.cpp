@@ -17,10 +17,16 @@ template <class Real>
 class AnyCluster {
 public:
     AnyCluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& s)
-        : cutting_(cutting), packed_(cutting.packed), place_(place), cluster_(cutting.selection.clusters[place]),
-          isovalue_number_(cutting.selection.isovalues[place]), isovalue_(cutting.wanted.isovalues[isovalue_number_]),
-          header_(packed_.headers[cluster_]), links_(packed_.cluster_links(cluster_)),
-          points_(std::size_t{header_.foreign_points} + header_.own_points), s_(s) {}
+        : cutting_(cutting),
+          packed_(cutting.packed),
+          place_(place),
+          cluster_(cutting.selection.clusters[place]),
+          isovalue_number_(cutting.selection.isovalues[place]),
+          isovalue_(cutting.wanted.isovalues[isovalue_number_]),
+          header_(packed_.headers[cluster_]),
+          links_(packed_.cluster_links(cluster_)),
+          points_(std::size_t{header_.foreign_points} + header_.own_points),
+          s_(s) {}
 
     std::uint64_t own_tied_points() const {
         const Real* const values = s_.values.data();
@@ -56,7 +62,9 @@ private:
         for (std::size_t k = 0; k < points_; ++k) {
             const Real value = s_.values[k];
             s_.above[k] = value >= isovalue_;
-            s_.special[k] = static_cast<std::uint8_t>(merge && value == isovalue_ ? is_tied : core::is_nan(value) ? has_no_data : 0);
+            s_.special[k] = static_cast<std::uint8_t>(merge && value == isovalue_ ? is_tied
+                                                      : core::is_nan(value)       ? has_no_data
+                                                                                  : 0);
         }
     }
 
@@ -69,7 +77,8 @@ private:
         const std::uint8_t step = core::quantize(isovalue_, range);
         for (std::size_t begin = 0; begin < tets.size(); begin += core::group_size, ++group) {
             if (group->lower > step || step > group->upper) continue;
-            for (std::size_t i = begin; i < std::min(begin + core::group_size, tets.size()); ++i) cut_tet(i, tets[i].corners);
+            for (std::size_t i = begin; i < std::min(begin + core::group_size, tets.size()); ++i)
+                cut_tet(i, tets[i].corners);
         }
     }
 
@@ -86,7 +95,8 @@ private:
         VertexKey* const keys = s_.keys.data() + 4 * s_.cut.count;
         for (std::size_t k = 0; k < 4; ++k) {
             const std::uint8_t above = v[c.polygon[k].above], below = v[c.polygon[k].below];
-            keys[k] = s_.special[above] == is_tied ? point_key(above) : edge_key({std::min(above, below), std::max(above, below)});
+            keys[k] = s_.special[above] == is_tied ? point_key(above)
+                                                   : edge_key({std::min(above, below), std::max(above, below)});
         }
         for (std::size_t k = 0; k < 4; ++k) s_.use(keys[k]);
         for_triangles(keys, c, [&](std::size_t) { ++triangles_; });
@@ -116,9 +126,11 @@ private:
         std::size_t local = 0;
         for (const core::Neighbour& neighbour : links_.neighbours)
             for (const std::size_t end = local + neighbour.foreign_points; local < end; ++local)
-                if (s_.special[local] == is_tied) share(local, place_of(neighbour.cluster), links_.foreign_points[local]);
+                if (s_.special[local] == is_tied)
+                    share(local, place_of(neighbour.cluster), links_.foreign_points[local]);
         for (; local < points_; ++local)
-            if (s_.special[local] == is_tied) share(local, place_, static_cast<std::uint32_t>(local - header_.foreign_points));
+            if (s_.special[local] == is_tied)
+                share(local, place_, static_cast<std::uint32_t>(local - header_.foreign_points));
     }
 
     /// Where all points of its owner have data, every crossed edge of the owner is used, and the owner knows it. Elsewhere
@@ -146,7 +158,8 @@ private:
     }
 
     void list_inner_edges() {
-        core::for_bits(s_.used.data(), s_.used.size(), [&](std::size_t key) { s_.listed.push_back(static_cast<VertexKey>(key)); });
+        core::for_bits(s_.used.data(), s_.used.size(),
+                       [&](std::size_t key) { s_.listed.push_back(static_cast<VertexKey>(key)); });
         s_.used.fill(0);
     }
 
@@ -181,14 +194,16 @@ private:
 } // namespace
 
 template <class Real>
-const Record<Real>* cut_any_cluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch, Start& count,
-                                    std::uint64_t& tied_points) {
+const Record<Real>* cut_any_cluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch,
+                                    Start& count, std::uint64_t& tied_points) {
     AnyCluster<Real> cluster(cutting, place, scratch);
     tied_points += cluster.own_tied_points();
     return cluster.cut(count);
 }
 
-template const Record<float>* cut_any_cluster<float>(const Cutting<float>&, std::size_t, CutScratch<float>&, Start&, std::uint64_t&);
-template const Record<double>* cut_any_cluster<double>(const Cutting<double>&, std::size_t, CutScratch<double>&, Start&, std::uint64_t&);
+template const Record<float>* cut_any_cluster<float>(const Cutting<float>&, std::size_t, CutScratch<float>&, Start&,
+                                                     std::uint64_t&);
+template const Record<double>* cut_any_cluster<double>(const Cutting<double>&, std::size_t, CutScratch<double>&, Start&,
+                                                       std::uint64_t&);
 
 } // namespace isotet::cpu

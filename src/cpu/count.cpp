@@ -32,7 +32,9 @@ public:
         if (!record) {
             std::uint64_t tied = 0;
             record = cut_any_cluster(cutting_, place, s, out_.starts[place], tied);
-            if (tied) std::atomic_ref(out_.tied_points[cutting_.selection.isovalues[place]]).fetch_add(tied, std::memory_order_relaxed);
+            if (tied)
+                std::atomic_ref(out_.tied_points[cutting_.selection.isovalues[place]])
+                    .fetch_add(tied, std::memory_order_relaxed);
         }
         s.record_bytes += record->bytes();
         if (keep_ == Keep::records) out_.records[place] = record;
@@ -49,7 +51,8 @@ private:
         if (ahead.has(1)) {
             const core::ClusterHeader& h = packed.headers[cluster(1)];
             prefetch_bytes(packed.links.data() + h.first_link, 4 * core::ClusterLinks::words(h));
-            prefetch_bytes(packed.tets.data() + core::group_size * std::size_t{h.first_group}, sizeof(core::StoredTet) * h.tets);
+            prefetch_bytes(packed.tets.data() + core::group_size * std::size_t{h.first_group},
+                           sizeof(core::StoredTet) * h.tets);
             prefetch_bytes(packed.as<Real>().values.data() + h.first_point, sizeof(Real) * h.own_points);
         }
         if (ahead.has(0)) {
@@ -68,8 +71,8 @@ private:
 } // namespace
 
 template <class Real>
-Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks, Keep keep,
-                    const Progress& progress) {
+Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,
+                    Keep keep, const Progress& progress) {
     Counted<Real> out;
     out.starts = core::Buffer<Start>(selection.size());
     out.records = core::Buffer<const Record<Real>*>(keep == Keep::records ? selection.size() : 0);
@@ -99,11 +102,15 @@ std::size_t count_scratch_bytes() {
 
 template std::size_t count_scratch_bytes<float>();
 template std::size_t count_scratch_bytes<double>();
-template Counted<float> count<float>(const Packed&, const Wanted<float>&, const Selection&, Masks&, Keep, const Progress&);
-template Counted<double> count<double>(const Packed&, const Wanted<double>&, const Selection&, Masks&, Keep, const Progress&);
+template Counted<float> count<float>(const Packed&, const Wanted<float>&, const Selection&, Masks&, Keep,
+                                     const Progress&);
+template Counted<double> count<double>(const Packed&, const Wanted<double>&, const Selection&, Masks&, Keep,
+                                       const Progress&);
 
-std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues, core::Buffer<Start>& starts) {
-    core::parallel_each(selection.size(), 1 << 12, [&](std::size_t place) { starts[place].vertex += masks.vertices(place); });
+std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues,
+                        core::Buffer<Start>& starts) {
+    core::parallel_each(selection.size(), 1 << 12,
+                        [&](std::size_t place) { starts[place].vertex += masks.vertices(place); });
     std::vector<Total> totals(isovalues);
     for (std::size_t place = 0; place < selection.size(); ++place) {
         Total& total = totals[selection.isovalues[place]];

@@ -38,8 +38,8 @@ struct FoundPoints {
 template <class Real>
 struct Scratch {
     std::array<FoundPoints, 2> found;
-    FoundPoints* points = &found[0]; ///< of the cluster at hand
-    FoundPoints* next = &found[1];   ///< of the one after it
+    FoundPoints* points = &found[0];                  ///< of the cluster at hand
+    FoundPoints* next = &found[1];                    ///< of the one after it
     std::array<EndPair, max_points + max_edges> ends; ///< of vertices that only masks know
     std::array<Real, max_points + max_edges> weights;
     std::array<std::uint64_t, max_points + max_edges> numbers; ///< of vertices by local number
@@ -58,7 +58,12 @@ class Emitter {
 public:
     Emitter(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
             const Counted<Real>& counted, std::span<const Target<Real>> targets)
-        : packed_(packed), reals_(packed.as<Real>()), wanted_(wanted), selection_(selection), masks_(masks), counted_(counted),
+        : packed_(packed),
+          reals_(packed.as<Real>()),
+          wanted_(wanted),
+          selection_(selection),
+          masks_(masks),
+          counted_(counted),
           targets_(targets) {}
 
     void emit_places(std::size_t begin, std::size_t end, Scratch<Real>& s) const {
@@ -142,20 +147,23 @@ private:
         return {s.ends.data(), s.weights.data(), count};
     }
 
-    void write_vertices(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target, const Scratch<Real>& s) const {
+    void write_vertices(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target,
+                        const Scratch<Real>& s) const {
         const auto& points = s.points->packed;
         Real* position = target.positions + 3 * first;
         for (std::size_t i = 0; i < own.count; ++i, position += 3) {
             const Real* const a = reals_.positions.data() + 3 * points[own.ends[i].below];
             const Real* const b = reals_.positions.data() + 3 * points[own.ends[i].above];
-            for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = core::interpolate(a[axis], b[axis], own.weights[i]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                position[axis] = core::interpolate(a[axis], b[axis], own.weights[i]);
         }
         if (target.ends || !target.fields.empty()) write_ends(own, first, target, s);
         if (target.normals) write_normals(own, target.normals + 3 * first, s);
     }
 
     /// The user's points, and what depends on them.
-    void write_ends(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target, const Scratch<Real>& s) const {
+    void write_ends(const OwnVertices<Real>& own, std::uint64_t first, const Target<Real>& target,
+                    const Scratch<Real>& s) const {
         constexpr std::size_t at_once = 64;
         std::array<std::uint64_t, at_once> below, above;
         for (std::size_t begin = 0; begin < own.count; begin += at_once, first += at_once) {
@@ -199,7 +207,8 @@ private:
     template <class Index>
     static void write_triangles(const Record<Real>& record, Index* out, const Scratch<Real>& s) {
         const std::uint16_t* const corners = record.corners();
-        for (std::size_t i = 0; i < 3 * std::size_t{record.triangles}; ++i) out[i] = static_cast<Index>(s.numbers[corners[i]]);
+        for (std::size_t i = 0; i < 3 * std::size_t{record.triangles}; ++i)
+            out[i] = static_cast<Index>(s.numbers[corners[i]]);
     }
 
     void write_sources(const Record<Real>& record, std::size_t cluster, std::int64_t* out) const {
@@ -225,8 +234,8 @@ emit_avx512(const Emitter<Real>& emitter, std::size_t begin, std::size_t end, Sc
     emitter.emit_places(begin, end, s);
 }
 template <class Real>
-[[gnu::target("avx2,bmi,bmi2,popcnt"), gnu::flatten]] void
-emit_avx2(const Emitter<Real>& emitter, std::size_t begin, std::size_t end, Scratch<Real>& s) {
+[[gnu::target("avx2,bmi,bmi2,popcnt"), gnu::flatten]] void emit_avx2(const Emitter<Real>& emitter, std::size_t begin,
+                                                                     std::size_t end, Scratch<Real>& s) {
     emitter.emit_places(begin, end, s);
 }
 #endif
@@ -248,7 +257,8 @@ template <class Real>
 void emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
           const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress) {
     const Emitter<Real> emitter(packed, wanted, selection, masks, counted, targets);
-    tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch([] { return std::make_unique<Scratch<Real>>(); });
+    tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch(
+        [] { return std::make_unique<Scratch<Real>>(); });
     core::parallel_ranges(selection.size(), 64, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
         emit_places(emitter, begin, end, *scratch.local());

@@ -27,7 +27,8 @@ public:
         Total most;
         most.vertices = 4 * selection.tets;
         most.triangles = 2 * selection.tets;
-        const std::size_t records = places * sizeof(Record<Real>) + Record<Real>::bytes(most.vertices, most.vertices, most.triangles, true);
+        const std::size_t records =
+            places * sizeof(Record<Real>) + Record<Real>::bytes(most.vertices, most.vertices, most.triangles, true);
         at_most_ = of({most}, records);
     }
 
@@ -54,14 +55,16 @@ constexpr std::uint64_t ask_from = std::uint64_t{256} << 20;
 } // namespace
 
 template <class Real>
-Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
+Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request,
+                                 const Progress& progress) {
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "extraction was cancelled"}; };
     ops::RawSurfaces out;
     if (request.isovalues.empty()) return out;
 
     std::vector<std::size_t> order(request.isovalues.size()); // ascending isovalue -> the caller's
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return request.isovalues[a] < request.isovalues[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return request.isovalues[a] < request.isovalues[b]; });
     std::vector<Real> isovalues;
     for (const std::size_t i : order) isovalues.push_back(request.isovalues[i]);
     const Wanted<Real> wanted{isovalues, request.ties, request.source_cells, request.fields};

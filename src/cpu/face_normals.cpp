@@ -92,12 +92,13 @@ void find(const Real* positions, const Index* triangles, std::size_t count, floa
 #if defined(__x86_64__)
 // Everything is inlined into these, and so compiled for their instruction set.
 template <class Real, class Index>
-[[gnu::target("avx512f,avx512bw,avx512vl"), gnu::flatten]] void find_avx512(const Real* positions, const Index* triangles,
-                                                                           std::size_t count, float* out) {
+[[gnu::target("avx512f,avx512bw,avx512vl"), gnu::flatten]] void
+find_avx512(const Real* positions, const Index* triangles, std::size_t count, float* out) {
     find(positions, triangles, count, out);
 }
 template <class Real, class Index>
-[[gnu::target("avx2"), gnu::flatten]] void find_avx2(const Real* positions, const Index* triangles, std::size_t count, float* out) {
+[[gnu::target("avx2"), gnu::flatten]] void find_avx2(const Real* positions, const Index* triangles, std::size_t count,
+                                                     float* out) {
     find(positions, triangles, count, out);
 }
 #endif

@@ -14,7 +14,8 @@ void write_field(const ops::CarriedField& field, const VertexRun<Real>& vertices
         };
         for (std::size_t i = 0; i < vertices.count; ++i)
             for (std::size_t k = 0; k < components; ++k)
-                *out++ = core::interpolate_field(stored(vertices.below[i], k), stored(vertices.above[i], k), vertices.weights[i]);
+                *out++ = core::interpolate_field(stored(vertices.below[i], k), stored(vertices.above[i], k),
+                                                 vertices.weights[i]);
     });
 }
 

@@ -23,7 +23,8 @@ void cut_tets(const Packed& packed, std::size_t cluster, float isovalue, Scratch
     s.cut.count = 0;
     for (std::size_t first = 0; first < h.tets; first += core::group_size, ++groups)
         if (groups->lower <= step && step <= groups->upper)
-            Simd::cut(s.above.data(), tets + first, std::min<std::size_t>(core::group_size, h.tets - first), first, s.cut);
+            Simd::cut(s.above.data(), tets + first, std::min<std::size_t>(core::group_size, h.tets - first), first,
+                      s.cut);
     Simd::keys(s.cut, s.keys.data());
 }
 
@@ -31,7 +32,8 @@ void cut_tets(const Packed& packed, std::size_t cluster, float isovalue, Scratch
 template <class Simd>
 void sort_out_seams(const Cutting<float>& cutting, const core::ClusterLinks& links, std::size_t place, Scratch& s) {
     std::uint64_t* const mask = cutting.masks.seams(place);
-    Simd::template crossed<2>(s.above.data(), reinterpret_cast<const std::uint8_t*>(links.own_seams.data()), links.own_seams.size(), mask);
+    Simd::template crossed<2>(s.above.data(), reinterpret_cast<const std::uint8_t*>(links.own_seams.data()),
+                              links.own_seams.size(), mask);
     core::for_bits(mask, core::words_of_bits(links.own_seams.size()), [&](std::size_t k) {
         const VertexKey key = edge_key(links.own_seams[k]);
         s.take_out(key);
@@ -87,7 +89,8 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     const std::size_t cluster = cutting.selection.clusters[place];
     const core::ClusterHeader& h = cutting.packed.headers[cluster];
     const float isovalue = cutting.wanted.isovalues[cutting.selection.isovalues[place]];
-    if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, isovalue, s.above.data())) return nullptr;
+    if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, isovalue, s.above.data()))
+        return nullptr;
     cut_tets<Simd>(cutting.packed, cluster, isovalue, s);
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.use(s.keys[i]);
     std::size_t triangles = 0;

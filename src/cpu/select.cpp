@@ -29,7 +29,9 @@ void for_selected(const Packed& packed, std::span<const Real> isovalues, std::si
         if (!(range.lower <= highest && lowest <= range.upper)) continue;
         const auto first = std::lower_bound(isovalues.begin(), isovalues.end(), range.lower);
         const auto end = std::upper_bound(first, isovalues.end(), range.upper);
-        if (first != end) f(c, static_cast<std::size_t>(first - isovalues.begin()), static_cast<std::size_t>(end - isovalues.begin()));
+        if (first != end)
+            f(c, static_cast<std::size_t>(first - isovalues.begin()),
+              static_cast<std::size_t>(end - isovalues.begin()));
     }
 }
 
@@ -37,7 +39,9 @@ void for_selected(const Packed& packed, std::span<const Real> isovalues, std::si
 
 template <class Real>
 Result<Selection> select(const Packed& packed, std::span<const Real> isovalues) {
-    const auto words_of = [&](std::size_t c) { return Masks::tied_words + core::words_of_bits(packed.headers[c].own_seams); };
+    const auto words_of = [&](std::size_t c) {
+        return Masks::tied_words + core::words_of_bits(packed.headers[c].own_seams);
+    };
     const std::size_t tasks = (packed.clusters() + clusters_a_task - 1) / clusters_a_task;
     std::vector<Sums> before(tasks + 1);
     core::parallel_each(tasks, 1, [&](std::size_t task) {
@@ -56,10 +60,11 @@ Result<Selection> select(const Packed& packed, std::span<const Real> isovalues) 
     }
     const Sums all = before[tasks];
     if (all.places > std::numeric_limits<std::uint32_t>::max())
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("{} isovalues lie in the ranges of {} clusters altogether, but in one pass there must be less "
-                                 "than 2^32: ask for fewer at a time",
-                                 isovalues.size(), all.places)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("{} isovalues lie in the ranges of {} clusters altogether, but in one pass there must be less "
+                        "than 2^32: ask for fewer at a time",
+                        isovalues.size(), all.places)};
 
     Selection selection;
     selection.clusters = core::Buffer<std::uint32_t>(all.places);
@@ -87,8 +92,9 @@ template Result<Selection> select<float>(const Packed&, std::span<const float>);
 template Result<Selection> select<double>(const Packed&, std::span<const double>);
 
 Masks::Masks(const Selection& selection) : selection_(&selection), words_(selection.first_word[selection.size()]) {
-    core::parallel_ranges(words_.size(), 1 << 15,
-                          [&](std::size_t begin, std::size_t end) { std::fill(words_.begin() + begin, words_.begin() + end, 0); });
+    core::parallel_ranges(words_.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+        std::fill(words_.begin() + begin, words_.begin() + end, 0);
+    });
 }
 
 } // namespace isotet::cpu

@@ -110,7 +110,7 @@ Result<Head> read_head(const std::string& path) {
     // Without O_NONBLOCK a pipe would wait for somebody to write.
     const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     if (!descriptor) return failed("cannot be opened", errno);
-    struct stat status {};
+    struct stat status{};
     if (::fstat(descriptor.number(), &status) != 0) return failed("cannot be looked at", errno);
     if (S_ISDIR(status.st_mode)) return Head{{}, true};
     if (const auto other = what_else_than_a_file(status.st_mode); !other.empty()) {

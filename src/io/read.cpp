@@ -36,9 +36,7 @@ Result<std::size_t> choose_step(const FileInfo& info, const ReadOptions& options
 
 namespace {
 
-const char* adjective(Association association) {
-    return association == Association::point ? "point" : "cell";
-}
+const char* adjective(Association association) { return association == Association::point ? "point" : "cell"; }
 
 /// Every name asked for must be in the file, and what is in the file must have come back.
 Result<void> check_names(const std::vector<std::string>& asked, Association association, const ReadResult& result) {

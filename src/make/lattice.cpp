@@ -10,8 +10,7 @@ namespace {
 std::vector<float> even_coordinates(std::uint64_t side) {
     std::vector<float> coordinates(side + 1);
     const double n = static_cast<double>(side);
-    for (std::uint64_t i = 0; i <= side; ++i)
-        coordinates[i] = static_cast<float>((2 * static_cast<double>(i) - n) / n);
+    for (std::uint64_t i = 0; i <= side; ++i) coordinates[i] = static_cast<float>((2 * static_cast<double>(i) - n) / n);
     return coordinates;
 }
 
@@ -45,9 +44,12 @@ std::vector<float> graded_coordinates(std::uint64_t side) {
 } // namespace
 
 Lattice::Lattice(const Shape& shape, std::uint64_t side, std::uint64_t seed)
-    : side_(side), seed_(seed), corner_points_((side + 1) * (side + 1) * (side + 1)),
+    : side_(side),
+      seed_(seed),
+      corner_points_((side + 1) * (side + 1) * (side + 1)),
       perturbed_(shape.variant == Variant::perturbed || shape.variant == Variant::shuffled),
-      across_(even_coordinates(side)), up_(shape.variant == Variant::layer ? graded_coordinates(side) : across_) {
+      across_(even_coordinates(side)),
+      up_(shape.variant == Variant::layer ? graded_coordinates(side) : across_) {
     for (std::uint64_t k = 0; k < shape.layers.size(); ++k) {
         centres_before_.push_back(centres_per_period_);
         if (!uses_centre(shape.layers[k])) continue;

@@ -48,7 +48,10 @@ struct Sizes {
 class Maker {
 public:
     Maker(const Shape& shape, const MakeOptions& options, const Progress& progress)
-        : shape_(shape), options_(options), progress_(progress), lattice_(shape, options.side, options.seed),
+        : shape_(shape),
+          options_(options),
+          progress_(progress),
+          lattice_(shape, options.side, options.seed),
           shuffled_(shape.variant == Variant::shuffled),
           point_order_(lattice_.points(), options.seed, Stream::point_order) {
         layers_.resize(options.side + 1);
@@ -123,9 +126,10 @@ private:
         core::Buffer<Index> connectivity(layers_.back().corners);
         out.uniform_type = shape_.layers[0].types[0];
         if (shuffled_) shuffled_tets(connectivity.data());
-        else if (shape_.uniform) for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
-            write_corners(cube, corners, connectivity.data() + first.corners);
-        });
+        else if (shape_.uniform)
+            for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
+                write_corners(cube, corners, connectivity.data() + first.corners);
+            });
         else if (connectivity.size() < std::uint64_t{1} << 31) mixed_cells<std::int32_t>(connectivity.data(), out);
         else mixed_cells<std::int64_t>(connectivity.data(), out);
         out.connectivity = std::move(connectivity).to_array();

@@ -106,7 +106,8 @@ public:
         const Looked looked = look_at(field_, used_, precision);
         storage_ = looked.storage;
         result.field = report_on(input.field, looked);
-        for (const Field& field : input.carried) result.carried.push_back(look_at(field.values, used_, precision).storage);
+        for (const Field& field : input.carried)
+            result.carried.push_back(look_at(field.values, used_, precision).storage);
         rounds_ = input.grid.points.type() == ScalarType::float64 && precision == Precision::single;
         if (rounds_) origin_ = origin_of(points_, used_);
         result.origin = origin_;
@@ -123,12 +124,14 @@ private:
     using Edge = std::pair<std::uint64_t, std::uint64_t>;
 
     bool is_valid(const UserTet& tet) const {
-        return std::none_of(tet.corners.begin(), tet.corners.end(), [&](std::uint64_t p) { return core::is_nan(values_.at(p)); });
+        return std::none_of(tet.corners.begin(), tet.corners.end(),
+                            [&](std::uint64_t p) { return core::is_nan(values_.at(p)); });
     }
     core::Vector<Real> position(std::uint64_t point) const {
         const Point p = points_[point];
         core::Vector<Real> stored;
-        for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = core::store_coordinate<Real>(p[axis], origin_[axis]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            stored[axis] = core::store_coordinate<Real>(p[axis], origin_[axis]);
         return stored;
     }
     bool is_coarse(const UserTet& tet) const;
@@ -241,7 +244,8 @@ ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Bru
     for (auto& [edge, number] : numbers) {
         number = next++;
         const bool lower_is_above = value(edge.first) >= isovalue;
-        const std::uint64_t below = lower_is_above ? edge.second : edge.first, above = lower_is_above ? edge.first : edge.second;
+        const std::uint64_t below = lower_is_above ? edge.second : edge.first,
+                            above = lower_is_above ? edge.first : edge.second;
         const Real t = below == above ? Real(0) : core::edge_weight(isovalue, value(below), value(above));
         const core::Vector<Real> a = position(below), b = position(above);
         for (std::size_t axis = 0; axis < 3; ++axis) positions.push_back(core::interpolate(a[axis], b[axis], t));
@@ -251,7 +255,8 @@ ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Bru
             weights.push_back(t);
         }
         if (request.normals)
-            for (const Real x : core::vertex_normal(codes.at(below), codes.at(above), t)) normals.push_back(static_cast<float>(x));
+            for (const Real x : core::vertex_normal(codes.at(below), codes.at(above), t))
+                normals.push_back(static_cast<float>(x));
     }
 
     ops::RawSurface& raw = surface.raw;
@@ -276,7 +281,8 @@ ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Bru
 } // namespace
 
 template <class Real>
-Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress) {
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request,
+                                       const Progress& progress) {
     if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
     std::vector<UserTet> tets = all_tets(input.grid, input.cells);
     if (tets.empty()) return core::nothing_to_contour(input.grid, input.cells);
@@ -291,7 +297,9 @@ Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::
     return result;
 }
 
-template Result<ops::BruteResult> extract_brute<float>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
-template Result<ops::BruteResult> extract_brute<double>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
+template Result<ops::BruteResult> extract_brute<float>(const ops::BruteInput&, const ops::BruteRequest&,
+                                                       const Progress&);
+template Result<ops::BruteResult> extract_brute<double>(const ops::BruteInput&, const ops::BruteRequest&,
+                                                        const Progress&);
 
 } // namespace isotet::reference

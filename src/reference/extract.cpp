@@ -61,7 +61,8 @@ enum Kind { tied_point = 0, seam_edge = 1, inner_edge = 2 };
 using Place = std::tuple<std::uint32_t, int, std::uint64_t, std::uint64_t>;
 
 template <class Real>
-Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Real>& request, Real isovalue, const Progress& progress) {
+Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Real>& request, Real isovalue,
+                                    const Progress& progress) {
     const auto& reals = packed.as<Real>();
     const auto value = [&](std::uint64_t p) { return reals.values[p]; };
     const auto is_above = [&](std::uint64_t p) { return value(p) >= isovalue; };
@@ -74,7 +75,8 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
         for (std::size_t a = 0; a < 4; ++a) {
             const auto [owner, is_new] = point_owner.try_emplace(tet.points[a], tet.cluster);
             if (!is_new) owner->second = std::min(owner->second, tet.cluster);
-            for (std::size_t b = a + 1; b < 4; ++b) edge_holders[edge_of(tet.points[a], tet.points[b])].add(tet.cluster);
+            for (std::size_t b = a + 1; b < 4; ++b)
+                edge_holders[edge_of(tet.points[a], tet.points[b])].add(tet.cluster);
         }
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
 
@@ -123,7 +125,8 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
         const std::uint64_t above = below == a ? b : a;
         const Real t = kind == tied_point ? Real(0) : core::edge_weight(isovalue, value(below), value(above));
         for (std::size_t axis = 0; axis < 3; ++axis)
-            positions.push_back(core::interpolate(reals.positions[3 * below + axis], reals.positions[3 * above + axis], t));
+            positions.push_back(
+                core::interpolate(reals.positions[3 * below + axis], reals.positions[3 * above + axis], t));
         if (request.ends) {
             ends.push_back(static_cast<std::int64_t>(packed.user_point(below)));
             ends.push_back(static_cast<std::int64_t>(packed.user_point(above)));

@@ -19,7 +19,9 @@ using render::Tick;
 
 constexpr Color dark{0.13F, 0.13F, 0.13F, 1}, light{0.93F, 0.93F, 0.93F, 1};
 
-bool is_light(const Color& color) { return color.opacity < 0.5F || 0.3F * color.red + 0.59F * color.green + 0.11F * color.blue > 0.5F; }
+bool is_light(const Color& color) {
+    return color.opacity < 0.5F || 0.3F * color.red + 0.59F * color.green + 0.11F * color.blue > 0.5F;
+}
 
 /// The text, or as much of it as is `width` wide, with an ellipsis.
 std::string shortened(const TextPainter& painter, const std::string& text, double width) {
@@ -37,7 +39,9 @@ std::string shortened(const TextPainter& painter, const std::string& text, doubl
 }
 
 void fill(Picture& picture, double x, double y, double width, double height, const Color& color) {
-    const auto limit = [](double at, std::uint32_t most) { return static_cast<std::uint32_t>(std::clamp(std::round(at), 0.0, static_cast<double>(most))); };
+    const auto limit = [](double at, std::uint32_t most) {
+        return static_cast<std::uint32_t>(std::clamp(std::round(at), 0.0, static_cast<double>(most)));
+    };
     for (std::uint32_t row = limit(y, picture.height); row < limit(y + height, picture.height); ++row)
         for (std::uint32_t column = limit(x, picture.width); column < limit(x + width, picture.width); ++column)
             render::blend(picture.pixels[std::size_t{row} * picture.width + column], color, 1);
@@ -52,8 +56,11 @@ public:
     void paint(Picture& picture, const Color& ink) const;
 
 private:
-    Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<TextPainter> text, std::unique_ptr<TextPainter> small);
-    static double text_size(PictureSize whole) { return std::max(11.0, std::min<double>(whole.width, whole.height * 4.0 / 3) / 56); }
+    Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<TextPainter> text,
+           std::unique_ptr<TextPainter> small);
+    static double text_size(PictureSize whole) {
+        return std::max(11.0, std::min<double>(whole.width, whole.height * 4.0 / 3) / 56);
+    }
 
     bool has_column() const { return annotation_.scale || !annotation_.legend.empty(); }
     double column_width() const;
@@ -73,11 +80,20 @@ private:
     double line_, pad_, swatch_;
 };
 
-Layout::Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<TextPainter> text, std::unique_ptr<TextPainter> small)
-    : annotation_(annotation), whole_(whole), size_(text_size(whole)), text_(std::move(text)), small_(std::move(small)),
-      entries_(annotation.legend), line_(1.45 * size_), pad_(size_), swatch_(std::round(0.95 * size_)) {
+Layout::Layout(const Annotation& annotation, PictureSize whole, std::unique_ptr<TextPainter> text,
+               std::unique_ptr<TextPainter> small)
+    : annotation_(annotation),
+      whole_(whole),
+      size_(text_size(whole)),
+      text_(std::move(text)),
+      small_(std::move(small)),
+      entries_(annotation.legend),
+      line_(1.45 * size_),
+      pad_(size_),
+      swatch_(std::round(0.95 * size_)) {
     if (annotation.scale) {
-        ticks_ = render::ticks_of(*annotation.scale, std::max<std::size_t>(2, static_cast<std::size_t>(bar_height() / (3 * size_))));
+        ticks_ = render::ticks_of(*annotation.scale,
+                                  std::max<std::size_t>(2, static_cast<std::size_t>(bar_height() / (3 * size_))));
         if (!annotation.no_data.empty()) entries_.push_back({annotation.scale->no_data, annotation.no_data});
     }
     title_ = shortened(*text_, annotation.title, 0.28 * whole.width);
@@ -96,7 +112,8 @@ double Layout::column_width() const {
     if (!has_column()) return 0;
     double widest = text_->width(title_);
     for (const Tick& tick : ticks_) widest = std::max(widest, swatch_ + 0.8 * size_ + text_->width(tick.label));
-    for (const LegendEntry& entry : entries_) widest = std::max(widest, swatch_ + 0.5 * size_ + text_->width(entry.text));
+    for (const LegendEntry& entry : entries_)
+        widest = std::max(widest, swatch_ + 0.5 * size_ + text_->width(entry.text));
     return widest + 1.5 * pad_;
 }
 
@@ -106,7 +123,8 @@ double Layout::column_height() const {
 }
 
 std::optional<PictureSize> Layout::room() const {
-    const double width = std::floor(whole_.width - column_width()), height = std::floor(whole_.height - caption_height());
+    const double width = std::floor(whole_.width - column_width()),
+                 height = std::floor(whole_.height - caption_height());
     if (width < 0.5 * whole_.width || height < 0.5 * whole_.height || column_height() > whole_.height) return {};
     return PictureSize{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
@@ -119,7 +137,8 @@ void Layout::paint_entry(Picture& picture, double x, double y, const LegendEntry
 void Layout::paint_bar(Picture& picture, double x, double y, const Color& ink) const {
     const ColorScale& scale = *annotation_.scale;
     const double height = bar_height();
-    for (double row = 0; row < height; ++row) fill(picture, x, y + row, swatch_, 1, color_at(scale.map, 1 - (row + 0.5) / height));
+    for (double row = 0; row < height; ++row)
+        fill(picture, x, y + row, swatch_, 1, color_at(scale.map, 1 - (row + 0.5) / height));
     const double stroke = std::max(1.0, std::round(size_ / 16));
     for (const Tick& tick : ticks_) {
         const double at = std::round(y + (1 - std::clamp(scale.place_of(tick.value), 0.0, 1.0)) * (height - stroke));
@@ -160,18 +179,23 @@ Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, Pic
     });
 }
 
-Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole, const Color& background) {
+Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole,
+                         const Color& background) {
     return core::guarded("annotating a picture", [&]() -> Result<Picture> {
         const auto layout = Layout::make(annotation, whole);
         if (!layout) return layout.error();
         const std::optional<PictureSize> room = (*layout)->room();
         if (!room || scene.width != room->width || scene.height != room->height) {
-            return Error{ErrorCode::invalid_argument, fmt::format("a scene of {} x {} is to be annotated, but what is left for it is {} x {}", scene.width,
-                                                                  scene.height, room ? room->width : 0, room ? room->height : 0)};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("a scene of {} x {} is to be annotated, but what is left for it is {} x {}",
+                                     scene.width, scene.height, room ? room->width : 0, room ? room->height : 0)};
         }
         Picture picture{whole.width, whole.height, {}};
-        const auto byte = [](float part) { return static_cast<std::uint8_t>(std::clamp(part, 0.0F, 1.0F) * 255 + 0.5F); };
-        const std::array<std::uint8_t, 4> empty{byte(background.red), byte(background.green), byte(background.blue), byte(background.opacity)};
+        const auto byte = [](float part) {
+            return static_cast<std::uint8_t>(std::clamp(part, 0.0F, 1.0F) * 255 + 0.5F);
+        };
+        const std::array<std::uint8_t, 4> empty{byte(background.red), byte(background.green), byte(background.blue),
+                                                byte(background.opacity)};
         picture.pixels.resize(std::size_t{whole.width} * whole.height, empty);
         for (std::uint32_t row = 0; row < scene.height; ++row)
             std::copy_n(scene.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * scene.width), scene.width,

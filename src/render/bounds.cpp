@@ -39,7 +39,8 @@ Box bounds_of_positions(const Positions& positions, const std::array<double, 3>&
     core::parallel_ranges(positions.size() / 3, grain, [&](std::size_t begin, std::size_t end) {
         Box part;
         for (std::size_t i = begin; i < end; ++i) {
-            const std::array<double, 3> point{static_cast<double>(positions[3 * i]), static_cast<double>(positions[3 * i + 1]),
+            const std::array<double, 3> point{static_cast<double>(positions[3 * i]),
+                                              static_cast<double>(positions[3 * i + 1]),
                                               static_cast<double>(positions[3 * i + 2])};
             if (std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])) part.add(point);
         }

@@ -96,10 +96,13 @@ void fit_to(Camera& camera, const Box& around, const EachPoint& each, double asp
         flat_upwards.add(y, z, 0);
     });
     const bool flat = camera.projection == Projection::parallel;
-    const double extent = std::max({flat_upwards.right + flat_upwards.left, (flat_across.right + flat_across.left) / aspect, widest * 1e-3});
+    const double extent = std::max(
+        {flat_upwards.right + flat_upwards.left, (flat_across.right + flat_across.left) / aspect, widest * 1e-3});
     camera.height = extent / part;
-    camera.distance = flat ? 2 * widest : std::max({across.distance(slope * aspect), upwards.distance(slope), widest * 1e-3});
-    camera.target = plus(plus(middle_of(around), right, (flat ? flat_across : across).middle()), camera.up, (flat ? flat_upwards : upwards).middle());
+    camera.distance =
+        flat ? 2 * widest : std::max({across.distance(slope * aspect), upwards.distance(slope), widest * 1e-3});
+    camera.target = plus(plus(middle_of(around), right, (flat ? flat_across : across).middle()), camera.up,
+                         (flat ? flat_upwards : upwards).middle());
 }
 
 } // namespace
@@ -110,7 +113,8 @@ void Camera::fit(const Box& box, double aspect, double margin) {
     const auto corners = [&](const auto& add) {
         for (int corner = 0; corner < 8; ++corner) {
             std::array<double, 3> p{};
-            for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = (corner >> axis & 1 ? around.upper[axis] : around.lower[axis]) - middle[axis];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                p[axis] = (corner >> axis & 1 ? around.upper[axis] : around.lower[axis]) - middle[axis];
             add(p);
         }
     };
@@ -141,12 +145,15 @@ void Camera::fit_ball(const Box& box, double aspect, double margin) {
     if (!(radius > 0)) radius = 0.5; // a single point still has a picture
     const double part = 1 - 2 * margin, narrow = std::min(aspect, 1.0);
     height = 2 * radius / (part * narrow);
-    distance = projection == Projection::parallel ? 4 * radius : radius / std::sin(std::atan(std::tan(radians(angle) / 2) * part * narrow));
+    distance = projection == Projection::parallel
+                   ? 4 * radius
+                   : radius / std::sin(std::atan(std::tan(radians(angle) / 2) * part * narrow));
 }
 
 void Camera::orbit(double azimuth, double elevation) {
     // About the axis of the world that is up the most: a picture whose horizon is level keeps it.
-    const auto steepest = std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto steepest =
+        std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     std::array<double, 3> pole{};
     pole[static_cast<std::size_t>(steepest - up.begin())] = std::copysign(1.0, *steepest);
     direction = turned(direction, pole, radians(azimuth));

@@ -22,7 +22,8 @@ constexpr std::array<NamedMap, 5> named_maps{{{ColorMap::viridis, "viridis", ren
                                               {ColorMap::turbo, "turbo", render::turbo_colors},
                                               {ColorMap::cool_warm, "cool-warm", render::cool_warm_colors}}};
 constexpr std::size_t entries = 256, digits = 6;
-static_assert(std::ranges::all_of(named_maps, [](const NamedMap& one) { return one.colors.size() == entries * digits; }));
+static_assert(std::ranges::all_of(named_maps,
+                                  [](const NamedMap& one) { return one.colors.size() == entries * digits; }));
 
 float part_of(std::string_view colors, std::size_t entry, std::size_t part) {
     const auto digit = [&](std::size_t i) {

@@ -11,7 +11,8 @@ namespace isotet {
 Result<double> difference(const Picture& a, const Picture& b, int tolerance) {
     if (a.width != b.width || a.height != b.height) {
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("a picture of {} x {} and one of {} x {} cannot be compared", a.width, a.height, b.width, b.height)};
+                     fmt::format("a picture of {} x {} and one of {} x {} cannot be compared", a.width, a.height,
+                                 b.width, b.height)};
     }
     if (a.pixels.empty()) return 0.0;
     std::size_t differing = 0;

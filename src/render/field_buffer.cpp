@@ -14,10 +14,12 @@ namespace isotet::render {
 namespace {
 
 Result<void> check_scale(const ColorScale& scale) {
-    if (std::isfinite(scale.lower) && std::isfinite(scale.upper) && scale.lower < scale.upper && (!scale.logarithmic || scale.lower > 0))
+    if (std::isfinite(scale.lower) && std::isfinite(scale.upper) && scale.lower < scale.upper &&
+        (!scale.logarithmic || scale.lower > 0))
         return {};
-    return Error{ErrorCode::invalid_argument, fmt::format("a colour scale from {} to {}, but it must run from a smaller{} to a larger finite value",
-                                                          scale.lower, scale.upper, scale.logarithmic ? " positive" : "")};
+    return Error{ErrorCode::invalid_argument,
+                 fmt::format("a colour scale from {} to {}, but it must run from a smaller{} to a larger finite value",
+                             scale.lower, scale.upper, scale.logarithmic ? " positive" : "")};
 }
 
 core::Buffer<float> table_of(ColorMap map) {
@@ -39,7 +41,8 @@ Result<std::unique_ptr<FieldBuffer>> FieldBuffer::upload(std::shared_ptr<vulkan:
                                                          const ColorScale& scale) {
     if (Result<void> right = check_scale(scale); !right) return right.error();
     if (values.components() != 1 && values.tuples() > 0)
-        return Error{ErrorCode::invalid_argument, fmt::format("values that colour have {} components, but need 1", values.components())};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("values that colour have {} components, but need 1", values.components())};
     auto field = std::make_unique<FieldBuffer>();
     field->scale = scale;
     field->coloring = coloring;

@@ -20,11 +20,12 @@ Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::mov
 
 } // namespace
 
-Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines& pipelines, const Space& space, const DrawnLines& drawn,
-                                std::uint32_t samples) {
+Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines& pipelines, const Space& space,
+                                const DrawnLines& drawn, std::uint32_t samples) {
     if (!(drawn.width > 0 && std::isfinite(drawn.width)))
         return wrong(fmt::format("lines {} pixels wide, but the width must be positive", drawn.width));
-    if (drawn.lines.size() > most_lines) return wrong(fmt::format("{} lines, but {} can be drawn at most", drawn.lines.size(), most_lines));
+    if (drawn.lines.size() > most_lines)
+        return wrong(fmt::format("{} lines, but {} can be drawn at most", drawn.lines.size(), most_lines));
     core::Buffer<float> ends(drawn.lines.size() * 6);
     for (std::size_t i = 0; i < drawn.lines.size(); ++i) {
         for (std::size_t end = 0; end < 2; ++end) {
@@ -49,7 +50,8 @@ Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines&
     return draw;
 }
 
-void record(const LineDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
+void record(const LineDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call,
+            VkCommandBuffer commands) {
     call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
     call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
     call.vkCmdDraw(commands, draw.corners, 1, 0, 0);

@@ -45,15 +45,16 @@ Result<void> check_shapes(const Surface& surface) {
     if (!is_floating(surface.positions.type()) || is_floating(surface.triangles.type()))
         return wrong("a surface needs positions of float32 or float64, and triangles of whole numbers");
     if (surface.vertices() > most || surface.triangle_count() > most) {
-        return wrong(fmt::format("a surface of {} vertices and {} triangles, but of each {} can be drawn at most", surface.vertices(),
-                                 surface.triangle_count(), most));
+        return wrong(fmt::format("a surface of {} vertices and {} triangles, but of each {} can be drawn at most",
+                                 surface.vertices(), surface.triangle_count(), most));
     }
     return {};
 }
 
 } // namespace
 
-Result<std::unique_ptr<MeshBuffers>> MeshBuffers::upload(std::shared_ptr<vulkan::Context> context, const Surface& surface) {
+Result<std::unique_ptr<MeshBuffers>> MeshBuffers::upload(std::shared_ptr<vulkan::Context> context,
+                                                         const Surface& surface) {
     if (Result<void> fits = check_shapes(surface); !fits) return fits.error();
     auto mesh = std::make_unique<MeshBuffers>();
     mesh->context = std::move(context);
@@ -70,10 +71,12 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::upload(std::shared_ptr<vulkan:
 
 Result<void> MeshBuffers::upload_positions(const Surface& surface) {
     return surface.positions.visit([&](auto scalars) -> Result<void> {
-        const std::size_t broken = first_of(scalars.size(), [&](std::size_t i) { return !std::isfinite(static_cast<double>(scalars[i])); });
+        const std::size_t broken =
+            first_of(scalars.size(), [&](std::size_t i) { return !std::isfinite(static_cast<double>(scalars[i])); });
         if (broken < scalars.size()) {
-            return Error{ErrorCode::invalid_data, fmt::format("vertex {} has the coordinate {}, but what is drawn must be finite", broken / 3,
-                                                              static_cast<double>(scalars[broken]))};
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("vertex {} has the coordinate {}, but what is drawn must be finite", broken / 3,
+                                     static_cast<double>(scalars[broken]))};
         }
         // Far from 0, float64 positions keep their digits relative to their middle.
         std::array<double, 3> shift{};
@@ -99,10 +102,12 @@ Result<void> MeshBuffers::upload_triangles(const Surface& surface) {
             first_of(corners.size(), [&](std::size_t i) { return static_cast<std::uint64_t>(corners[i]) >= vertices; });
         if (broken < corners.size()) {
             return Error{ErrorCode::invalid_data,
-                         fmt::format("triangles[{}] has vertex {}, but the surface has {} vertices", broken / 3, corners[broken], vertices)};
+                         fmt::format("triangles[{}] has vertex {}, but the surface has {} vertices", broken / 3,
+                                     corners[broken], vertices)};
         }
         core::Buffer<std::uint32_t> numbers(corners.size());
-        core::parallel_each(corners.size(), grain, [&](std::size_t i) { numbers[i] = static_cast<std::uint32_t>(corners[i]); });
+        core::parallel_each(corners.size(), grain,
+                            [&](std::size_t i) { numbers[i] = static_cast<std::uint32_t>(corners[i]); });
         Result<vulkan::Buffer> sent = send(*context, numbers, "triangles");
         if (sent) triangles = *std::move(sent);
         return sent ? Result<void>() : Result<void>(sent.error());

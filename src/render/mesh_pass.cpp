@@ -41,15 +41,18 @@ Result<void> take_mesh(MeshDraw& draw, const MeshBuffers& mesh, const FieldBuffe
     draw.corners = 3 * mesh.triangle_count;
     if (!colors) return {};
     const bool of_triangles = colors->coloring == layout::by_triangle;
-    if (colors->coloring != layout::by_vertex && !of_triangles) return wrong("colours of a grid were given to a mesh that was uploaded");
+    if (colors->coloring != layout::by_vertex && !of_triangles)
+        return wrong("colours of a grid were given to a mesh that was uploaded");
     const std::uint64_t needed = of_triangles ? mesh.triangle_count : mesh.vertices;
     if (colors->count == needed) return {};
-    return wrong(fmt::format("{} values shall colour a mesh with {} {}", colors->count, needed, of_triangles ? "triangles" : "vertices"));
+    return wrong(fmt::format("{} values shall colour a mesh with {} {}", colors->count, needed,
+                             of_triangles ? "triangles" : "vertices"));
 }
 
 Result<void> take_surface(MeshDraw& draw, const vulkan::SurfaceBuffers& surface, const FieldBuffer* colors) {
     if (surface.triangle_count() > std::numeric_limits<std::uint32_t>::max() / 3)
-        return wrong(fmt::format("a surface of {} triangles, but their corners must have 32-bit numbers", surface.triangle_count()));
+        return wrong(fmt::format("a surface of {} triangles, but their corners must have 32-bit numbers",
+                                 surface.triangle_count()));
     use(draw, draw.mesh.positions, surface.positions);
     use(draw, draw.mesh.triangles, surface.triangles);
     if (surface.parts().normals == Normals::gradient) use(draw, draw.mesh.normals, surface.normals);
@@ -60,13 +63,16 @@ Result<void> take_surface(MeshDraw& draw, const vulkan::SurfaceBuffers& surface,
     draw.corners = static_cast<std::uint32_t>(3 * surface.triangle_count());
     if (!colors) return {};
     if (colors->coloring == layout::by_grid_point) {
-        if (!surface.parts().ends) return wrong("a surface that is coloured by points of the grid must be extracted with edge_ends");
+        if (!surface.parts().ends)
+            return wrong("a surface that is coloured by points of the grid must be extracted with edge_ends");
         use(draw, draw.mesh.ends, surface.ends);
         use(draw, draw.mesh.weights, surface.weights);
         return {};
     }
-    if (colors->coloring != layout::by_grid_tet) return wrong("colours of a mesh were given to a surface that was extracted on the device");
-    if (!surface.parts().sources) return wrong("a surface that is coloured by cells of the grid must be extracted with source_cells");
+    if (colors->coloring != layout::by_grid_tet)
+        return wrong("colours of a mesh were given to a surface that was extracted on the device");
+    if (!surface.parts().sources)
+        return wrong("a surface that is coloured by cells of the grid must be extracted with source_cells");
     use(draw, draw.mesh.sources, surface.sources);
     return {};
 }
@@ -75,14 +81,15 @@ void take_colors(MeshDraw& draw, const FieldBuffer& colors) {
     use(draw, draw.mesh.values, colors.values);
     use(draw, draw.mesh.table, colors.table);
     draw.mesh.no_data = linear_light(colors.scale.no_data);
-    if (colors.scale.logarithmic) draw.mesh.log_factor = static_cast<float>(1 / std::log(colors.scale.upper / colors.scale.lower));
+    if (colors.scale.logarithmic)
+        draw.mesh.log_factor = static_cast<float>(1 / std::log(colors.scale.upper / colors.scale.lower));
     if (by_corner(colors.coloring)) draw.indices = VK_NULL_HANDLE;
 }
 
 } // namespace
 
-Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn, const MeshBuffers* mesh,
-                                const FieldBuffer* colors) {
+Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
+                                const MeshBuffers* mesh, const FieldBuffer* colors) {
     if (!(drawn.opacity >= 0 && drawn.opacity <= 1))
         return wrong(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
     MeshDraw draw;
@@ -106,7 +113,8 @@ Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& s
     return draw;
 }
 
-void record(const MeshDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands) {
+void record(const MeshDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call,
+            VkCommandBuffer commands) {
     call.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, draw.pipeline->pipeline);
     call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
     if (draw.indices) call.vkCmdBindIndexBuffer(commands, draw.indices, 0, VK_INDEX_TYPE_UINT32);

@@ -37,8 +37,11 @@ DeviceColors::DeviceColors(std::unique_ptr<render::FieldBuffer> buffer) : buffer
 DeviceColors::DeviceColors(DeviceColors&&) noexcept = default;
 DeviceColors& DeviceColors::operator=(DeviceColors&&) noexcept = default;
 DeviceColors::~DeviceColors() = default;
-Result<DeviceColors> DeviceColors::of_mesh(const Device&, const Array&, Association, const ColorScale&) { return built_without(); }
-Result<DeviceColors> DeviceColors::of_grid(const Device&, const PackedGrid&, const Array&, Association, const ColorScale&) {
+Result<DeviceColors> DeviceColors::of_mesh(const Device&, const Array&, Association, const ColorScale&) {
+    return built_without();
+}
+Result<DeviceColors> DeviceColors::of_grid(const Device&, const PackedGrid&, const Array&, Association,
+                                           const ColorScale&) {
     return built_without();
 }
 
@@ -49,7 +52,6 @@ Renderer::~Renderer() = default;
 const DeviceWork& Renderer::work() const noexcept { return data_->work; }
 Result<Renderer> Renderer::make(const Device&) { return built_without(); }
 Result<Picture> Renderer::draw(const Scene&, const PictureOptions&, const Progress&) { return built_without(); }
-
 
 TetSurface::TetSurface(std::unique_ptr<render::ChosenTets> tets) : tets_(std::move(tets)) {}
 TetSurface::TetSurface(TetSurface&&) noexcept = default;
@@ -66,7 +68,8 @@ TetStore::TetStore(TetStore&&) noexcept = default;
 TetStore& TetStore::operator=(TetStore&&) noexcept = default;
 TetStore::~TetStore() = default;
 const TetStoreReport& TetStore::report() const noexcept { return pages_->report; }
-Result<TetStore> TetStore::upload(const Device&, const PackedGrid&, DrawMethod, const TetStoreOptions&, int, const Progress&) {
+Result<TetStore> TetStore::upload(const Device&, const PackedGrid&, DrawMethod, const TetStoreOptions&, int,
+                                  const Progress&) {
     return built_without();
 }
 Result<TetSurface> TetStore::at(double) { return built_without(); }

@@ -27,13 +27,15 @@ Result<void> check_camera(const Camera& camera) {
     const auto is_unit = [](const std::array<double, 3>& v) { return std::abs(render::dot(v, v) - 1) < 1e-6; };
     if (!is_unit(camera.direction) || !is_unit(camera.up) || std::abs(render::dot(camera.direction, camera.up)) > 1e-6)
         return wrong("a camera whose direction and up are not unit vectors at right angles");
-    if (!std::ranges::all_of(camera.target, [](double x) { return std::isfinite(x); })) return wrong("a camera whose target is not finite");
+    if (!std::ranges::all_of(camera.target, [](double x) { return std::isfinite(x); }))
+        return wrong("a camera whose target is not finite");
     const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
     if (camera.projection == Projection::parallel) {
         if (positive(camera.height)) return {};
         return wrong(fmt::format("a camera that shows a height of {}, but it must be positive", camera.height));
     }
-    if (!positive(camera.distance)) return wrong(fmt::format("a camera at a distance of {}, but it must be positive", camera.distance));
+    if (!positive(camera.distance))
+        return wrong(fmt::format("a camera at a distance of {}, but it must be positive", camera.distance));
     if (camera.angle >= 0.1 && camera.angle <= 170) return {};
     return wrong(fmt::format("a camera with an angle of {} degrees, but it must be from 0.1 to 170", camera.angle));
 }
@@ -41,7 +43,8 @@ Result<void> check_camera(const Camera& camera) {
 Result<void> check_options(const PictureOptions& options) {
     for (const std::uint32_t pixels : {options.width, options.height}) {
         if (pixels >= 1 && pixels <= most_pixels_an_axis) continue;
-        return wrong(fmt::format("a picture of {} x {} pixels, but each must be from 1 to {}", options.width, options.height, most_pixels_an_axis));
+        return wrong(fmt::format("a picture of {} x {} pixels, but each must be from 1 to {}", options.width,
+                                 options.height, most_pixels_an_axis));
     }
     if (options.samples < 1 || options.samples > most_samples)
         return wrong(fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, most_samples));
@@ -78,24 +81,29 @@ DeviceColors::DeviceColors(DeviceColors&&) noexcept = default;
 DeviceColors& DeviceColors::operator=(DeviceColors&&) noexcept = default;
 DeviceColors::~DeviceColors() = default;
 
-Result<DeviceColors> DeviceColors::of_mesh(const Device& device, const Array& values, Association association, const ColorScale& scale) {
+Result<DeviceColors> DeviceColors::of_mesh(const Device& device, const Array& values, Association association,
+                                           const ColorScale& scale) {
     return core::guarded("uploading colours", [&]() -> Result<DeviceColors> {
-        const std::uint32_t coloring = association == Association::point ? render::layout::by_vertex : render::layout::by_triangle;
-        auto buffer = render::FieldBuffer::upload(device.context(), values, coloring, values.tuples(), [](std::uint64_t i) { return i; }, scale);
+        const std::uint32_t coloring =
+            association == Association::point ? render::layout::by_vertex : render::layout::by_triangle;
+        auto buffer = render::FieldBuffer::upload(
+            device.context(), values, coloring, values.tuples(), [](std::uint64_t i) { return i; }, scale);
         if (!buffer) return buffer.error();
         return DeviceColors(*std::move(buffer));
     });
 }
 
-Result<DeviceColors> DeviceColors::of_grid(const Device& device, const PackedGrid& packed, const Array& values, Association association,
-                                           const ColorScale& scale) {
+Result<DeviceColors> DeviceColors::of_grid(const Device& device, const PackedGrid& packed, const Array& values,
+                                           Association association, const ColorScale& scale) {
     return core::guarded("uploading colours", [&]() -> Result<DeviceColors> {
         const core::Packed& data = packed.data();
         const bool of_points = association == Association::point;
         const std::uint64_t needed = of_points ? data.user_points : data.user_cells;
         if (values.tuples() != needed)
-            return wrong(fmt::format("{} values shall colour a grid of {} {}", values.tuples(), needed, of_points ? "points" : "cells"));
-        if (!of_points && !data.has_cell_ids()) return wrong("a grid that is coloured by its cells must be packed with source_cells");
+            return wrong(fmt::format("{} values shall colour a grid of {} {}", values.tuples(), needed,
+                                     of_points ? "points" : "cells"));
+        if (!of_points && !data.has_cell_ids())
+            return wrong("a grid that is coloured by its cells must be packed with source_cells");
         const std::uint64_t count = of_points ? data.points() : data.cell_ids.size() + data.wide_cell_ids.size();
         const auto number = [&](std::uint64_t i) { return of_points ? data.user_point(i) : data.user_cell(i); };
         const std::uint32_t coloring = of_points ? render::layout::by_grid_point : render::layout::by_grid_tet;
@@ -113,11 +121,13 @@ struct Renderer::Data {
     Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Progress& progress);
 };
 
-Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOptions& options, const render::Space& space) {
+Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOptions& options,
+                                           const render::Space& space) {
     render::Draws draws;
     for (const DrawnLines& lines : scene.lines) {
         if (lines.lines.empty()) continue;
-        Result<render::LineDraw> draw = render::make_line_draw(frame->context(), frame->pipelines(), space, lines, options.samples);
+        Result<render::LineDraw> draw =
+            render::make_line_draw(frame->context(), frame->pipelines(), space, lines, options.samples);
         if (!draw) return draw.error();
         draws.lines.push_back(*std::move(draw));
     }
@@ -126,7 +136,8 @@ Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOpti
         if (drawn.tets) {
             const Result<const vulkan::Buffer*> corners = frame->quad_corners();
             if (!corners) return corners.error();
-            const Result<void> added = render::add_tet_draws(frame->pipelines(), space, drawn, *drawn.tets->tets_, **corners, draws.tets);
+            const Result<void> added =
+                render::add_tet_draws(frame->pipelines(), space, drawn, *drawn.tets->tets_, **corners, draws.tets);
             if (!added) return added.error();
             continue;
         }
@@ -153,7 +164,8 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
     const std::uint32_t widest = std::max(1U, frame->most_samples_an_axis() / options.samples);
     render::Part part;
     part.width = std::min(options.width, widest);
-    const std::uint64_t rows = render::Frame::most_samples / (std::uint64_t{part.width} * options.samples * options.samples);
+    const std::uint64_t rows =
+        render::Frame::most_samples / (std::uint64_t{part.width} * options.samples * options.samples);
     const auto highest = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, 1, widest));
     for (part.y = 0; part.y < options.height; part.y += highest) {
         for (part.x = 0; part.x < options.width; part.x += widest) {

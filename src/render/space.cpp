@@ -23,7 +23,8 @@ struct Row {
     double shift = 0;
 };
 Row sum(const Row& a, double times_a, const Row& b, double times_b) {
-    return {plus({a.along[0] * times_a, a.along[1] * times_a, a.along[2] * times_a}, b.along, times_b), a.shift * times_a + b.shift * times_b};
+    return {plus({a.along[0] * times_a, a.along[1] * times_a, a.along[2] * times_a}, b.along, times_b),
+            a.shift * times_a + b.shift * times_b};
 }
 
 } // namespace
@@ -45,11 +46,13 @@ std::array<double, 3> Space::place(const std::array<double, 3>& point) const {
     return placed;
 }
 
-void Space::look(const Camera& camera, std::uint32_t width, std::uint32_t height, const Part& part, layout::View& view) const {
+void Space::look(const Camera& camera, std::uint32_t width, std::uint32_t height, const Part& part,
+                 layout::View& view) const {
     const bool flat = camera.projection == Projection::parallel;
     const Vector eye = plus(place(camera.target), camera.direction, camera.distance * scale_);
     const auto row = [&](const Vector& along) { return Row{along, -dot(along, eye)}; };
-    const Row right = row(cross(camera.up, camera.direction)), down = row(minus({}, camera.up)), depth = row(minus({}, camera.direction));
+    const Row right = row(cross(camera.up, camera.direction)), down = row(minus({}, camera.up)),
+              depth = row(minus({}, camera.direction));
 
     double reach = depth_room; // of the bounds along the line of sight
     for (std::size_t axis = 0; axis < 3; ++axis) reach += std::abs(camera.direction[axis]) * half_[axis] * scale_;
@@ -68,9 +71,12 @@ void Space::look(const Camera& camera, std::uint32_t width, std::uint32_t height
     const auto cut = [&](const Row& whole, double pixels, double begin, double count) {
         return sum(whole, pixels / count, w, -(2 * begin + count - pixels) / count);
     };
-    const Row rows[4] = {cut(x, width, part.x, part.width), cut(y, height, part.y, part.height), flat ? z : sum(z, farthest, one, 0), w};
+    const Row rows[4] = {cut(x, width, part.x, part.width), cut(y, height, part.y, part.height),
+                         flat ? z : sum(z, farthest, one, 0), w};
     for (int column = 0; column < 4; ++column) {
-        const auto number = [&](const Row& r) { return static_cast<float>(column < 3 ? r.along[static_cast<std::size_t>(column)] : r.shift); };
+        const auto number = [&](const Row& r) {
+            return static_cast<float>(column < 3 ? r.along[static_cast<std::size_t>(column)] : r.shift);
+        };
         view.clip_from_scene.columns[column] = {number(rows[0]), number(rows[1]), number(rows[2]), number(rows[3])};
     }
     view.eye = layout::vector(flat ? camera.direction : eye);

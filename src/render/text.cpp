@@ -19,9 +19,15 @@ constexpr double fixed = 64; // FreeType counts in 64ths of a pixel
 
 /// The next character, and takes it off; one byte of what is not UTF-8.
 std::uint32_t next_character(std::string_view& text) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0}; };
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
+    };
     const std::uint8_t first = byte(0);
-    const std::size_t more = first < 0x80 ? 0 : first >= 0xF0 && first < 0xF8 ? 3 : first >= 0xE0 ? 2 : first >= 0xC0 ? 1 : 4;
+    const std::size_t more = first < 0x80                    ? 0
+                             : first >= 0xF0 && first < 0xF8 ? 3
+                             : first >= 0xE0                 ? 2
+                             : first >= 0xC0                 ? 1
+                                                             : 4;
     std::uint32_t character = more == 0 ? first : first & (0x3FU >> more);
     bool right = more < 4 && first < 0xF8;
     for (std::size_t i = 1; right && i <= more; ++i) {
@@ -55,7 +61,8 @@ struct TextPainter::Data {
         while (!text.empty()) {
             const FT_UInt glyph = FT_Get_Char_Index(face, next_character(text));
             FT_Vector kerning{};
-            if (before && FT_Get_Kerning(face, before, glyph, FT_KERNING_UNFITTED, &kerning) == 0) x += static_cast<double>(kerning.x) / fixed;
+            if (before && FT_Get_Kerning(face, before, glyph, FT_KERNING_UNFITTED, &kerning) == 0)
+                x += static_cast<double>(kerning.x) / fixed;
             before = glyph;
             if (FT_Load_Glyph(face, glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) continue;
             draw(face->glyph, x);
@@ -66,10 +73,12 @@ struct TextPainter::Data {
 };
 
 void blend(std::array<std::uint8_t, 4>& pixel, const Color& color, float coverage) {
-    const float front = coverage * color.opacity, back = static_cast<float>(pixel[3]) / 255 * (1 - front), all = front + back;
+    const float front = coverage * color.opacity, back = static_cast<float>(pixel[3]) / 255 * (1 - front),
+                all = front + back;
     if (!(all > 0)) return;
     const auto mixed = [&](float part, std::uint8_t old) {
-        return static_cast<std::uint8_t>(std::clamp((part * front + static_cast<float>(old) / 255 * back) / all, 0.0F, 1.0F) * 255 + 0.5F);
+        return static_cast<std::uint8_t>(
+            std::clamp((part * front + static_cast<float>(old) / 255 * back) / all, 0.0F, 1.0F) * 255 + 0.5F);
     };
     pixel = {mixed(color.red, pixel[0]), mixed(color.green, pixel[1]), mixed(color.blue, pixel[2]),
              static_cast<std::uint8_t>(std::min(all, 1.0F) * 255 + 0.5F)};
@@ -82,7 +91,8 @@ Result<std::unique_ptr<TextPainter>> TextPainter::open(double size) {
     auto data = std::make_unique<Data>();
     const Error broken{ErrorCode::internal, "FreeType cannot open the font that is part of isotet"};
     if (FT_Init_FreeType(&data->library) != 0) return broken;
-    if (FT_New_Memory_Face(data->library, font_bytes, static_cast<FT_Long>(sizeof font_bytes), 0, &data->face) != 0) return broken;
+    if (FT_New_Memory_Face(data->library, font_bytes, static_cast<FT_Long>(sizeof font_bytes), 0, &data->face) != 0)
+        return broken;
     if (FT_Set_Char_Size(data->face, 0, std::lround(std::max(size, 4.0) * fixed), 72, 72) != 0) return broken;
     return std::unique_ptr<TextPainter>(new TextPainter(std::move(data)));
 }
@@ -109,8 +119,9 @@ void TextPainter::paint(Picture& picture, double x, double y, std::string_view t
                 if (to_x < 0 || to_y < 0 || to_x >= picture.width || to_y >= picture.height) continue;
                 const unsigned char covered = bitmap.buffer[static_cast<std::ptrdiff_t>(j) * bitmap.pitch + i];
                 if (covered > 0)
-                    blend(picture.pixels[static_cast<std::size_t>(to_y) * picture.width + static_cast<std::size_t>(to_x)], color,
-                          static_cast<float>(covered) / 255);
+                    blend(
+                        picture.pixels[static_cast<std::size_t>(to_y) * picture.width + static_cast<std::size_t>(to_x)],
+                        color, static_cast<float>(covered) / 255);
             }
         }
     });

@@ -32,8 +32,13 @@ int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(st
 
 /// `digits` behind the point, of value / 10^exponent.
 std::string scaled_label(double value, int exponent, int digits) {
-    const std::string text = with_minus(fmt::format("{:.{}f}", exponent == 0 ? value : value / std::pow(10.0, exponent), digits));
-    return exponent == 0 ? text : text + "\u00D7" "10" + raised_number(exponent);
+    const std::string text =
+        with_minus(fmt::format("{:.{}f}", exponent == 0 ? value : value / std::pow(10.0, exponent), digits));
+    return exponent == 0 ? text
+                         : text +
+                               "\u00D7"
+                               "10" +
+                               raised_number(exponent);
 }
 
 /// Numbers that would be long are written with a power of ten.
@@ -82,13 +87,17 @@ std::string number_label(double value) {
     if (value == 0) return "0";
     const int exponent = exponent_of(value);
     const double mantissa = std::abs(value) / std::pow(10.0, exponent);
-    if (!is_long(std::abs(value)) || !std::isfinite(mantissa)) return with_minus(fmt::format("{:.{}g}", value, std::max(4, exponent + 1)));
-    return with_minus(fmt::format("{}{:.4g}\u00D7" "10{}", value < 0 ? "-" : "", mantissa, raised_number(exponent)));
+    if (!is_long(std::abs(value)) || !std::isfinite(mantissa))
+        return with_minus(fmt::format("{:.{}g}", value, std::max(4, exponent + 1)));
+    return with_minus(fmt::format("{}{:.4g}\u00D7"
+                                  "10{}",
+                                  value < 0 ? "-" : "", mantissa, raised_number(exponent)));
 }
 
 std::vector<Tick> ticks_of(const ColorScale& scale, std::size_t most) {
     most = std::max<std::size_t>(most, 2);
-    std::vector<Tick> ticks = scale.logarithmic ? logarithmic_ticks(scale.lower, scale.upper, most) : linear_ticks(scale.lower, scale.upper, most);
+    std::vector<Tick> ticks = scale.logarithmic ? logarithmic_ticks(scale.lower, scale.upper, most)
+                                                : linear_ticks(scale.lower, scale.upper, most);
     if (ticks.empty()) ticks = {{scale.lower, number_label(scale.lower)}, {scale.upper, number_label(scale.upper)}};
     return ticks;
 }

@@ -13,7 +13,8 @@ ClusterRanges::ClusterRanges(const core::TetTable& table) : clusters_(table.clus
     std::uint32_t groups = 0;
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
         clusters_[c] = {{}, table.first_tet[c], table.first_tet[c + 1], groups};
-        groups += static_cast<std::uint32_t>((clusters_[c].end_tet - clusters_[c].first_tet + group_size - 1) / group_size);
+        groups +=
+            static_cast<std::uint32_t>((clusters_[c].end_tet - clusters_[c].first_tet + group_size - 1) / group_size);
     }
     groups_ = core::Buffer<core::CutRange>(groups);
     core::parallel_each(clusters_.size(), 64, [&](std::size_t c) {

@@ -73,7 +73,8 @@ std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> item
     std::nth_element(items.begin(), middle, items.end(),
                      [](const Item& a, const Item& b) { return a.range.upper < b.range.upper; });
     const float split = node->split = middle->range.upper;
-    const auto here = std::partition(items.begin(), items.end(), [&](const Item& item) { return item.range.upper < split; });
+    const auto here =
+        std::partition(items.begin(), items.end(), [&](const Item& item) { return item.range.upper < split; });
     const auto right = std::partition(here, items.end(), [&](const Item& item) { return item.range.lower < split; });
     const std::span<Item> own(here, right);
     const auto begin = first + static_cast<std::size_t>(here - items.begin());
@@ -103,7 +104,8 @@ std::unique_ptr<IntervalTree::Node> IntervalTree::make_node(std::span<Item> item
 }
 
 std::uint64_t IntervalTree::bytes() const {
-    return by_lower_.ends.bytes() + by_lower_.tets.bytes() + by_upper_.ends.bytes() + by_upper_.tets.bytes() + nodes_ * sizeof(Node);
+    return by_lower_.ends.bytes() + by_lower_.tets.bytes() + by_upper_.ends.bytes() + by_upper_.tets.bytes() +
+           nodes_ * sizeof(Node);
 }
 
 void IntervalTree::find(float isovalue, TetNumbers& found) const {
@@ -117,7 +119,8 @@ void IntervalTree::find(float isovalue, TetNumbers& found) const {
     for (const Node* node = root_.get(); node;) {
         if (node->is_leaf) {
             for (std::uint32_t i = node->begin; i < node->end; ++i)
-                if (core::CutRange{by_lower_.ends[i], by_upper_.ends[i]}.holds(isovalue)) found.push_back(by_lower_.tets[i]);
+                if (core::CutRange{by_lower_.ends[i], by_upper_.ends[i]}.holds(isovalue))
+                    found.push_back(by_lower_.tets[i]);
             return;
         }
         if (isovalue <= node->split) {

@@ -41,7 +41,8 @@ public:
     }
     std::uint64_t key(const std::array<float, 3>& place) const {
         const auto step = [&](std::size_t axis) {
-            return static_cast<std::uint32_t>(std::clamp((double{place[axis]} - lower_[axis]) * scale_, 0.0, 0x1.fffffp20));
+            return static_cast<std::uint32_t>(
+                std::clamp((double{place[axis]} - lower_[axis]) * scale_, 0.0, 0x1.fffffp20));
         };
         return core::hilbert_index(step(0), step(1), step(2));
     }
@@ -62,7 +63,8 @@ Octree::Octree(const core::TetTable& table) : tets_(table.tets.size()) {
                             [&](std::size_t tet) { sorted[tet] = {cube.key(centroid(table, table.tets[tet])), tet}; });
         core::radix_sort({sorted.data(), sorted.size()}, {scratch.data(), scratch.size()});
         scratch.release();
-        core::parallel_each(tets_.size(), 1 << 16, [&](std::size_t i) { tets_[i] = static_cast<std::uint32_t>(sorted[i].number); });
+        core::parallel_each(tets_.size(), 1 << 16,
+                            [&](std::size_t i) { tets_[i] = static_cast<std::uint32_t>(sorted[i].number); });
         divide({sorted.data(), sorted.size()});
     }
     core::parallel_each(nodes_.size(), 1 << 10, [&](std::size_t n) {
@@ -70,7 +72,8 @@ Octree::Octree(const core::TetTable& table) : tets_(table.tets.size()) {
         for (std::uint32_t i = nodes_[n].begin; i < nodes_[n].end; ++i) nodes_[n].range.take_in(table.range(tets_[i]));
     });
     for (std::size_t n = nodes_.size(); n-- > 0;)
-        for (std::uint32_t k = 0; k < nodes_[n].children; ++k) nodes_[n].range.take_in(nodes_[nodes_[n].first_child + k].range);
+        for (std::uint32_t k = 0; k < nodes_[n].children; ++k)
+            nodes_[n].range.take_in(nodes_[nodes_[n].first_child + k].range);
 }
 
 /// Makes the nodes over tets sorted by their keys, of which each three bits choose an octant.
@@ -78,7 +81,8 @@ void Octree::divide(std::span<const core::Keyed> sorted) {
     nodes_.push_back({{}, 0, static_cast<std::uint32_t>(sorted.size())});
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
         const std::uint32_t begin = nodes_[n].begin, end = nodes_[n].end;
-        const std::uint64_t differing = sorted[begin].key ^ sorted[end - 1].key; // sorted: nothing between differs higher up
+        const std::uint64_t differing =
+            sorted[begin].key ^ sorted[end - 1].key; // sorted: nothing between differs higher up
         if (end - begin <= most_in_leaf || differing == 0) continue;
         const unsigned shift = static_cast<unsigned>(std::bit_width(differing) - 1) / 3 * 3;
         const auto first_child = static_cast<std::uint32_t>(nodes_.size());

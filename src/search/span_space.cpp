@@ -24,8 +24,9 @@ float key_of(const core::CutRange& range, bool by_upper) { return by_upper ? ran
 void arrange(std::span<Item> items, bool by_upper) {
     if (items.size() <= few) return;
     const std::size_t middle = items.size() / 2;
-    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(middle), items.end(),
-                     [&](const Item& a, const Item& b) { return key_of(a.range, by_upper) < key_of(b.range, by_upper); });
+    std::nth_element(
+        items.begin(), items.begin() + static_cast<std::ptrdiff_t>(middle), items.end(),
+        [&](const Item& a, const Item& b) { return key_of(a.range, by_upper) < key_of(b.range, by_upper); });
     const auto left = [&] { arrange(items.first(middle), !by_upper); };
     const auto right = [&] { arrange(items.subspan(middle + 1), !by_upper); };
     if (items.size() > 1 << 14) {

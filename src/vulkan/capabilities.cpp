@@ -20,7 +20,8 @@ constexpr std::uint32_t needed_push_bytes = 128;
 constexpr int oldest_lavapipe = 25;
 
 std::string version_text(std::uint32_t version) {
-    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                       VK_API_VERSION_PATCH(version));
 }
 
 DeviceKind kind_of(VkPhysicalDeviceType type) {
@@ -153,7 +154,8 @@ Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device) {
     std::vector<VkQueueFamilyProperties2> families(count, empty);
     call.vkGetPhysicalDeviceQueueFamilyProperties2(device, &count, families.data());
     for (const auto& family : families)
-        found.queues.push_back({family.queueFamilyProperties.queueFlags, family.queueFamilyProperties.timestampValidBits});
+        found.queues.push_back(
+            {family.queueFamilyProperties.queueFlags, family.queueFamilyProperties.timestampValidBits});
     choose_queues(found);
 
     found.memory_budget = has_extension(call, device, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
@@ -170,7 +172,8 @@ void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& ca
     call.vkGetPhysicalDeviceMemoryProperties2(device, &memory);
     capabilities.memory = memory.memoryProperties;
     for (std::uint32_t heap = 0; heap < capabilities.memory.memoryHeapCount; ++heap) {
-        const VkDeviceSize most = capabilities.memory_budget ? budget.heapBudget[heap] : capabilities.memory.memoryHeaps[heap].size;
+        const VkDeviceSize most =
+            capabilities.memory_budget ? budget.heapBudget[heap] : capabilities.memory.memoryHeaps[heap].size;
         capabilities.heap_free[heap] = most - std::min(most, budget.heapUsage[heap]);
     }
 }
@@ -199,13 +202,15 @@ std::string why_unusable(const Capabilities& capabilities) {
         return short_of("its shared memory in bytes", limits.maxComputeSharedMemorySize, needed_shared_memory);
     if (limits.maxPushConstantsSize < needed_push_bytes)
         return short_of("its room for push constants in bytes", limits.maxPushConstantsSize, needed_push_bytes);
-    for (const auto type : {device_memory_type(capabilities), upload_memory_type(capabilities), download_memory_type(capabilities)})
+    for (const auto type :
+         {device_memory_type(capabilities), upload_memory_type(capabilities), download_memory_type(capabilities)})
         if (type == Capabilities::none) return "it has no memory that the processor can reach";
     return {};
 }
 
 std::string why_unable_to_draw(const Capabilities& capabilities) {
-    if (!(capabilities.queues[capabilities.compute_family].flags & VK_QUEUE_GRAPHICS_BIT)) return "no queue takes both compute and graphics work";
+    if (!(capabilities.queues[capabilities.compute_family].flags & VK_QUEUE_GRAPHICS_BIT))
+        return "no queue takes both compute and graphics work";
     if (!capabilities.features.fragmentStoresAndAtomics) return "it lacks the feature fragmentStoresAndAtomics";
     return {};
 }
@@ -218,20 +223,23 @@ DeviceInfo describe(const Capabilities& capabilities, std::size_t index) {
     info.kind = kind_of(properties.deviceType);
     info.api = version_text(properties.apiVersion);
     info.driver = fmt::format("{} {}", capabilities.properties12.driverName, capabilities.properties12.driverInfo);
-    if (properties.apiVersion < VK_API_VERSION_1_2) info.driver = fmt::format("version {:#x}", properties.driverVersion);
+    if (properties.apiVersion < VK_API_VERSION_1_2)
+        info.driver = fmt::format("version {:#x}", properties.driverVersion);
     info.unusable = why_unusable(capabilities);
     if (const std::uint32_t type = device_memory_type(capabilities); type != Capabilities::none) {
         const std::uint32_t heap = capabilities.memory.memoryTypes[type].heapIndex;
         info.memory = capabilities.memory.memoryHeaps[heap].size;
         info.memory_free = capabilities.heap_free[heap];
-        info.unified_memory = (capabilities.memory.memoryTypes[type].propertyFlags & mappable) == mappable && is_unified(capabilities);
+        info.unified_memory =
+            (capabilities.memory.memoryTypes[type].propertyFlags & mappable) == mappable && is_unified(capabilities);
     }
     info.memory_free_known = capabilities.memory_budget;
     info.transfer_queue = capabilities.transfer_family != capabilities.compute_family;
-    info.timestamps =
-        capabilities.compute_family != Capabilities::none && capabilities.queues[capabilities.compute_family].timestamp_bits > 0;
+    info.timestamps = capabilities.compute_family != Capabilities::none &&
+                      capabilities.queues[capabilities.compute_family].timestamp_bits > 0;
     info.allocation_limit = capabilities.properties11.maxMemoryAllocationSize;
-    for (std::size_t axis = 0; axis < 3; ++axis) info.workgroups[axis] = properties.limits.maxComputeWorkGroupCount[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        info.workgroups[axis] = properties.limits.maxComputeWorkGroupCount[axis];
     info.workgroup_size = properties.limits.maxComputeWorkGroupInvocations;
     info.shared_memory = properties.limits.maxComputeSharedMemorySize;
     info.subgroup_size = capabilities.properties11.subgroupSize;

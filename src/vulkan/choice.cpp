@@ -18,8 +18,8 @@ namespace {
 std::string listed(std::span<const DeviceInfo> devices) {
     std::string text;
     for (const DeviceInfo& device : devices) {
-        text += fmt::format("{}{}: {} ({}{}{})", text.empty() ? "" : "; ", device.index, device.name, name_of(device.kind),
-                            device.unusable.empty() ? "" : "; cannot be used: ", device.unusable);
+        text += fmt::format("{}{}: {} ({}{}{})", text.empty() ? "" : "; ", device.index, device.name,
+                            name_of(device.kind), device.unusable.empty() ? "" : "; cannot be used: ", device.unusable);
     }
     return text.empty() ? "there is none" : text;
 }
@@ -51,11 +51,13 @@ std::string lower_case(std::string_view text) {
 
 Result<std::size_t> if_usable(std::span<const DeviceInfo> devices, std::size_t i) {
     if (devices[i].unusable.empty()) return i;
-    return Error{ErrorCode::machine, fmt::format("the device {} cannot be used: {}", devices[i].name, devices[i].unusable)};
+    return Error{ErrorCode::machine,
+                 fmt::format("the device {} cannot be used: {}", devices[i].name, devices[i].unusable)};
 }
 
 /// The only device of those that fit, or the only usable one.
-Result<std::size_t> only(std::span<const DeviceInfo> devices, std::vector<std::size_t> fitting, std::string_view choice) {
+Result<std::size_t> only(std::span<const DeviceInfo> devices, std::vector<std::size_t> fitting,
+                         std::string_view choice) {
     if (fitting.empty()) {
         return Error{ErrorCode::invalid_argument,
                      fmt::format("no Vulkan device is called '{}'; devices: {}", choice, listed(devices))};
@@ -75,7 +77,8 @@ Result<std::size_t> only(std::span<const DeviceInfo> devices, std::vector<std::s
 Result<std::size_t> choose(std::span<const DeviceInfo> devices, std::string_view choice) {
     if (choice.empty()) {
         if (const auto best = best_gpu(devices)) return *best;
-        return Error{ErrorCode::machine, fmt::format("no graphics card that can be used; devices: {}", listed(devices))};
+        return Error{ErrorCode::machine,
+                     fmt::format("no graphics card that can be used; devices: {}", listed(devices))};
     }
     if (const auto index = whole_number(choice)) {
         if (*index < devices.size()) return if_usable(devices, *index);

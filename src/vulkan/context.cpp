@@ -48,7 +48,8 @@ Result<std::shared_ptr<Context>> Context::open_unguarded(const DeviceOptions& op
     context->groups_an_axis_ = *std::min_element(std::begin(limits), std::end(limits));
     if (settings.groups_an_axis) context->groups_an_axis_ = std::min(context->groups_an_axis_, settings.groups_an_axis);
 
-    auto device = LogicalDevice::open(*context->instance_, found->handles[*chosen], capabilities, settings.alter_functions);
+    auto device =
+        LogicalDevice::open(*context->instance_, found->handles[*chosen], capabilities, settings.alter_functions);
     if (!device) return device.error();
     context->device_ = *std::move(device);
     context->memory_ = std::make_unique<Memory>(*context->device_, capabilities,

@@ -11,7 +11,8 @@
 namespace isotet::vulkan {
 
 DrawPipelines::DrawPipelines(Context& context, const RenderPass& pass)
-    : context_(context), pass_(pass),
+    : context_(context),
+      pass_(pass),
       stages_(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT |
               (context.capabilities().mesh_shaders ? VK_SHADER_STAGE_MESH_BIT_EXT : 0)) {}
 
@@ -43,7 +44,8 @@ Result<VkShaderModule> DrawPipelines::module_of(const ShaderCode& code) {
     create.pCode = code.words.data();
     VkShaderModule shader = VK_NULL_HANDLE;
     LogicalDevice& device = context_.device();
-    if (const VkResult made = device.call().vkCreateShaderModule(device.handle(), &create, nullptr, &shader); made != VK_SUCCESS)
+    if (const VkResult made = device.call().vkCreateShaderModule(device.handle(), &create, nullptr, &shader);
+        made != VK_SUCCESS)
         return failure(fmt::format("building the shader '{}'", code.name), made);
     return shader;
 }
@@ -51,7 +53,8 @@ Result<VkShaderModule> DrawPipelines::module_of(const ShaderCode& code) {
 Result<const DrawPipeline*> DrawPipelines::get(const ShaderCode& first, const ShaderCode& fragment, Surfaces surfaces,
                                                std::span<const std::uint32_t> constants, FirstStage stage) {
     for (const Made& made : made_) {
-        if (made.first == first.words.data() && made.fragment == fragment.words.data() && std::ranges::equal(made.constants, constants))
+        if (made.first == first.words.data() && made.fragment == fragment.words.data() &&
+            std::ranges::equal(made.constants, constants))
             return &made.pipeline;
     }
     LogicalDevice& device = context_.device();
@@ -59,8 +62,8 @@ Result<const DrawPipeline*> DrawPipelines::get(const ShaderCode& first, const Sh
     if (Result<void> made = make_layout(); !made) return made.error();
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, 4});
-    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size_bytes(),
-                                              constants.data()};
+    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                              constants.size_bytes(), constants.data()};
     std::array<VkPipelineShaderStageCreateInfo, 2> shaders{};
     for (VkPipelineShaderStageCreateInfo& shader : shaders) {
         shader.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -79,8 +82,10 @@ Result<const DrawPipeline*> DrawPipelines::get(const ShaderCode& first, const Sh
     if (other) device.call().vkDestroyShaderModule(device.handle(), *other, nullptr);
     if (!pipeline) return pipeline.error();
     device.name(VK_OBJECT_TYPE_PIPELINE, *pipeline, fragment.name);
-    made_.push_back(
-        {first.words.data(), fragment.words.data(), {constants.begin(), constants.end()}, {*pipeline, layout_, stages_}});
+    made_.push_back({first.words.data(),
+                     fragment.words.data(),
+                     {constants.begin(), constants.end()},
+                     {*pipeline, layout_, stages_}});
     return &made_.back().pipeline;
 }
 
@@ -110,7 +115,8 @@ Result<VkPipeline> DrawPipelines::build(std::span<const VkPipelineShaderStageCre
     depth.depthCompareOp = VK_COMPARE_OP_LESS;
     VkPipelineColorBlendAttachmentState blend{};
     if (opaque)
-        blend.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+        blend.colorWriteMask =
+            VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     VkPipelineColorBlendStateCreateInfo blending{};
     blending.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
     blending.attachmentCount = 1;
@@ -137,8 +143,8 @@ Result<VkPipeline> DrawPipelines::build(std::span<const VkPipelineShaderStageCre
     create.renderPass = pass_.handle();
     VkPipeline pipeline = VK_NULL_HANDLE;
     LogicalDevice& device = context_.device();
-    const VkResult made =
-        device.call().vkCreateGraphicsPipelines(device.handle(), context_.pipeline_cache().handle(), 1, &create, nullptr, &pipeline);
+    const VkResult made = device.call().vkCreateGraphicsPipelines(device.handle(), context_.pipeline_cache().handle(),
+                                                                  1, &create, nullptr, &pipeline);
     if (made != VK_SUCCESS) return failure("building a pipeline that draws", made);
     return pipeline;
 }

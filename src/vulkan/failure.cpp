@@ -7,7 +7,7 @@ namespace isotet::vulkan {
 
 std::string_view name_of(VkResult result) noexcept {
     switch (result) {
-#define ISOTET_NAME(name) \
+#define ISOTET_NAME(name)                                                                                              \
     case name: return #name;
         ISOTET_NAME(VK_SUCCESS)
         ISOTET_NAME(VK_NOT_READY)

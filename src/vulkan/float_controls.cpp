@@ -15,7 +15,9 @@ constexpr std::uint32_t signed_zero_inf_nan_preserve_capability = 4466, rounding
 constexpr std::uint32_t signed_zero_inf_nan_preserve = 4461, rounding_mode_rte = 4462;
 constexpr std::uint32_t width = 32;
 
-std::uint32_t first_word(std::uint32_t opcode, std::size_t words) { return static_cast<std::uint32_t>(words) << 16 | opcode; }
+std::uint32_t first_word(std::uint32_t opcode, std::size_t words) {
+    return static_cast<std::uint32_t>(words) << 16 | opcode;
+}
 
 std::vector<std::uint32_t> extension(std::string_view name) {
     std::vector<std::uint32_t> words(2 + name.size() / 4, 0); // the text ends with at least one zero

@@ -21,11 +21,12 @@ Meaning meaning_of(Access access) {
     case Access::copy_write:
         return {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT};
     case Access::draw_read:
-        return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
-                    VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+        return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_VERTEX_INPUT_BIT |
+                    VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT, 0};
     case Access::draw_write:
-        return {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_SHADER_WRITE_BIT};
+        return {VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+                VK_ACCESS_SHADER_WRITE_BIT};
     case Access::mesh_read: return {VK_PIPELINE_STAGE_MESH_SHADER_BIT_EXT, VK_ACCESS_SHADER_READ_BIT, 0};
     case Access::arguments: break;
     }
@@ -35,8 +36,8 @@ Meaning meaning_of(Access access) {
 /// Whether `flags` has all of `wanted`.
 bool covers(VkFlags flags, VkFlags wanted) { return (wanted & ~flags) == 0; }
 
-constexpr Access all_kinds[] = {Access::kernel_read, Access::kernel_write, Access::copy_read, Access::copy_write,
-                                Access::arguments,   Access::draw_read,    Access::draw_write,   Access::mesh_read};
+constexpr Access all_kinds[] = {Access::kernel_read, Access::kernel_write, Access::copy_read,  Access::copy_write,
+                                Access::arguments,   Access::draw_read,    Access::draw_write, Access::mesh_read};
 
 std::uint32_t bit_of(Access access) { return 1u << static_cast<unsigned>(access); }
 
@@ -77,7 +78,8 @@ Barrier Hazards::before(std::span<const BufferUse> uses) {
     if (barrier.from) {
         const std::uint32_t kinds = seen_by(barrier);
         for (auto& [buffer, history] : buffers_) {
-            if (history.write_stage && covers(barrier.from, history.write_stage) && covers(barrier.written, history.write_access))
+            if (history.write_stage && covers(barrier.from, history.write_stage) &&
+                covers(barrier.written, history.write_access))
                 history.visible |= kinds;
             if (covers(barrier.from, history.read_stages)) history.after_reads |= barrier.to;
         }

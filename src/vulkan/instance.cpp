@@ -55,7 +55,8 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
     const LoaderFunctions& load = *found;
 
     std::uint32_t version = VK_API_VERSION_1_0;
-    if (const VkResult asked = load.vkEnumerateInstanceVersion(&version); asked != VK_SUCCESS) return no_instance(asked);
+    if (const VkResult asked = load.vkEnumerateInstanceVersion(&version); asked != VK_SUCCESS)
+        return no_instance(asked);
     if (version < VK_API_VERSION_1_2) {
         return Error{ErrorCode::machine, fmt::format("the Vulkan loader is of version {}.{}, but 1.2 is needed",
                                                      VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
@@ -83,8 +84,9 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
     messages.pfnUserCallback = &hear;
     messages.pUserData = watch.complaints.get();
 
-    const std::array<VkValidationFeatureEnableEXT, 2> assisted = {VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
-                                                                  VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
+    const std::array<VkValidationFeatureEnableEXT, 2> assisted = {
+        VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_EXT,
+        VK_VALIDATION_FEATURE_ENABLE_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT};
     const VkValidationFeatureEnableEXT synchronization = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     VkValidationFeaturesEXT features{};
     features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
@@ -109,13 +111,14 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
     }
 
     InstanceFunctions& call = instance->call_;
-#define ISOTET_LOAD(name) call.name = reinterpret_cast<PFN_##name>(load.vkGetInstanceProcAddr(instance->handle_, #name));
+#define ISOTET_LOAD(name)                                                                                              \
+    call.name = reinterpret_cast<PFN_##name>(load.vkGetInstanceProcAddr(instance->handle_, #name));
     ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_LOAD)
     if (naming) {
         ISOTET_VULKAN_DEBUG_FUNCTIONS(ISOTET_LOAD)
     }
 #undef ISOTET_LOAD
-#define ISOTET_CHECK(name) \
+#define ISOTET_CHECK(name)                                                                                             \
     if (!call.name) return Error{ErrorCode::machine, "the Vulkan loader lacks " #name};
     ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_CHECK)
 #undef ISOTET_CHECK

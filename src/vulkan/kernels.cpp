@@ -11,7 +11,8 @@
 namespace isotet::vulkan {
 
 Kernels::Kernels(LogicalDevice& device, const Capabilities& capabilities, PipelineCache& cache)
-    : device_(device), cache_(cache),
+    : device_(device),
+      cache_(cache),
       controls_{capabilities.properties12.shaderRoundingModeRTEFloat32 == VK_TRUE,
                 capabilities.properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE} {}
 
@@ -56,7 +57,8 @@ Result<VkPipeline> Kernels::build(const ShaderCode& code, std::span<const std::u
     module_info.codeSize = words.size() * sizeof(std::uint32_t);
     module_info.pCode = words.data();
     VkShaderModule shader = VK_NULL_HANDLE;
-    if (const VkResult made = call.vkCreateShaderModule(device_.handle(), &module_info, nullptr, &shader); made != VK_SUCCESS)
+    if (const VkResult made = call.vkCreateShaderModule(device_.handle(), &module_info, nullptr, &shader);
+        made != VK_SUCCESS)
         return failure(doing, made);
 
     std::vector<VkSpecializationMapEntry> entries;

@@ -12,19 +12,21 @@ Result<LoaderFunctions> open_loader() {
     void* library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         const char* why = dlerror();
-        return Error{ErrorCode::machine, fmt::format("there is no Vulkan on this machine: {}", why ? why : "libvulkan.so.1")};
+        return Error{ErrorCode::machine,
+                     fmt::format("there is no Vulkan on this machine: {}", why ? why : "libvulkan.so.1")};
     }
     LoaderFunctions call;
     call.vkGetInstanceProcAddr = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library, "vkGetInstanceProcAddr"));
     bool complete = call.vkGetInstanceProcAddr != nullptr;
-#define ISOTET_LOAD(name)                                                                                       \
-    if (complete) call.name = reinterpret_cast<PFN_##name>(call.vkGetInstanceProcAddr(VK_NULL_HANDLE, #name)); \
+#define ISOTET_LOAD(name)                                                                                              \
+    if (complete) call.name = reinterpret_cast<PFN_##name>(call.vkGetInstanceProcAddr(VK_NULL_HANDLE, #name));         \
     complete = complete && call.name;
     ISOTET_VULKAN_LOADER_FUNCTIONS(ISOTET_LOAD)
 #undef ISOTET_LOAD
     // vkEnumerateInstanceVersion came with Vulkan 1.1.
     if (!complete)
-        return Error{ErrorCode::machine, "the Vulkan loader libvulkan.so.1 is too old: it lacks the functions of Vulkan 1.1"};
+        return Error{ErrorCode::machine,
+                     "the Vulkan loader libvulkan.so.1 is too old: it lacks the functions of Vulkan 1.1"};
     return call;
 }
 

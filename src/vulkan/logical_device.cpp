@@ -73,7 +73,7 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     }
 #undef ISOTET_LOAD
     const char* missing = nullptr;
-#define ISOTET_CHECK(name) \
+#define ISOTET_CHECK(name)                                                                                             \
     if (!call.name) missing = #name;
     ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_CHECK)
     if (capabilities.mesh_shaders) {
@@ -125,7 +125,8 @@ Result<void> LogicalDevice::submit(const Queue& queue, VkCommandBuffer commands,
     submit.pCommandBuffers = &commands;
     const VkResult submitted = call_.vkQueueSubmit(queue.handle, 1, &submit, done);
     if (submitted == VK_SUCCESS) return {};
-    if (submitted == VK_ERROR_DEVICE_LOST) return lose(fmt::format("the device {} was lost before {}", device_name_, what));
+    if (submitted == VK_ERROR_DEVICE_LOST)
+        return lose(fmt::format("the device {} was lost before {}", device_name_, what));
     return failure(what, submitted);
 }
 

@@ -20,7 +20,9 @@ constexpr std::uint64_t smallest_block = std::uint64_t{1} << 20;
 /// What buffers begin at a multiple of, and their bytes are counted in.
 constexpr std::uint64_t grain = 256;
 
-std::uint64_t round_up(std::uint64_t bytes, std::uint64_t multiple) { return (bytes + multiple - 1) / multiple * multiple; }
+std::uint64_t round_up(std::uint64_t bytes, std::uint64_t multiple) {
+    return (bytes + multiple - 1) / multiple * multiple;
+}
 
 } // namespace
 
@@ -47,7 +49,8 @@ Memory::Memory(LogicalDevice& device, const Capabilities& capabilities, const Op
     const auto set_up = [&](Where where, std::uint32_t type) {
         Pool& pool = pool_of(where);
         const VkMemoryPropertyFlags flags = types.memoryTypes[type].propertyFlags;
-        constexpr VkMemoryPropertyFlags mappable = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        constexpr VkMemoryPropertyFlags mappable =
+            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
         pool.type = type;
         pool.mapped = (flags & mappable) == mappable;
         pool.cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
@@ -71,7 +74,9 @@ Memory::~Memory() {
         for (Block& block : pool.blocks) device_.call().vkFreeMemory(device_.handle(), block.memory, nullptr);
 }
 
-std::uint64_t Memory::cost(std::uint64_t bytes) noexcept { return round_up(std::max<std::uint64_t>(bytes, 1) + slack, grain); }
+std::uint64_t Memory::cost(std::uint64_t bytes) noexcept {
+    return round_up(std::max<std::uint64_t>(bytes, 1) + slack, grain);
+}
 
 std::uint64_t Memory::used() const {
     const std::lock_guard lock(mutex_);
@@ -96,11 +101,12 @@ std::uint64_t Memory::free_locked() const {
 
 Result<Buffer> Memory::take(std::uint64_t bytes, Where where, std::string_view name) {
     const auto no_room = [&](std::string_view why) {
-        return Error{ErrorCode::out_of_memory, fmt::format("the device buffer '{}' needs {}, but {}", name,
-                                                           core::format_bytes(bytes), why)};
+        return Error{ErrorCode::out_of_memory,
+                     fmt::format("the device buffer '{}' needs {}, but {}", name, core::format_bytes(bytes), why)};
     };
     if (Result<void> lives = device_.alive(); !lives) return lives.error();
-    if (bytes > largest_) return no_room(fmt::format("the largest that the device allows is {}", core::format_bytes(largest_)));
+    if (bytes > largest_)
+        return no_room(fmt::format("the largest that the device allows is {}", core::format_bytes(largest_)));
 
     const std::lock_guard lock(mutex_);
     if (where == Where::device) {
@@ -140,8 +146,9 @@ Result<void> Memory::make_buffer(Buffer& buffer, std::uint64_t bytes, std::strin
     create.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     create.size = bytes;
     create.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                   VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                   VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
+                   VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
     if (device_.has_transfer_queue()) {
         create.sharingMode = VK_SHARING_MODE_CONCURRENT;
         create.queueFamilyIndexCount = 2;
@@ -150,7 +157,8 @@ Result<void> Memory::make_buffer(Buffer& buffer, std::uint64_t bytes, std::strin
     if (const VkResult made = device_.call().vkCreateBuffer(device_.handle(), &create, nullptr, &buffer.handle_);
         made != VK_SUCCESS) {
         buffer.handle_ = VK_NULL_HANDLE;
-        return failure(fmt::format("making the device buffer '{}' of {}", name, core::format_bytes(buffer.size_)), made);
+        return failure(fmt::format("making the device buffer '{}' of {}", name, core::format_bytes(buffer.size_)),
+                       made);
     }
     device_.name(VK_OBJECT_TYPE_BUFFER, buffer.handle_, name);
     return {};
@@ -184,7 +192,8 @@ Result<void> Memory::place(Buffer& buffer, Pool& pool) {
     buffer.block_ = block;
     buffer.begin_ = *begin;
     buffer.taken_ = bytes;
-    if (const VkResult bound = device_.call().vkBindBufferMemory(device_.handle(), buffer.handle_, block->memory, *begin);
+    if (const VkResult bound =
+            device_.call().vkBindBufferMemory(device_.handle(), buffer.handle_, block->memory, *begin);
         bound != VK_SUCCESS) {
         give_back_range(buffer);
         return failure("binding it to memory", bound);
@@ -205,7 +214,8 @@ Result<Block*> Memory::new_block(Pool& pool, std::uint64_t bytes) {
     allocate.pNext = &flags;
     allocate.allocationSize = bytes;
     allocate.memoryTypeIndex = pool.type;
-    if (const VkResult made = call.vkAllocateMemory(device_.handle(), &allocate, nullptr, &block.memory); made != VK_SUCCESS)
+    if (const VkResult made = call.vkAllocateMemory(device_.handle(), &allocate, nullptr, &block.memory);
+        made != VK_SUCCESS)
         return failure(fmt::format("allocating {} on the device", core::format_bytes(bytes)), made);
     if (pool.mapped) {
         void* mapped = nullptr;

@@ -102,7 +102,8 @@ void tidy(const fs::path& folder) {
         const fs::file_time_type written = entry->last_write_time(gone);
         if (gone) continue;
         if (name.ends_with(suffix)) files.emplace_back(written, entry->path());
-        else if (name.find(fmt::format("{}.", suffix)) != name.npos && written < hour_ago) fs::remove(entry->path(), gone);
+        else if (name.find(fmt::format("{}.", suffix)) != name.npos && written < hour_ago)
+            fs::remove(entry->path(), gone);
     }
     std::ranges::sort(files, std::greater());
     for (std::size_t i = PipelineCache::most_files; i < files.size(); ++i) fs::remove(files[i].second, failed);
@@ -140,7 +141,8 @@ PipelineCache::~PipelineCache() {
 void PipelineCache::save() const {
     const DeviceFunctions& call = device_.call();
     std::size_t size = 0;
-    if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, nullptr) != VK_SUCCESS || size > most_bytes) return;
+    if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, nullptr) != VK_SUCCESS || size > most_bytes)
+        return;
     std::vector<std::byte> bytes(size);
     if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, bytes.data()) != VK_SUCCESS) return;
     bytes.resize(size);

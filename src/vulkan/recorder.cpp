@@ -53,8 +53,8 @@ void Recorder::fill(const Buffer& buffer, std::uint64_t offset, std::uint64_t by
 void Recorder::copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
                     std::uint64_t bytes) {
     if (!inside(from, from_offset, bytes) || !inside(to, to_offset, bytes))
-        return complain(fmt::format("copy of {} bytes from {} in a buffer of {} to {} in a buffer of {}", bytes, from_offset,
-                                    from.size(), to_offset, to.size()));
+        return complain(fmt::format("copy of {} bytes from {} in a buffer of {} to {} in a buffer of {}", bytes,
+                                    from_offset, from.size(), to_offset, to.size()));
     if (bytes == 0) return;
     add({"copy",
          {{number_of(from), Access::copy_read}, {number_of(to), Access::copy_write}},
@@ -81,15 +81,16 @@ void Recorder::add_dispatch(const Kernel& kernel, std::span<const std::byte> pus
     if (groups == 0) return;
     const auto folded = fold_groups(groups, context_.groups_an_axis());
     if (!folded)
-        return complain(fmt::format("{} workgroups of '{}', but the device takes {} in each of three axes", groups, kernel.name,
-                                    context_.groups_an_axis()));
+        return complain(fmt::format("{} workgroups of '{}', but the device takes {} in each of three axes", groups,
+                                    kernel.name, context_.groups_an_axis()));
     add({kernel.name, uses_of(uses), Dispatch{&kernel, {push.begin(), push.end()}, *folded, VK_NULL_HANDLE, 0}});
 }
 
 void Recorder::add_dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push, const Buffer& arguments,
                                      std::uint64_t offset, std::span<const Use> uses) {
     if (!inside(arguments, offset, sizeof(VkDispatchIndirectCommand)) || offset % 4)
-        return complain(fmt::format("arguments of '{}' at byte {} of a buffer of {}", kernel.name, offset, arguments.size()));
+        return complain(
+            fmt::format("arguments of '{}' at byte {} of a buffer of {}", kernel.name, offset, arguments.size()));
     std::vector<BufferUse> all = uses_of(uses);
     all.push_back({number_of(arguments), Access::arguments});
     add({kernel.name, std::move(all), Dispatch{&kernel, {push.begin(), push.end()}, {}, arguments.handle(), offset}});

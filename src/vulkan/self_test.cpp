@@ -38,7 +38,8 @@ public:
     /// Any significand, either sign, a magnitude from 2^lowest to 2^highest.
     float value(int lowest, int highest) {
         const float magnitude = static_cast<float>(below(1u << 23) | 1u << 23) * 0x1p-23f;
-        const float scaled = std::ldexp(magnitude, lowest + static_cast<int>(below(static_cast<std::uint32_t>(highest - lowest))));
+        const float scaled =
+            std::ldexp(magnitude, lowest + static_cast<int>(below(static_cast<std::uint32_t>(highest - lowest))));
         return bits() % 2 ? scaled : -scaled;
     }
 
@@ -111,7 +112,8 @@ void set_triangle(SelfTestCase& out, std::size_t kind, Random& random) {
     const int highest = kind == 0 ? 90 : 4;
     for (float& x : out.corners) x = random.value(kind == 0 ? -70 : -4, highest);
     if (kind == 1) // no area
-        for (std::size_t axis = 0; axis < 3; ++axis) out.corners[6 + axis] = 2 * out.corners[3 + axis] - out.corners[axis];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            out.corners[6 + axis] = 2 * out.corners[3 + axis] - out.corners[axis];
     if (kind == 2) // corners that nearly coincide
         for (std::size_t i = 3; i < 9; ++i)
             out.corners[i] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(out.corners[i % 3]) + random.below(4));
@@ -130,8 +132,10 @@ std::string differences(std::span<const SelfTestCase> cases, std::span<const Sel
         face_normals += !std::ranges::equal(answers[i].face_normal, right.face_normal);
     }
     std::string text;
-    for (const auto& [count, what] : {std::pair{weights, "weights"}, {interpolated, "interpolated values"},
-                                      {vertex_normals, "vertex normals"}, {face_normals, "face normals"}})
+    for (const auto& [count, what] : {std::pair{weights, "weights"},
+                                      {interpolated, "interpolated values"},
+                                      {vertex_normals, "vertex normals"},
+                                      {face_normals, "face normals"}})
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", what, count);
     return text;
 }
@@ -169,9 +173,11 @@ SelfTestAnswer self_test_answer(const SelfTestCase& given) {
 Result<std::string> self_test(Context& context) {
     const std::vector<SelfTestCase> cases = self_test_cases();
     std::vector<SelfTestAnswer> answers(cases.size());
-    Result<Buffer> given = context.memory().take(std::span(cases).size_bytes(), Where::upload, "cases of the self-test");
+    Result<Buffer> given =
+        context.memory().take(std::span(cases).size_bytes(), Where::upload, "cases of the self-test");
     if (!given) return given.error();
-    Result<Buffer> taken = context.memory().take(std::span(answers).size_bytes(), Where::download, "answers of the self-test");
+    Result<Buffer> taken =
+        context.memory().take(std::span(answers).size_bytes(), Where::download, "answers of the self-test");
     if (!taken) return taken.error();
     const Result<const Kernel*> kernel = context.kernels().get(shaders::self_test);
     if (!kernel) return kernel.error();
@@ -190,9 +196,10 @@ Result<std::string> self_test(Context& context) {
         return down.error();
     const std::string wrong = differences(cases, answers);
     if (wrong.empty()) return std::string();
-    return fmt::format("the arithmetic of the device {} is not exact (of {} cases, wrong: {}): surfaces may differ from the CPU's "
-                       "in their last bits",
-                       context.info().name, case_count, wrong);
+    return fmt::format(
+        "the arithmetic of the device {} is not exact (of {} cases, wrong: {}): surfaces may differ from the CPU's "
+        "in their last bits",
+        context.info().name, case_count, wrong);
 }
 
 } // namespace isotet::vulkan

@@ -15,7 +15,8 @@ namespace {
 
 Result<void> require_inside(const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes, const char* what) {
     if (offset <= buffer.size() && bytes <= buffer.size() - offset) return {};
-    return Error{ErrorCode::internal, fmt::format("{} of bytes {} + {} of a buffer of {}", what, offset, bytes, buffer.size())};
+    return Error{ErrorCode::internal,
+                 fmt::format("{} of bytes {} + {} of a buffer of {}", what, offset, bytes, buffer.size())};
 }
 
 } // namespace

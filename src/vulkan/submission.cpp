@@ -63,7 +63,8 @@ Result<void> Submission::make(LogicalDevice& device, const Queue& queue, std::st
 Result<VkCommandBuffer> Submission::begin(LogicalDevice& device, const Queue& queue, std::string_view name) {
     if (Result<void> lives = device.alive(); !lives) return lives.error();
     if (!done_) {
-        if (pool_) device.call().vkDestroyCommandPool(device.handle(), pool_, nullptr); // of a making that failed half-way
+        if (pool_)
+            device.call().vkDestroyCommandPool(device.handle(), pool_, nullptr); // of a making that failed half-way
         pool_ = VK_NULL_HANDLE;
         if (Result<void> made = make(device, queue, name); !made) return made.error();
     }
@@ -75,7 +76,8 @@ Result<VkCommandBuffer> Submission::begin(LogicalDevice& device, const Queue& qu
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     if (const VkResult begun = call.vkBeginCommandBuffer(commands_, &begin); begun != VK_SUCCESS)
         return failure("beginning a command buffer", begun);
-    barrier(call, commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+    barrier(call, commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+            VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
     return commands_;
 }
 

@@ -18,8 +18,10 @@ namespace {
 constexpr VkFormat color_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;
 
-constexpr VkPipelineStageFlags depth_stages = VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-constexpr VkAccessFlags attachment_writes = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+constexpr VkPipelineStageFlags depth_stages =
+    VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
+constexpr VkAccessFlags attachment_writes =
+    VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 
 VkAttachmentDescription attachment(VkFormat format, Images images, VkImageLayout final) {
     VkAttachmentDescription description{};
@@ -80,7 +82,8 @@ Result<void> RenderPass::make(Images images) {
     create.pDependencies = dependencies.data();
 
     VkRenderPass& handle = handles_[static_cast<std::size_t>(images)];
-    if (const VkResult made = device_.call().vkCreateRenderPass(device_.handle(), &create, nullptr, &handle); made != VK_SUCCESS) {
+    if (const VkResult made = device_.call().vkCreateRenderPass(device_.handle(), &create, nullptr, &handle);
+        made != VK_SUCCESS) {
         handle = VK_NULL_HANDLE;
         return failure("making a render pass", made);
     }
@@ -92,20 +95,24 @@ RenderPass::~RenderPass() {
         if (handle && !device_.hung()) device_.call().vkDestroyRenderPass(device_.handle(), handle, nullptr);
 }
 
-Result<std::unique_ptr<Target>> Target::make(Context& context, const RenderPass& pass, std::uint32_t width, std::uint32_t height) {
+Result<std::unique_ptr<Target>> Target::make(Context& context, const RenderPass& pass, std::uint32_t width,
+                                             std::uint32_t height) {
     const VkPhysicalDeviceLimits& limits = context.capabilities().properties.limits;
     const std::uint32_t widest = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
     const std::uint32_t highest = std::min(limits.maxImageDimension2D, limits.maxFramebufferHeight);
     if (width == 0 || height == 0 || width > widest || height > highest) {
-        return Error{ErrorCode::invalid_argument, fmt::format("an image of {} x {}, but the device has images of 1 x 1 to {} x {}", width,
-                                                              height, widest, highest)};
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("an image of {} x {}, but the device has images of 1 x 1 to {} x {}", width, height,
+                                 widest, highest)};
     }
     if (Result<void> lives = context.device().alive(); !lives) return lives.error();
     std::unique_ptr<Target> target(new Target(context, pass, width, height));
     Result<void> made = target->make_image(target->color_, color_format,
-                                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+                                           VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                           VK_IMAGE_ASPECT_COLOR_BIT);
     if (made)
-        made = target->make_image(target->depth_, depth_format, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+        made = target->make_image(target->depth_, depth_format, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                                  VK_IMAGE_ASPECT_DEPTH_BIT);
     if (made) made = target->make_framebuffer();
     if (!made) return made.error();
     return target;
@@ -125,7 +132,8 @@ Result<void> Target::make_image(Image& image, VkFormat format, VkImageUsageFlags
     create.samples = VK_SAMPLE_COUNT_1_BIT;
     create.tiling = VK_IMAGE_TILING_OPTIMAL;
     create.usage = usage;
-    if (const VkResult made = call.vkCreateImage(device.handle(), &create, nullptr, &image.handle); made != VK_SUCCESS) {
+    if (const VkResult made = call.vkCreateImage(device.handle(), &create, nullptr, &image.handle);
+        made != VK_SUCCESS) {
         image.handle = VK_NULL_HANDLE;
         return failure(doing, made);
     }
@@ -136,12 +144,15 @@ Result<void> Target::make_image(Image& image, VkFormat format, VkImageUsageFlags
     allocate.allocationSize = needs.size;
     allocate.memoryTypeIndex = device_memory_type(context_.capabilities());
     if (!(needs.memoryTypeBits >> allocate.memoryTypeIndex & 1))
-        return Error{ErrorCode::machine, fmt::format("the driver does not allow images in memory type {}", allocate.memoryTypeIndex)};
-    if (const VkResult made = call.vkAllocateMemory(device.handle(), &allocate, nullptr, &image.memory); made != VK_SUCCESS) {
+        return Error{ErrorCode::machine,
+                     fmt::format("the driver does not allow images in memory type {}", allocate.memoryTypeIndex)};
+    if (const VkResult made = call.vkAllocateMemory(device.handle(), &allocate, nullptr, &image.memory);
+        made != VK_SUCCESS) {
         image.memory = VK_NULL_HANDLE;
         return failure(fmt::format("allocating {} on the device for an image", core::format_bytes(needs.size)), made);
     }
-    if (const VkResult bound = call.vkBindImageMemory(device.handle(), image.handle, image.memory, 0); bound != VK_SUCCESS)
+    if (const VkResult bound = call.vkBindImageMemory(device.handle(), image.handle, image.memory, 0);
+        bound != VK_SUCCESS)
         return failure(doing, bound);
     VkImageViewCreateInfo view{};
     view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
@@ -149,7 +160,8 @@ Result<void> Target::make_image(Image& image, VkFormat format, VkImageUsageFlags
     view.viewType = VK_IMAGE_VIEW_TYPE_2D;
     view.format = format;
     view.subresourceRange = {aspect, 0, 1, 0, 1};
-    if (const VkResult made = call.vkCreateImageView(device.handle(), &view, nullptr, &image.view); made != VK_SUCCESS) {
+    if (const VkResult made = call.vkCreateImageView(device.handle(), &view, nullptr, &image.view);
+        made != VK_SUCCESS) {
         image.view = VK_NULL_HANDLE;
         return failure(doing, made);
     }
@@ -167,7 +179,8 @@ Result<void> Target::make_framebuffer() {
     create.width = width_;
     create.height = height_;
     create.layers = 1;
-    if (const VkResult made = device.call().vkCreateFramebuffer(device.handle(), &create, nullptr, &framebuffer_); made != VK_SUCCESS) {
+    if (const VkResult made = device.call().vkCreateFramebuffer(device.handle(), &create, nullptr, &framebuffer_);
+        made != VK_SUCCESS) {
         framebuffer_ = VK_NULL_HANDLE;
         return failure("making a framebuffer", made);
     }
@@ -186,34 +199,38 @@ Target::~Target() {
     }
 }
 
-void Target::draw(Recorder& recorder, Images images, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses,
-                  Recorder::Work draws) {
-    recorder.add_work("draw", uses, [this, images, width, height, draws = std::move(draws)](const DeviceFunctions& call, VkCommandBuffer commands) {
-        std::array<VkClearValue, 2> clear{};
-        clear[1].depthStencil.depth = 1;
-        VkRenderPassBeginInfo begin{};
-        begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
-        begin.renderPass = pass_.handle(images);
-        begin.framebuffer = framebuffer_;
-        begin.renderArea = {{0, 0}, {width, height}};
-        begin.clearValueCount = 2;
-        begin.pClearValues = clear.data();
-        call.vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-        const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
-        call.vkCmdSetViewport(commands, 0, 1, &viewport);
-        call.vkCmdSetScissor(commands, 0, 1, &begin.renderArea);
-        draws(call, commands);
-        call.vkCmdEndRenderPass(commands);
-    });
+void Target::draw(Recorder& recorder, Images images, std::uint32_t width, std::uint32_t height,
+                  const std::vector<Use>& uses, Recorder::Work draws) {
+    recorder.add_work(
+        "draw", uses,
+        [this, images, width, height, draws = std::move(draws)](const DeviceFunctions& call, VkCommandBuffer commands) {
+            std::array<VkClearValue, 2> clear{};
+            clear[1].depthStencil.depth = 1;
+            VkRenderPassBeginInfo begin{};
+            begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+            begin.renderPass = pass_.handle(images);
+            begin.framebuffer = framebuffer_;
+            begin.renderArea = {{0, 0}, {width, height}};
+            begin.clearValueCount = 2;
+            begin.pClearValues = clear.data();
+            call.vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+            const VkViewport viewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1};
+            call.vkCmdSetViewport(commands, 0, 1, &viewport);
+            call.vkCmdSetScissor(commands, 0, 1, &begin.renderArea);
+            draws(call, commands);
+            call.vkCmdEndRenderPass(commands);
+        });
 }
 
 void Target::copy_color(Recorder& recorder, std::uint32_t width, std::uint32_t height, const Buffer& to) const {
-    recorder.add_work("copy", {copies_into(to)}, [this, width, height, to = to.handle()](const DeviceFunctions& call, VkCommandBuffer commands) {
-        VkBufferImageCopy region{};
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        region.imageExtent = {width, height, 1};
-        call.vkCmdCopyImageToBuffer(commands, color_.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, 1, &region);
-    });
+    recorder.add_work("copy", {copies_into(to)},
+                      [this, width, height, to = to.handle()](const DeviceFunctions& call, VkCommandBuffer commands) {
+                          VkBufferImageCopy region{};
+                          region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                          region.imageExtent = {width, height, 1};
+                          call.vkCmdCopyImageToBuffer(commands, color_.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
+                                                      1, &region);
+                      });
 }
 
 } // namespace isotet::vulkan

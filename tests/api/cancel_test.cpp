@@ -43,7 +43,8 @@ public:
                  options.engine = Engine::reference;
                  return code_of(extract(packed_, 0.1, options, p));
              }},
-            {"extract_once", [this](const Progress& p) { return code_of(extract_once(grid_, point_field(grid_), isovalues_, {}, p)); }},
+            {"extract_once",
+             [this](const Progress& p) { return code_of(extract_once(grid_, point_field(grid_), isovalues_, {}, p)); }},
             {"extract_once by reference",
              [this](const Progress& p) {
                  OnceOptions options;

@@ -46,7 +46,8 @@ TEST(FieldSample, ForetellsTheTrianglesOfALargeSurface) {
 
 TEST(FieldSample, PassesOverWhatHasNoDataAndWhatIsBroken) {
     FieldOnGrid on = made("kuhn", 2, "sphere");
-    on.field.values = Array::own(std::vector<double>(on.grid.points.tuples(), std::numeric_limits<double>::quiet_NaN()));
+    on.field.values =
+        Array::own(std::vector<double>(on.grid.points.tuples(), std::numeric_limits<double>::quiet_NaN()));
     const FieldSample nothing = FieldSample::take(on.grid, on.field).value();
     EXPECT_GT(nothing.lower(), nothing.upper());
     EXPECT_EQ(nothing.triangles(0), 0);
@@ -116,8 +117,8 @@ TEST(Weigh, PutsWhatDoesNotFitLast) {
 
 TEST(Speeds, AreMeasured) {
     const Speeds speeds = api::measure_speeds(16, 1, {}).value();
-    for (const double positive : {speeds.pack_call, speeds.pack_tet, speeds.brute_call, speeds.brute_tet, speeds.brute_triangle, speeds.clusters_call,
-                                  speeds.clusters_triangle})
+    for (const double positive : {speeds.pack_call, speeds.pack_tet, speeds.brute_call, speeds.brute_tet,
+                                  speeds.brute_triangle, speeds.clusters_call, speeds.clusters_triangle})
         EXPECT_GT(positive, 0);
     EXPECT_GE(speeds.clusters_tet, 0);
     const std::atomic<bool> cancel = true;

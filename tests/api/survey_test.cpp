@@ -37,9 +37,32 @@ TEST(Survey, CountsTheBoundaryOfACube) {
 TEST(Survey, CountsOddTets) {
     // An upright tet, the same listed again in another order, a mirrored one beside it, a flat one, and a collapsed one.
     Grid grid;
-    grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1, 0.5, 0.5, 0, 9, 9, 9, 0, 0, 0}, 3);
-    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{
-        0, 1, 2, 3, 3, 2, 1, 0, /* on the far side of 1 2 3 */ 1, 2, 3, 4, /* mirrored */ 7, 2, 1, 3, /* flat */ 0, 1, 2, 5, /* collapsed */ 0, 0, 1, 2});
+    grid.points =
+        Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1, 0.5, 0.5, 0, 9, 9, 9, 0, 0, 0}, 3);
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0,
+                                                                   1,
+                                                                   2,
+                                                                   3,
+                                                                   3,
+                                                                   2,
+                                                                   1,
+                                                                   0,
+                                                                   /* on the far side of 1 2 3 */ 1,
+                                                                   2,
+                                                                   3,
+                                                                   4,
+                                                                   /* mirrored */ 7,
+                                                                   2,
+                                                                   1,
+                                                                   3,
+                                                                   /* flat */ 0,
+                                                                   1,
+                                                                   2,
+                                                                   5,
+                                                                   /* collapsed */ 0,
+                                                                   0,
+                                                                   1,
+                                                                   2});
     const GridReport report = survey(grid).value();
     EXPECT_EQ(report.tets, 5u);
     EXPECT_EQ(report.collapsed_tets, 1u);
@@ -70,7 +93,8 @@ TEST(Survey, BoundsAreThoseOfTheTetsWhereverOtherCellsStand) {
 
 TEST(Survey, AgreesWithPackingOnNastyGrids) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        const NastyGrid g = nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
         const GridReport report = survey(g.grid).value();
         const PackedGrid packed = pack(g.grid, g.field).value();
         EXPECT_EQ(report.tets - report.repeated_tets, packed.report().tets);
@@ -92,23 +116,28 @@ std::uint64_t boundary_faces_by_map(const Grid& grid, const core::CellReader& ce
     for (std::size_t cell = 0; cell < cells.count(); ++cell) {
         const core::CellTets tets = cells.tets(cell);
         for (unsigned piece = 0; piece < unsigned(tets.count); ++piece) {
-            if (!seen.insert(std::set<std::uint64_t>(tets.tets[piece].begin(), tets.tets[piece].end())).second) continue;
+            if (!seen.insert(std::set<std::uint64_t>(tets.tets[piece].begin(), tets.tets[piece].end())).second)
+                continue;
             const core::Tet t = orienter.stored(cells.type(cell), tets, piece, counts);
-            for (const auto& f : {std::array{t[1], t[2], t[3]}, std::array{t[0], t[3], t[2]}, std::array{t[0], t[1], t[3]}, std::array{t[0], t[2], t[1]}}) {
+            for (const auto& f : {std::array{t[1], t[2], t[3]}, std::array{t[0], t[3], t[2]},
+                                  std::array{t[0], t[1], t[3]}, std::array{t[0], t[2], t[1]}}) {
                 auto sorted = f;
                 std::sort(sorted.begin(), sorted.end());
                 // Even permutations of the sorted corners are its rotations.
-                const bool even = f == sorted || f == std::array{sorted[1], sorted[2], sorted[0]} || f == std::array{sorted[2], sorted[0], sorted[1]};
+                const bool even = f == sorted || f == std::array{sorted[1], sorted[2], sorted[0]} ||
+                                  f == std::array{sorted[2], sorted[0], sorted[1]};
                 balance[sorted] += even ? 1 : -1;
             }
         }
     }
-    return std::uint64_t(std::count_if(balance.begin(), balance.end(), [](const auto& face) { return face.second != 0; }));
+    return std::uint64_t(
+        std::count_if(balance.begin(), balance.end(), [](const auto& face) { return face.second != 0; }));
 }
 
 TEST(Survey, CountsTheSameInOneHandOrMany) {
     for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-        const NastyGrid g = nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
         const core::CellReader cells = core::CellReader::open(g.grid).value();
         const core::TetSurvey tets = core::survey_tets(g.grid, cells);
         const std::uint64_t expected = boundary_faces_by_map(g.grid, cells, tets.mostly_negative);

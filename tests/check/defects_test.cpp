@@ -119,7 +119,7 @@ TEST(CheckDefects, FindsAnEdgeWithFourTriangles) {
 
 TEST(CheckDefects, FindsVerticesAtOnePlace) {
     Soup soup = octahedron();
-    soup.add(octahedron().moved(2, 0, 0)); // the tip at (1, 0, 0) is there twice
+    soup.add(octahedron().moved(2, 0, 0));  // the tip at (1, 0, 0) is there twice
     soup.vertices.push_back({-0.0f, 0, 1}); // and (0, 0, 1), with a minus
     const SurfaceReport report = check_of(soup);
     EXPECT_EQ(report.coincident_vertices, 2u);

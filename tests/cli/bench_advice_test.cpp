@@ -46,7 +46,8 @@ TEST(BenchAdvice, LeavesOutWhatIsMissing) {
 
 TEST(BenchAdvice, GainsAreMeansOverTheGridsThatHaveBoth) {
     const BenchPair all{BenchMethod::textures, Filter::none}, tree{BenchMethod::textures, Filter::interval_tree};
-    const std::vector<BenchRow> rows{row(0, 6, all, "a"), row(0, 2, tree, "a"), row(0, 5, all, "b"), row(0, 1, tree, "b"), row(0, 1, tree, "c")};
+    const std::vector<BenchRow> rows{row(0, 6, all, "a"), row(0, 2, tree, "a"), row(0, 5, all, "b"),
+                                     row(0, 1, tree, "b"), row(0, 1, tree, "c")};
     EXPECT_DOUBLE_EQ(gain_of_interval_tree(rows, BenchMethod::textures).value(), 4);
     EXPECT_FALSE(gain_of_interval_tree(rows, BenchMethod::registers));
 }
@@ -63,7 +64,8 @@ std::vector<double> label_heights(const std::string& svg) {
 
 TEST(Chart, NamesOfManyLinesStayInThePictureAndApart) {
     Chart chart;
-    for (int i = 0; i < 21; ++i) chart.lines.push_back({"line " + std::to_string(i), {{10, 100}, {1000, i % 2 ? 1.0 : 1.01}}, false});
+    for (int i = 0; i < 21; ++i)
+        chart.lines.push_back({"line " + std::to_string(i), {{10, 100}, {1000, i % 2 ? 1.0 : 1.01}}, false});
     const std::vector<double> heights = label_heights(chart.svg());
     ASSERT_EQ(heights.size(), 21u);
     std::vector<double> sorted = heights;

@@ -46,7 +46,8 @@ TEST_F(Program, BenchMeasuresWhatNeedsNoDeviceAndSaysWhichToTake) {
 TEST_F(Program, BenchRecommendsWhatItMeasured) {
     const json report = json_of(bench({"make:kuhn:16:gyroid"}));
     const auto seconds = [&](std::size_t row, double surfaces) {
-        return report["rows"][row]["prepare_seconds"].get<double>() + surfaces * report["rows"][row]["best_seconds"]["all"].get<double>();
+        return report["rows"][row]["prepare_seconds"].get<double>() +
+               surfaces * report["rows"][row]["best_seconds"]["all"].get<double>();
     };
     ASSERT_FALSE(report["advice"].empty());
     EXPECT_TRUE(report["advice"].back()["up_to_surfaces"].is_null());
@@ -55,13 +56,15 @@ TEST_F(Program, BenchRecommendsWhatItMeasured) {
         const double upto = advice["up_to_surfaces"].is_null() ? 1e9 : advice["up_to_surfaces"].get<double>();
         for (const double surfaces : {from, upto})
             for (std::size_t other = 0; other < report["rows"].size(); ++other)
-                EXPECT_LE(seconds(advice["row"].get<std::size_t>(), surfaces), seconds(other, surfaces) * 1.000001) << surfaces;
+                EXPECT_LE(seconds(advice["row"].get<std::size_t>(), surfaces), seconds(other, surfaces) * 1.000001)
+                    << surfaces;
         from = upto + 1;
     }
 }
 
 TEST_F(Program, BenchWritesRowsAndCharts) {
-    const RunResult run = isotet(bench({"--paper", "--max-tets", "3000", "--csv", path("rows.csv"), "--svg", path("chart.svg")}));
+    const RunResult run =
+        isotet(bench({"--paper", "--max-tets", "3000", "--csv", path("rows.csv"), "--svg", path("chart.svg")}));
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("2,058 brute"), std::string::npos) << run.out;
     const std::string rows = content_of(path("rows.csv")), chart = content_of(path("chart.svg"));
@@ -87,8 +90,10 @@ TEST_F(Program, BenchRefusesWhatItCannotMeasure) {
     EXPECT_TRUE(is_one_error(isotet({"bench"}), "takes a FILE, or --paper"));
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--paper"})), "--paper"));
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "brute,texture"})), "--methods got 'texture'"));
-    EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "textures"})), "--methods has textures, which needs a device"));
-    EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--filters", "octree"})), "none of the methods takes lists of tets"));
+    EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "textures"})),
+                             "--methods has textures, which needs a device"));
+    EXPECT_TRUE(
+        is_one_error(isotet(bench({"make:kuhn:4", "--filters", "octree"})), "none of the methods takes lists of tets"));
     const RunResult twice = isotet(bench({"make:kuhn:4:sphere", "--csv", path("a"), "--svg", path("a")}));
     EXPECT_EQ(twice.status, 2) << twice.err;
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4:sphere", "--csv", "-"})), "--csv got '-'"));

@@ -53,7 +53,8 @@ TEST_F(Program, ExtractHasEveryPromisedKey) {
 
 TEST_F(Program, ExtractGivesTheSameSurfaceByEveryMethod) {
     const auto extracted = [&](const std::string& method, const std::string& out) {
-        return json_of({"extract", "make:mixed:6:integer", path(out), "-i", "2", "-i", "2.5", "--method", method, "--normals", "gradient"});
+        return json_of({"extract", "make:mixed:6:integer", path(out), "-i", "2", "-i", "2.5", "--method", method,
+                        "--normals", "gradient"});
     };
     const json clusters = extracted("clusters", "c.vtp"), brute = extracted("brute", "b.vtp");
     for (const char* key : {"vertices", "triangles", "tied_points", "false_ties"})
@@ -126,7 +127,8 @@ TEST_F(Program, ExtractSaysWhenAFieldHasNoFiniteValue) {
 }
 
 TEST_F(Program, ExtractOnADeviceByBruteIsRefused) {
-    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "--engine", "vulkan", "--device", "software", "--method", "brute"});
+    const RunResult run =
+        isotet({"extract", "make:kuhn:4:sphere", "--engine", "vulkan", "--device", "software", "--method", "brute"});
     EXPECT_EQ(run.status, run.err.find("--method brute") == std::string::npos ? 4 : 2) << run.err;
 }
 

@@ -17,8 +17,9 @@ using nlohmann::json;
 
 TEST_F(Program, CtrlCEndsWithStatus130AndLeavesNoFile) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        const RunResult run = isotet({"extract", "make:kuhn:100:gyroid", path("s.vtp"), "-i", "0", "-v", "--method", "clusters"},
-                                     {.interrupt_when = "isotet: packing", .signal = signal});
+        const RunResult run =
+            isotet({"extract", "make:kuhn:100:gyroid", path("s.vtp"), "-i", "0", "-v", "--method", "clusters"},
+                   {.interrupt_when = "isotet: packing", .signal = signal});
         EXPECT_EQ(run.status, 130) << "signal " << signal << ": " << run.err;
         EXPECT_NE(run.err.find("isotet: interrupted"), std::string::npos) << run.err;
         EXPECT_EQ(run.out, "");
@@ -28,8 +29,9 @@ TEST_F(Program, CtrlCEndsWithStatus130AndLeavesNoFile) {
 
 TEST_F(Program, CtrlCLeavesTheOldFile) {
     put_content(path("s.vtp"), "old");
-    const RunResult run = isotet({"extract", "make:kuhn:100:gyroid", path("s.vtp"), "-i", "0", "-v", "--method", "clusters"},
-                                 {.interrupt_when = "isotet: packing"});
+    const RunResult run =
+        isotet({"extract", "make:kuhn:100:gyroid", path("s.vtp"), "-i", "0", "-v", "--method", "clusters"},
+               {.interrupt_when = "isotet: packing"});
     EXPECT_EQ(run.status, 130) << run.err;
     EXPECT_EQ(content_of(path("s.vtp")), "old");
     EXPECT_EQ(folder.entries(), 1u);
@@ -132,7 +134,8 @@ TEST_F(Program, TwoProcessesWithOneOutputLeaveOneWholeFile) {
 
 TEST_F(Program, TooLittleAddressSpaceIsToldWithTheAmounts) {
     // Room to start and to make the grid, not to pack it.
-    const std::string command = fmt::format("exec '{}' extract make:kuhn:200:sphere -i 0.5 -q --method clusters", ISOTET_PROGRAM);
+    const std::string command =
+        fmt::format("exec '{}' extract make:kuhn:200:sphere -i 0.5 -q --method clusters", ISOTET_PROGRAM);
     const RunResult run = run_program({"/bin/bash", "-c", "ulimit -v 2200000; " + command});
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(is_one_error(run, " needs "));

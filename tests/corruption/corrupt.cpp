@@ -25,8 +25,18 @@ namespace fs = std::filesystem;
 using Random = std::mt19937_64;
 
 /// Values that break things: limits of types, and small ones where large ones are expected.
-constexpr std::uint64_t nasty[] = {0,          1,          0x7F,       0x80,       0xFF,               0x7FFF,
-                                   0xFFFF,     0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7FFFFFFFFFFFFFFF, 0x8000000000000000,
+constexpr std::uint64_t nasty[] = {0,
+                                   1,
+                                   0x7F,
+                                   0x80,
+                                   0xFF,
+                                   0x7FFF,
+                                   0xFFFF,
+                                   0x7FFFFFFF,
+                                   0x80000000,
+                                   0xFFFFFFFF,
+                                   0x7FFFFFFFFFFFFFFF,
+                                   0x8000000000000000,
                                    0xFFFFFFFFFFFFFFFF};
 
 /// Where headers and tables are: half of the changes go to the first 4 KiB.
@@ -46,7 +56,8 @@ void put_word(std::string& bytes, Random& random) {
 /// Another number in place of one written in digits.
 void put_number(std::string& bytes, Random& random) {
     constexpr std::string_view digits = "0123456789";
-    constexpr std::string_view numbers[] = {"-1", "0", "4294967296", "9223372036854775807", "18446744073709551616", "1e400", "nan", "x", ""};
+    constexpr std::string_view numbers[] = {
+        "-1", "0", "4294967296", "9223372036854775807", "18446744073709551616", "1e400", "nan", "x", ""};
     const std::size_t begin = bytes.find_first_of(digits, place(bytes, random));
     if (begin == std::string::npos) return;
     const std::size_t end = std::min(bytes.find_first_not_of(digits, begin), bytes.size());
@@ -119,13 +130,15 @@ struct Driver {
             return;
         }
         ++failed;
-        std::printf("status %d, signal %d%s: corrupt %s 1 %llu %s\n%s\n", run.status, run.signal, run.timed_out ? ", no end" : "", program.c_str(),
-                    static_cast<unsigned long long>(trial), file.c_str(), run.err.substr(0, 500).c_str());
+        std::printf("status %d, signal %d%s: corrupt %s 1 %llu %s\n%s\n", run.status, run.signal,
+                    run.timed_out ? ", no end" : "", program.c_str(), static_cast<unsigned long long>(trial),
+                    file.c_str(), run.err.substr(0, 500).c_str());
     }
 };
 
 bool parse(std::string_view text, std::uint64_t& value) {
-    return std::from_chars(text.data(), text.data() + text.size(), value).ptr == text.data() + text.size() && !text.empty();
+    return std::from_chars(text.data(), text.data() + text.size(), value).ptr == text.data() + text.size() &&
+           !text.empty();
 }
 
 } // namespace

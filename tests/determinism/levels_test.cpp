@@ -17,7 +17,8 @@ TEST(InstructionLevels, GiveTheSameBytes) {
     RecordProperty("best_level", std::string(core::name_of(core::best_level())));
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
         const bool smooth = seed % 2;
-        const NastyGrid g = nasty_grid(seed, {.side = 9, .values = smooth ? 0 : 5, .no_data = smooth ? 0 : 0.002, .missing = 0.05});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 9, .values = smooth ? 0 : 5, .no_data = smooth ? 0 : 0.002, .missing = 0.05});
         const PackedGrid packed = pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
         for (const double isovalue : {-0.5, 0.0, 0.25, 1.5})
             for (const bool extras : {false, true}) {
@@ -40,7 +41,8 @@ TEST(InstructionLevels, GiveTheSameBytes) {
 
 TEST(InstructionLevels, StoreTheSameFields) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        const NastyGrid g = nasty_grid(seed, {.side = 9, .values = seed % 2 ? 0 : 5, .no_data = seed > 2 ? 0.05 : 0, .missing = 0.05});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 9, .values = seed % 2 ? 0 : 5, .no_data = seed > 2 ? 0.05 : 0, .missing = 0.05});
         for (const Precision precision : {Precision::single, Precision::double_}) {
             std::string expected;
             for (int level = 0; level <= int(core::best_level()); ++level) {
@@ -48,7 +50,8 @@ TEST(InstructionLevels, StoreTheSameFields) {
                 const PackedGrid packed = pack(g.grid, g.field, {.precision = precision}).value();
                 core::force_level({});
                 if (expected.empty()) expected = bytes_of(packed);
-                ASSERT_TRUE(bytes_of(packed) == expected) << "seed " << seed << ", " << core::name_of(core::Level(level));
+                ASSERT_TRUE(bytes_of(packed) == expected)
+                    << "seed " << seed << ", " << core::name_of(core::Level(level));
             }
         }
     }

@@ -61,7 +61,8 @@ std::vector<std::string> links(const std::string& document) {
     std::vector<std::string> result;
     for (std::size_t at = document.find("]("); at != std::string::npos; at = document.find("](", at + 1)) {
         const std::string target = document.substr(at + 2, document.find(')', at) - at - 2);
-        if (target.find("://") == std::string::npos && target.find_first_of(" \n") == std::string::npos) result.push_back(target);
+        if (target.find("://") == std::string::npos && target.find_first_of(" \n") == std::string::npos)
+            result.push_back(target);
     }
     return result;
 }

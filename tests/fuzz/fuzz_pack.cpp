@@ -61,7 +61,8 @@ Grid some_grid(Bytes& bytes) {
         types.push_back(kinds[kind]);
         for (int k = 0; k < corners[kind]; ++k) {
             const std::uint8_t byte = bytes.next();
-            connectivity.push_back(may_be_out_of_range ? static_cast<std::int8_t>(byte) : static_cast<int>(byte % points));
+            connectivity.push_back(may_be_out_of_range ? static_cast<std::int8_t>(byte)
+                                                       : static_cast<int>(byte % points));
         }
         offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
     }
@@ -75,7 +76,8 @@ void expect(bool true_) {
     if (!true_) std::abort();
 }
 
-void extract_and_check(const Grid& grid, const PointField& field, const PackedGrid& packed, double isovalue, Ties ties) {
+void extract_and_check(const Grid& grid, const PointField& field, const PackedGrid& packed, double isovalue,
+                       Ties ties) {
     ExtractOptions options;
     options.ties = ties;
     options.edge_ends = true;
@@ -91,8 +93,8 @@ void extract_and_check(const Grid& grid, const PointField& field, const PackedGr
 }
 
 /// From the arrays alone: both engines give the same bytes, as many vertices as the packed grid, and the same refusal.
-void expect_same_once(const Grid& grid, const PointField& field, const Result<PackedGrid>& packed, double isovalue, Precision precision,
-                      Ties ties) {
+void expect_same_once(const Grid& grid, const PointField& field, const Result<PackedGrid>& packed, double isovalue,
+                      Precision precision, Ties ties) {
     OnceOptions options;
     options.precision = precision;
     options.extract.ties = ties;
@@ -110,7 +112,8 @@ void expect_same_once(const Grid& grid, const PointField& field, const Result<Pa
     const Extraction &a = once->surfaces[0], &b = reference->surfaces[0];
     expect(test::bytes_of(a.surface) == test::bytes_of(b.surface));
     const auto clusters = extract(*packed, isovalue, {.ties = ties, .threads = 1});
-    expect(clusters && clusters->surface.vertices() == a.surface.vertices() && clusters->report.tied_points == a.report.tied_points);
+    expect(clusters && clusters->surface.vertices() == a.surface.vertices() &&
+           clusters->report.tied_points == a.report.tied_points);
 }
 
 } // namespace
@@ -125,7 +128,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto packed = pack(grid, field, {.precision = precision, .gradients = true, .threads = 1});
     expect(bool(report) == bool(packed));
     if (std::isfinite(isovalue))
-        for (const Ties ties : {Ties::merge, Ties::keep}) expect_same_once(grid, field, packed, isovalue, precision, ties);
+        for (const Ties ties : {Ties::merge, Ties::keep})
+            expect_same_once(grid, field, packed, isovalue, precision, ties);
     if (!packed) {
         expect(packed.error().code == ErrorCode::invalid_data && !packed.error().message.empty());
         return 0;

@@ -71,7 +71,8 @@ TEST_F(EngineFaults, AnyCallThatFailsIsAnErrorOrDoneWithout) {
             }
             ++errors;
             const ErrorCode code = result.error().code;
-            EXPECT_TRUE(code == ErrorCode::machine || code == ErrorCode::out_of_memory) << name << ": " << result.error().message;
+            EXPECT_TRUE(code == ErrorCode::machine || code == ErrorCode::out_of_memory)
+                << name << ": " << result.error().message;
             EXPECT_GT(result.error().message.size(), 20u) << name;
         }
     EXPECT_GT(errors, 20u);
@@ -89,7 +90,9 @@ TEST_F(EngineFaults, AnyAllocationThatFailsLeavesNothingBehind) {
             CallPlan plan{.fail_at = i, .with = VK_ERROR_OUT_OF_DEVICE_MEMORY, .only = function, .calls = {}};
             const auto result = work_through(plan);
             if (result) EXPECT_EQ(*result, right) << function << " " << i;
-            else EXPECT_EQ(result.error().code, ErrorCode::out_of_memory) << function << " " << i << ": " << result.error().message;
+            else
+                EXPECT_EQ(result.error().code, ErrorCode::out_of_memory)
+                    << function << " " << i << ": " << result.error().message;
         }
     }
 }
@@ -105,8 +108,10 @@ TEST_F(EngineFaults, ADeviceThatDoesNotAnswerIsGivenUp) {
         const auto result = work_through(plan, Copies::staged);
         ASSERT_FALSE(result) << i;
         EXPECT_EQ(result.error().code, ErrorCode::machine) << i;
-        EXPECT_NE(result.error().message.find("did not answer within 30 s"), std::string::npos) << result.error().message;
-        EXPECT_EQ(bytes_of(isotet::extract(packed, 0.2, options).value().surface), right) << i << ": the packed grid is as it should be";
+        EXPECT_NE(result.error().message.find("did not answer within 30 s"), std::string::npos)
+            << result.error().message;
+        EXPECT_EQ(bytes_of(isotet::extract(packed, 0.2, options).value().surface), right)
+            << i << ": the packed grid is as it should be";
     }
 }
 

@@ -54,11 +54,13 @@ TEST_F(CarriedFields, AreInterpolatedOnTheDevice) {
     DeviceSurface surface = on_device.extract(0.5, options).value();
     ASSERT_EQ(surface.buffers()->fields.size(), options.point_fields.size());
     for (std::size_t i = 0; i < options.point_fields.size(); ++i)
-        EXPECT_GE(surface.buffers()->fields[i].size(), 4 * surface.vertices() * options.point_fields[i].values.components());
+        EXPECT_GE(surface.buffers()->fields[i].size(),
+                  4 * surface.vertices() * options.point_fields[i].values.components());
 
     const std::uint64_t components = stored_bytes(options.point_fields) / (4 * g.grid.points.tuples());
     on_device.download(surface).value();
-    EXPECT_EQ(on_device.work().downloaded_bytes, surface.vertices() * (12 + 4 * components) + 12 * surface.triangle_count())
+    EXPECT_EQ(on_device.work().downloaded_bytes,
+              surface.vertices() * (12 + 4 * components) + 12 * surface.triangle_count())
         << "neither ends nor weights";
     options.edge_ends = true;
     expect_same(on_device, packed, {0.5}, options);
@@ -95,7 +97,8 @@ TEST_F(CarriedFields, ThatDoNotFitAreInterpolatedElsewhere) {
     ends.edge_ends = true;
     const std::uint64_t plain = DeviceGrid::upload(device(), packed).value().extract(0.5, ends).value().device_bytes();
     const DeviceGridOptions small_pages{.page_bytes = 8 << 10, .surface_bytes = 0};
-    const std::uint64_t grid = DeviceGrid::needs(packed, small_pages).all(), fields = stored_bytes(options.point_fields);
+    const std::uint64_t grid = DeviceGrid::needs(packed, small_pages).all(),
+                        fields = stored_bytes(options.point_fields);
     int on_the_device = 0, elsewhere = 0;
     for (const std::uint64_t limit : {grid + plain, grid + plain + fields / 2, grid + 2 * fields + 8 * plain}) {
         reopen(watched(), limit);

@@ -23,7 +23,7 @@ struct Member {
 
 std::vector<Member> members() {
     return {
-#define ISOTET_MEMBER(variable, type, member) \
+#define ISOTET_MEMBER(variable, type, member)                                                                          \
     {#type "::" #member, offsetof(type, member) / 4, sizeof(static_cast<type*>(nullptr)->member) / 4},
         ISOTET_MEMBERS(ISOTET_MEMBER)
 #undef ISOTET_MEMBER
@@ -55,7 +55,8 @@ TEST_F(LayoutOnDevice, KernelsFindEveryMemberWhereItIs) {
     const std::vector<std::uint32_t> found = download(places);
     std::size_t at = 0;
     for (const Member& member : members())
-        for (std::size_t k = 0; k < member.words; ++k) EXPECT_EQ(found[at++], member.first + k) << member.name << ", word " << k;
+        for (std::size_t k = 0; k < member.words; ++k)
+            EXPECT_EQ(found[at++], member.first + k) << member.name << ", word " << k;
 }
 
 } // namespace

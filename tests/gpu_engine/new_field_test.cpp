@@ -83,7 +83,8 @@ TEST_F(NewField, IsThatOfTheProcessorByteForByte) {
     const NastyGrid g = nasty_grid(5, {.side = 13, .values = 4, .no_data = 0.02, .missing = 0.05, .repeated = 0.05});
     for (const std::uint64_t page_bytes : {20'000, 1 << 25}) {
         PackedGrid packed = packed_of(g);
-        DeviceGrid on_device = DeviceGrid::upload(device(), packed, {.page_bytes = page_bytes, .surface_bytes = {}}).value();
+        DeviceGrid on_device =
+            DeviceGrid::upload(device(), packed, {.page_bytes = page_bytes, .surface_bytes = {}}).value();
         EXPECT_EQ(expect_fields_to_follow(on_device, packed, g), 0);
     }
 }
@@ -126,7 +127,8 @@ TEST_F(NewField, PointsFollowToo) {
     DeviceGrid on_device = DeviceGrid::upload(device(), packed, {.page_bytes = 20'000, .surface_bytes = {}}).value();
     std::vector<double> moved;
     for (std::size_t p = 0; p < g.grid.points.tuples(); ++p)
-        for (std::size_t axis = 0; axis < 3; ++axis) moved.push_back(2.5 * g.grid.points.at(p, axis) + static_cast<double>(axis));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            moved.push_back(2.5 * g.grid.points.at(p, axis) + static_cast<double>(axis));
     const Array points = Array::own(std::move(moved), 3);
     expected.set_points(points).value();
     on_device.set_points(packed, points).value();

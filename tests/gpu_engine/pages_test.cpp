@@ -23,7 +23,8 @@ protected:
 
 TEST_F(Pages, OfAnySizeGiveTheSameBytes) {
     for (const std::uint32_t seed : Seeds(1, 3)) {
-        const NastyGrid g = nasty_grid(seed, {.side = 9, .values = seed == 1 ? 0 : 4, .no_data = 0.02, .missing = 0.05});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 9, .values = seed == 1 ? 0 : 4, .no_data = 0.02, .missing = 0.05});
         const PackedGrid packed = pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
         for (const std::uint64_t bytes : {1, 5'000, 20'000, 1 << 20}) {
             const DeviceGridOptions options{.page_bytes = bytes, .surface_bytes = {}};
@@ -37,14 +38,16 @@ TEST_F(Pages, OfAnySizeGiveTheSameBytes) {
 
 TEST_F(Pages, ThatDoNotFitComeAndGo) {
     for (const std::uint32_t seed : Seeds(1, 3)) {
-        const NastyGrid g = nasty_grid(seed, {.side = 13, .values = seed == 1 ? 0 : 3, .no_data = seed == 1 ? 0 : 0.02});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 13, .values = seed == 1 ? 0 : 3, .no_data = seed == 1 ? 0 : 0.02});
         const PackedGrid packed = pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
         const DeviceGridNeeds needs = DeviceGrid::needs(packed, small_pages);
         // Room for the largest of the surfaces, and for three pages beside it.
         reopen(watched());
         ExtractOptions without_fields = everything(g); // of a grid in parts they are not on the device
         without_fields.point_fields.clear();
-        const std::uint64_t surface = DeviceGrid::upload(device(), packed).value().extract(0.5, without_fields).value().device_bytes();
+        const std::uint64_t surface =
+            DeviceGrid::upload(device(), packed).value().extract(0.5, without_fields).value().device_bytes();
         const std::uint64_t limit = needs.resident_bytes + 3 * needs.largest_page_bytes + surface;
         ASSERT_LT(needs.resident_bytes + surface, limit);
         reopen(watched(), limit);

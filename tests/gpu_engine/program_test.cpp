@@ -18,8 +18,12 @@ protected:
 };
 
 TEST_F(ProgramOnDevice, WritesTheSameFile) {
-    const std::vector<std::string> command{"extract", "make:kuhn:12:gyroid,sphere", "-f", "gyroid", "-i", "0,0.3",
-                                           "--normals", "gradient", "--edge-ends", "-q", "-o"};
+    const std::vector<std::string> command{"extract",     "make:kuhn:12:gyroid,sphere",
+                                           "-f",          "gyroid",
+                                           "-i",          "0,0.3",
+                                           "--normals",   "gradient",
+                                           "--edge-ends", "-q",
+                                           "-o"};
     auto on_cpu = command, on_device = command, in_parts = command;
     on_cpu.insert(on_cpu.end(), {path("cpu.vtp"), "--method", "clusters"});
     on_device.insert(on_device.end(), {path("device.vtp"), "--engine", "vulkan", "--device", "software"});
@@ -36,7 +40,8 @@ TEST_F(ProgramOnDevice, WritesTheSameFile) {
 }
 
 TEST_F(ProgramOnDevice, TimeStepsSendTheirValuesOnly) {
-    put_content(path("g.msh"), small_grid({{"p", {0, 1, 1, 1, 2}, 0}, {"p", {0, 2, 2, 2, 4}, 0.1}, {"p", {0, 4, 4, 4, 8}, 2.5}}));
+    put_content(path("g.msh"),
+                small_grid({{"p", {0, 1, 1, 1, 2}, 0}, {"p", {0, 2, 2, 2, 4}, 0.1}, {"p", {0, 4, 4, 4, 8}, 2.5}}));
     const auto extract = [&](const std::string& out, std::vector<std::string> more) {
         more.insert(more.begin(), {"extract", path("g.msh"), path(out), "-f", "p", "-i", "1.5", "--all-steps", "-v"});
         const RunResult run = isotet(more);
@@ -52,7 +57,8 @@ TEST_F(ProgramOnDevice, TimeStepsSendTheirValuesOnly) {
 }
 
 TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {
-    const auto report = json_of({"extract", "make:kuhn:8:gyroid", "-i", "0", "--engine", "vulkan", "--device", "software"});
+    const auto report =
+        json_of({"extract", "make:kuhn:8:gyroid", "-i", "0", "--engine", "vulkan", "--device", "software"});
     EXPECT_EQ(report["engine"], "vulkan");
     const auto& surface = report["surfaces"][0];
     EXPECT_GE(surface["device"]["bytes_down"].get<std::size_t>(),
@@ -60,10 +66,12 @@ TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {
 }
 
 TEST_F(ProgramOnDevice, SaysSoWhenTheCpuStandsIn) {
-    const RunResult run = isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", "software", "--precision", "double"});
+    const RunResult run =
+        isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", "software", "--precision", "double"});
     EXPECT_EQ(run.status, 0);
-    EXPECT_NE(run.err.find("note: the grid was packed in double precision, but the vulkan engine takes single precision only: "
-                           "the CPU extracts instead"),
+    EXPECT_NE(run.err.find(
+                  "note: the grid was packed in double precision, but the vulkan engine takes single precision only: "
+                  "the CPU extracts instead"),
               std::string::npos)
         << run.err;
     EXPECT_NE(run.out.find("engine  cpu"), std::string::npos) << run.out;

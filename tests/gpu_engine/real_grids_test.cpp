@@ -28,7 +28,8 @@ protected:
             on_device.set_field(packed, find_field(grid, name).value()).value();
             const double isovalue = packed.field().lower + 0.375 * (packed.field().upper - packed.field().lower);
             expect_same(on_device, packed, {isovalue}, options_for(grid));
-            EXPECT_EQ(on_device.extract(isovalue).value().buffers()->result.many_edges, 0u) << "docs/decisions/0005 says so";
+            EXPECT_EQ(on_device.extract(isovalue).value().buffers()->result.many_edges, 0u)
+                << "docs/decisions/0005 says so";
         }
     }
 
@@ -40,7 +41,8 @@ protected:
             if (file.needs_vtk && !ISOTET_GOLDEN_VTK) continue;
             SCOPED_TRACE(file.path);
             const Grid grid = read_golden(file.path).value().grid;
-            PackedGrid packed = pack(grid, find_field(grid, "x").value(), {.source_cells = true, .gradients = true}).value();
+            PackedGrid packed =
+                pack(grid, find_field(grid, "x").value(), {.source_cells = true, .gradients = true}).value();
             if (packed.report().tets > most_tets) continue;
             f(grid, packed);
             ++grids;
@@ -64,7 +66,8 @@ TEST_F(RealGrids, GiveTheSameBytesWithEverythingForcedAtOnce) {
     settings.groups_an_axis = 7;
     reopen(settings);
     const int grids = for_grids(most_forced_tets, [&](const Grid& grid, PackedGrid& packed) {
-        DeviceGrid on_device = DeviceGrid::upload(device(), packed, {.page_bytes = 30'000, .surface_bytes = {}}).value();
+        DeviceGrid on_device =
+            DeviceGrid::upload(device(), packed, {.page_bytes = 30'000, .surface_bytes = {}}).value();
         expect_same_fields(grid, packed, on_device);
     });
     EXPECT_GE(grids, 2);

@@ -53,14 +53,21 @@ TEST_F(SameBytes, OnPointsWithoutData) {
 TEST_F(SameBytes, OnTangledGridsWithRepeatedAndMissingTets) {
     for (const std::uint32_t seed : Seeds(1, 12))
         expect_same_on(seed,
-                       {.side = 4 + int(seed) % 6, .values = 3, .no_data = 0.03, .missing = 0.2, .inverted = 0.2,
-                        .mirrored = 0.5, .repeated = 0.1, .wide = seed % 3 == 0},
+                       {.side = 4 + int(seed) % 6,
+                        .values = 3,
+                        .no_data = 0.03,
+                        .missing = 0.2,
+                        .inverted = 0.2,
+                        .mirrored = 0.5,
+                        .repeated = 0.1,
+                        .wide = seed % 3 == 0},
                        {0, 0.5, 1});
 }
 
 TEST_F(SameBytes, OfFaceNormals) {
     for (const std::uint32_t seed : Seeds(1, 3)) {
-        const NastyGrid g = nasty_grid(seed, {.side = 7, .values = seed == 1 ? 0 : 3, .no_data = 0.02, .inverted = 0.1});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 7, .values = seed == 1 ? 0 : 3, .no_data = 0.02, .inverted = 0.1});
         ExtractOptions options;
         options.normals = Normals::face;
         expect_same_on(g.grid, g.field, {-0.2, 0, 1}, options);
@@ -77,7 +84,8 @@ TEST_F(SameBytes, OfGradientNormalsThatVanish) {
     }
     const Grid flat = made_grid("kuhn", 4, {"plane"});
     std::vector<float> ridge;
-    for (std::size_t p = 0; p < flat.points.tuples(); ++p) ridge.push_back(static_cast<float>(std::abs(flat.points.at(p, 0))));
+    for (std::size_t p = 0; p < flat.points.tuples(); ++p)
+        ridge.push_back(static_cast<float>(std::abs(flat.points.at(p, 0))));
     ExtractOptions options;
     options.normals = Normals::gradient;
     expect_same_on(flat, field_of(std::move(ridge)), {0, 0.25, 0.5}, options);

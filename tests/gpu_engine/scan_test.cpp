@@ -64,10 +64,11 @@ protected:
 };
 
 TEST_F(Scan, AddsUpInSixtyFourBits) {
-    const std::array<std::array<Count, 3>, 4> all = {{{{{0, 0}, {0, 0}, {0, 0}}},
-                                                      {{{7, 0xfffffffe}, {0, 0}, {1, 1}}},
-                                                      {{{0xffffffff, 5}, {1, 0}, {0, 0}}},
-                                                      {{{0xffffffff, 0xfffffffa}, {0xffff0001, 0x12345678}, {0x0001ffff, 0xffffffff}}}}};
+    const std::array<std::array<Count, 3>, 4> all = {
+        {{{{0, 0}, {0, 0}, {0, 0}}},
+         {{{7, 0xfffffffe}, {0, 0}, {1, 1}}},
+         {{{0xffffffff, 5}, {1, 0}, {0, 0}}},
+         {{{0xffffffff, 0xfffffffa}, {0xffff0001, 0x12345678}, {0x0001ffff, 0xffffffff}}}}};
     for (const auto& blocks : all) {
         std::uint64_t vertices = 0, triangles = 0;
         for (const Count& block : blocks) {

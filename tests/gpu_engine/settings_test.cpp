@@ -16,7 +16,8 @@ namespace {
 class Forced : public Engines {
 protected:
     void expect_same_on_a_nasty_grid(const DeviceGridOptions& grid_options = {}) {
-        const NastyGrid g = nasty_grid(7, {.side = 12, .values = 3, .no_data = 0.02, .missing = 0.05, .inverted = 0.05});
+        const NastyGrid g =
+            nasty_grid(7, {.side = 12, .values = 3, .no_data = 0.02, .missing = 0.05, .inverted = 0.05});
         const PackedGrid packed = pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
         ASSERT_LT(packed.report().tets, 20'000u);
         ExtractOptions options;
@@ -87,7 +88,8 @@ TEST_F(Forced, AnyNumberOfSelectedClustersGivesTheSameBytes) {
     for (std::size_t i = 0; i < islands; ++i) {
         const double x = 2.0 * static_cast<double>(i);
         const auto first = static_cast<std::int64_t>(points.size());
-        for (const auto& p : {std::array{x, 0.0, 0.0}, {x + 1, 0.0, 0.0}, {x, 1.0, 0.0}, {x, 0.0, 1.0}}) points.push_back(p);
+        for (const auto& p : {std::array{x, 0.0, 0.0}, {x + 1, 0.0, 0.0}, {x, 1.0, 0.0}, {x, 0.0, 1.0}})
+            points.push_back(p);
         tets.push_back({first, first + 1, first + 2, first + 3});
     }
     PackedGrid packed = pack(tet_grid(points, tets), field_of(std::vector<float>(points.size()))).value();
@@ -136,7 +138,8 @@ TEST_F(Forced, ClustersWithManyCrossedEdgesGiveTheSameBytes) {
         if (distinct.size() == 4) tets.push_back(tet);
     }
     std::vector<float> values;
-    for (std::size_t p = 0; p < points.size(); ++p) values.push_back(static_cast<float>(p % 2) + static_cast<float>(p % 7) / 16);
+    for (std::size_t p = 0; p < points.size(); ++p)
+        values.push_back(static_cast<float>(p % 2) + static_cast<float>(p % 7) / 16);
     const PackedGrid packed = pack(tet_grid(points, tets), field_of(std::move(values))).value();
     DeviceGrid on_device = DeviceGrid::upload(device(), packed).value();
     expect_same(on_device, packed, {0.75, 1, 0.1}, {});
@@ -179,9 +182,10 @@ TEST_F(Forced, MoreThanCanBeNumberedIsRefusedWithTheNumber) {
     const auto refused = on_device.extract(0.7);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
-    EXPECT_EQ(refused.error().message,
-              "the surface has " + std::to_string(expected.vertices()) + " vertices and " + std::to_string(expected.triangle_count()) +
-                  " triangles, but the vulkan engine can number " + std::to_string(settings.most_items) + " of each");
+    EXPECT_EQ(refused.error().message, "the surface has " + std::to_string(expected.vertices()) + " vertices and " +
+                                           std::to_string(expected.triangle_count()) +
+                                           " triangles, but the vulkan engine can number " +
+                                           std::to_string(settings.most_items) + " of each");
     EXPECT_EQ(on_device.extract(5).value().triangle_count(), 0u) << "the grid can still be used";
 }
 
@@ -201,7 +205,8 @@ TEST_F(Forced, WrongCallsAreErrors) {
     const auto refused = DeviceGrid::upload(device(), wide);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
-    EXPECT_EQ(refused.error().message, "the grid was packed in double precision, but the vulkan engine takes single precision only");
+    EXPECT_EQ(refused.error().message,
+              "the grid was packed in double precision, but the vulkan engine takes single precision only");
 }
 
 } // namespace

@@ -2,6 +2,4 @@
 // Must not compile: a packed grid may have gigabytes, so it is moved or borrowed.
 #include <isotet/pack.hpp>
 
-isotet::PackedGrid costly(const isotet::PackedGrid& packed) {
-    return packed;
-}
+isotet::PackedGrid costly(const isotet::PackedGrid& packed) { return packed; }

@@ -2,6 +2,4 @@
 // Must not compile: an error is thrown away.
 #include <isotet/grid.hpp>
 
-void careless(const isotet::Grid& grid) {
-    isotet::survey(grid);
-}
+void careless(const isotet::Grid& grid) { isotet::survey(grid); }

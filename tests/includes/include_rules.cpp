@@ -68,7 +68,8 @@ constexpr std::array<std::string_view, 12> folders_of_includes = {
     "core/", "check/", "make/", "ops/", "reference/", "cpu/", "api/", "io/", "search/", "vulkan/", "render/", "cli/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
-    return std::any_of(beginnings.begin(), beginnings.end(), [&](auto beginning) { return text.starts_with(beginning); });
+    return std::any_of(beginnings.begin(), beginnings.end(),
+                       [&](auto beginning) { return text.starts_with(beginning); });
 }
 
 } // namespace

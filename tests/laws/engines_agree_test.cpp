@@ -12,7 +12,8 @@
 namespace isotet::test {
 namespace {
 
-void expect_engines_agree(std::uint32_t seed, const NastyOptions& nasty, Precision precision, const std::vector<double>& isovalues) {
+void expect_engines_agree(std::uint32_t seed, const NastyOptions& nasty, Precision precision,
+                          const std::vector<double>& isovalues) {
     const NastyGrid g = nasty_grid(seed, nasty);
     PackOptions pack_options;
     pack_options.precision = precision;
@@ -48,25 +49,33 @@ TEST(EnginesAgree, OnSmoothFields) {
 
 TEST(EnginesAgree, OnIntegerFieldsFullOfTies) {
     for (const std::uint32_t seed : Seeds(1, 12))
-        expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 2 + int(seed) % 4}, Precision::single, {-1, 0, 0.5, 1, 2});
+        expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 2 + int(seed) % 4}, Precision::single,
+                             {-1, 0, 0.5, 1, 2});
 }
 
 TEST(EnginesAgree, OnPointsWithoutData) {
     for (const std::uint32_t seed : Seeds(1, 12))
-        expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 4, .no_data = 0.05 * (seed % 5)}, Precision::single, {-1, 0, 1, 1.5});
+        expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 4, .no_data = 0.05 * (seed % 5)},
+                             Precision::single, {-1, 0, 1, 1.5});
 }
 
 TEST(EnginesAgree, OnTangledGridsWithRepeatedAndMissingTets) {
     for (const std::uint32_t seed : Seeds(1, 12))
         expect_engines_agree(seed,
-                             {.side = 4 + int(seed) % 6, .values = 3, .no_data = 0.03, .missing = 0.2, .inverted = 0.2,
-                              .mirrored = 0.5, .repeated = 0.1},
+                             {.side = 4 + int(seed) % 6,
+                              .values = 3,
+                              .no_data = 0.03,
+                              .missing = 0.2,
+                              .inverted = 0.2,
+                              .mirrored = 0.5,
+                              .repeated = 0.1},
                              Precision::single, {0, 0.5, 1});
 }
 
 TEST(EnginesAgree, OnDoublePacking) {
     for (const std::uint32_t seed : Seeds(1, 6))
-        expect_engines_agree(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true}, Precision::double_, {0, 0.25, 1});
+        expect_engines_agree(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true},
+                             Precision::double_, {0, 0.25, 1});
 }
 
 } // namespace

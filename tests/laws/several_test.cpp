@@ -19,8 +19,9 @@ namespace {
 
 std::string text_of(const ExtractReport& report) {
     return std::to_string(report.selected_clusters) + " selected, " + std::to_string(report.tied_points) + " tied, " +
-           (report.false_ties ? std::to_string(*report.false_ties) : "?") + " false, near " + std::to_string(report.near_tie) +
-           ", stored " + std::to_string(report.isovalue_stored) + ", " + std::to_string(report.surface_bytes) + " bytes";
+           (report.false_ties ? std::to_string(*report.false_ties) : "?") + " false, near " +
+           std::to_string(report.near_tie) + ", stored " + std::to_string(report.isovalue_stored) + ", " +
+           std::to_string(report.surface_bytes) + " bytes";
 }
 
 void expect_as_alone(const PackedGrid& packed, const std::vector<double>& isovalues, const ExtractOptions& options) {
@@ -53,13 +54,16 @@ void expect_as_alone(const NastyGrid& g, Precision precision, const std::vector<
 
 TEST(SeveralIsovalues, GiveTheSurfacesThatEachGivesAlone) {
     for (const std::uint32_t seed : Seeds(1, 3))
-        expect_as_alone(nasty_grid(seed, {.side = 9, .values = 0}), Precision::single, {0.4, -0.3, 0.1, 0.1001, 5, 0, 0.1, -5});
+        expect_as_alone(nasty_grid(seed, {.side = 9, .values = 0}), Precision::single,
+                        {0.4, -0.3, 0.1, 0.1001, 5, 0, 0.1, -5});
 }
 
 TEST(SeveralIsovalues, GiveTheSurfacesThatEachGivesAloneWithTiesAndNaN) {
     for (const std::uint32_t seed : Seeds(1, 4))
-        expect_as_alone(nasty_grid(seed, {.side = 7, .values = 4, .no_data = 0.04, .missing = 0.1, .inverted = 0.1, .repeated = 0.05}),
-                        seed % 2 ? Precision::single : Precision::double_, {2, 0, 1, 0.5, 1, -1, 0, 1e300});
+        expect_as_alone(
+            nasty_grid(seed,
+                       {.side = 7, .values = 4, .no_data = 0.04, .missing = 0.1, .inverted = 0.1, .repeated = 0.05}),
+            seed % 2 ? Precision::single : Precision::double_, {2, 0, 1, 0.5, 1, -1, 0, 1e300});
 }
 
 TEST(SeveralIsovalues, MayBeManyMoreThanClustersHold) {

@@ -183,8 +183,13 @@ INSTANTIATE_TEST_SUITE_P(All, MakeShape,
 
 TEST(MakeGrid, HasAsManyPointsAndCellsAsTheShapeSays) {
     const std::map<std::string, std::array<std::size_t, 2>> expected{
-        {"kuhn", {343, 1296}}, {"perturbed", {343, 1296}}, {"shuffled", {343, 1296}}, {"layer", {343, 1296}},
-        {"hex", {343, 216}},   {"wedge", {343, 432}},      {"pyramid", {559, 1296}},
+        {"kuhn", {343, 1296}},
+        {"perturbed", {343, 1296}},
+        {"shuffled", {343, 1296}},
+        {"layer", {343, 1296}},
+        {"hex", {343, 216}},
+        {"wedge", {343, 432}},
+        {"pyramid", {559, 1296}},
         // two layers of hexahedra, two of pyramids and tets under wedges, one of each above, of 36 cubes
         {"mixed", {343 + 3 * 36, 36 * (2 * 1 + 2 * 7 + 2 + 7)}}};
     for (const std::string& shape : make_shapes()) {

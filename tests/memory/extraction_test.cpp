@@ -78,7 +78,8 @@ void expect_limits_hold(const PackedGrid& packed, const std::vector<double>& iso
     EXPECT_LE(output + report.transient_bytes, report.predicted_bytes);
 }
 
-void expect_limits_hold(const Grid& grid, const PointField& field, Precision precision, const std::vector<double>& isovalues) {
+void expect_limits_hold(const Grid& grid, const PointField& field, Precision precision,
+                        const std::vector<double>& isovalues) {
     PackOptions pack_options;
     pack_options.precision = precision;
     pack_options.gradients = pack_options.source_cells = true;
@@ -90,7 +91,8 @@ void expect_limits_hold(const Grid& grid, const PointField& field, Precision pre
             SCOPED_TRACE(options.name + ", " + std::to_string(threads) + " threads");
             ExtractOptions with_threads = options.extract;
             with_threads.threads = threads;
-            expect_limits_hold(packed, {isovalues[0]}, with_threads); // the field is looked at here, which takes no memory either
+            expect_limits_hold(packed, {isovalues[0]},
+                               with_threads); // the field is looked at here, which takes no memory either
             expect_limits_hold(packed, isovalues, with_threads);
         }
 }
@@ -113,7 +115,8 @@ TEST(ExtractionMemory, StaysWithinItsLimitsOnFieldsFullOfTies) {
 
 TEST(ExtractionMemory, StaysWithinItsLimitsOnTangledGridsWithNaN) {
     for (const std::uint32_t seed : Seeds(1, 2)) {
-        const NastyGrid g = nasty_grid(seed, {.side = 20, .values = 5, .no_data = 0.05, .missing = 0.1, .inverted = 0.1, .repeated = 0.1});
+        const NastyGrid g = nasty_grid(
+            seed, {.side = 20, .values = 5, .no_data = 0.05, .missing = 0.1, .inverted = 0.1, .repeated = 0.1});
         expect_limits_hold(g.grid, g.field, seed % 2 ? Precision::single : Precision::double_, {0, 1, 1.5});
     }
 }
@@ -121,7 +124,8 @@ TEST(ExtractionMemory, StaysWithinItsLimitsOnTangledGridsWithNaN) {
 TEST(ExtractionMemory, StaysWithinItsLimitsOnLooseTets) {
     const Grid grid = loose_tets(60'000);
     std::vector<float> values(grid.points.tuples());
-    for (std::size_t p = 0; p < values.size(); ++p) values[p] = static_cast<float>(p % 4) + 1e-5f * static_cast<float>(p % 1000);
+    for (std::size_t p = 0; p < values.size(); ++p)
+        values[p] = static_cast<float>(p % 4) + 1e-5f * static_cast<float>(p % 1000);
     expect_limits_hold(grid, field_of(values), Precision::single, {0.5, 1.5, 2.5});
 }
 

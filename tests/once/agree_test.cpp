@@ -10,13 +10,14 @@ namespace isotet::test {
 namespace {
 
 void expect_seed_agrees(std::uint32_t seed, const NastyOptions& nasty, const std::vector<double>& isovalues,
-                      Precision precision = Precision::single) {
+                        Precision precision = Precision::single) {
     const NastyGrid g = nasty_grid(seed, nasty);
     expect_agreement(g.grid, g.field, isovalues, precision, {{"value", g.field.values}});
 }
 
 TEST(Once, AgreesOnSmoothFields) {
-    for (const std::uint32_t seed : Seeds(1, 4)) expect_seed_agrees(seed, {.side = 11, .values = 0}, {-2, -0.4, 0, 0.3, 2});
+    for (const std::uint32_t seed : Seeds(1, 4))
+        expect_seed_agrees(seed, {.side = 11, .values = 0}, {-2, -0.4, 0, 0.3, 2});
 }
 
 TEST(Once, AgreesOnIntegerFieldsFullOfTies) {
@@ -26,30 +27,34 @@ TEST(Once, AgreesOnIntegerFieldsFullOfTies) {
 
 TEST(Once, AgreesBesidePointsWithoutData) {
     for (const std::uint32_t seed : Seeds(1, 12))
-        expect_seed_agrees(seed, {.side = 4 + int(seed) % 6, .values = 4, .no_data = 0.05 * (seed % 5)}, {-1, 0, 1, 1.5});
+        expect_seed_agrees(seed, {.side = 4 + int(seed) % 6, .values = 4, .no_data = 0.05 * (seed % 5)},
+                           {-1, 0, 1, 1.5});
 }
 
 TEST(Once, AgreesOnTangledGridsWithRepeatedAndMissingTets) {
     for (const std::uint32_t seed : Seeds(1, 12))
         expect_seed_agrees(seed,
-                         {.side = 3 + int(seed) % 5,
-                          .values = 3,
-                          .no_data = 0.03,
-                          .missing = 0.3,
-                          .inverted = 0.2,
-                          .mirrored = 0.5,
-                          .repeated = 0.1},
-                         {0, 0.5, 1});
+                           {.side = 3 + int(seed) % 5,
+                            .values = 3,
+                            .no_data = 0.03,
+                            .missing = 0.3,
+                            .inverted = 0.2,
+                            .mirrored = 0.5,
+                            .repeated = 0.1},
+                           {0, 0.5, 1});
 }
 
 TEST(Once, AgreesInDoublePrecision) {
     for (const std::uint32_t seed : Seeds(1, 6))
-        expect_seed_agrees(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true}, {0, 0.25, 1}, Precision::double_);
+        expect_seed_agrees(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true}, {0, 0.25, 1},
+                           Precision::double_);
 }
 
 TEST(Once, AgreesOnFloat64CoordinatesInSinglePrecision) {
     for (const std::uint32_t seed : Seeds(1, 6))
-        expect_seed_agrees(seed, {.side = 6, .values = int(seed % 2) * 4, .missing = seed % 3 ? 0.3 : 0.97, .wide = true}, {0, 0.25, 1});
+        expect_seed_agrees(seed,
+                           {.side = 6, .values = int(seed % 2) * 4, .missing = seed % 3 ? 0.3 : 0.97, .wide = true},
+                           {0, 0.25, 1});
 }
 
 TEST(Once, AgreesOnCellsOfAllTypes) {
@@ -66,13 +71,15 @@ TEST(Once, AgreesOnGridsOfSeveralChunks) {
         SCOPED_TRACE(shape);
         const Grid grid = made_grid(shape, 24, {"gyroid"}); // 13,824 to 82,944 cells
         const OnceOptions options = with_everything(Ties::merge, Precision::single);
-        expect_surfaces_of_clusters(grid, point_field(grid), {0.1}, options, extract_on_both(grid, point_field(grid), {0.1}, options));
+        expect_surfaces_of_clusters(grid, point_field(grid), {0.1}, options,
+                                    extract_on_both(grid, point_field(grid), {0.1}, options));
     }
 }
 
 TEST(Once, GivesTheVerticesAndTrianglesOfABruteForceWeld) {
     for (const std::uint32_t seed : Seeds(100, 10)) {
-        const NastyGrid g = nasty_grid(seed, {.side = 2 + int(seed) % 6, .values = 2 + int(seed) % 4, .no_data = 0.02, .missing = 0.1});
+        const NastyGrid g =
+            nasty_grid(seed, {.side = 2 + int(seed) % 6, .values = 2 + int(seed) % 4, .no_data = 0.02, .missing = 0.1});
         for (const double isovalue : {0.0, 0.5, 1.0})
             for (const Ties ties : {Ties::merge, Ties::keep})
                 ASSERT_EQ(sets_of(surface_once(g.grid, g.field, isovalue, with_everything(ties, Precision::single))),

@@ -25,22 +25,27 @@ TEST(CellsOnce, GiveTheSameBytesWhateverTypeTheirNumbersHave) {
     const OnceOptions options = with_everything(Ties::merge, Precision::single);
     const std::string expected = bytes_of(surface_once(g.grid, g.field, 0, options));
     std::vector<std::int64_t> offsets;
-    for (std::size_t cell = 0; cell <= g.grid.cells.count(); ++cell) offsets.push_back(static_cast<std::int64_t>(4 * cell));
-    for (const Array& numbers : {as_type<std::int32_t>(g.grid.cells.connectivity), as_type<std::uint32_t>(g.grid.cells.connectivity),
-                                 as_type<std::int64_t>(g.grid.cells.connectivity), as_type<std::uint64_t>(g.grid.cells.connectivity)}) {
+    for (std::size_t cell = 0; cell <= g.grid.cells.count(); ++cell)
+        offsets.push_back(static_cast<std::int64_t>(4 * cell));
+    for (const Array& numbers :
+         {as_type<std::int32_t>(g.grid.cells.connectivity), as_type<std::uint32_t>(g.grid.cells.connectivity),
+          as_type<std::int64_t>(g.grid.cells.connectivity), as_type<std::uint64_t>(g.grid.cells.connectivity)}) {
         Grid grid = g.grid;
         grid.cells.connectivity = numbers;
         EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected) << name_of(numbers.type());
         grid.cells.offsets = Array::own(offsets);
-        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected) << name_of(numbers.type()) << " with offsets";
+        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected)
+            << name_of(numbers.type()) << " with offsets";
         grid.cells.types = Array::own(std::vector<std::uint8_t>(grid.cells.count(), 10));
-        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected) << name_of(numbers.type()) << " with types";
+        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected)
+            << name_of(numbers.type()) << " with types";
     }
 }
 
 TEST(ThreadsOnce, DoNotMatter) {
     const Grid shuffled = made_grid("shuffled", 24, {"gyroid"}), mixed = made_grid("mixed", 16, {"wavelet", "integer"});
-    for (const auto& [grid, field, isovalue] : {std::tuple{shuffled, point_field(shuffled), 0.1}, {mixed, point_field(mixed, 1), 2.0}})
+    for (const auto& [grid, field, isovalue] :
+         {std::tuple{shuffled, point_field(shuffled), 0.1}, {mixed, point_field(mixed, 1), 2.0}})
         for (const Ties ties : {Ties::merge, Ties::keep}) {
             std::string expected;
             for (const int threads : {1, 2, 7, 64, 7, 2}) {
@@ -56,7 +61,8 @@ TEST(ThreadsOnce, DoNotMatter) {
 
 TEST(InstructionLevelsOnce, GiveTheSameBytes) {
     for (const std::uint32_t seed : Seeds(1, 6)) {
-        const NastyGrid g = nasty_grid(seed, {.side = 9, .values = int(seed % 2) * 5, .missing = 0.05, .inverted = 0.1, .wide = seed % 3 == 0});
+        const NastyGrid g = nasty_grid(
+            seed, {.side = 9, .values = int(seed % 2) * 5, .missing = 0.05, .inverted = 0.1, .wide = seed % 3 == 0});
         const OnceOptions options = with_everything(Ties::merge, Precision::single);
         for (const double isovalue : {-0.5, 0.0, 0.25, 1.5}) {
             std::string expected;

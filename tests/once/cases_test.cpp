@@ -35,9 +35,10 @@ void expect_all_cases(const std::vector<Place>& points, const std::vector<Corner
                 options.extract.ties = ties;
                 options.extract.edge_ends = options.extract.source_cells = true;
                 options.extract.threads = 1;
-                ASSERT_EQ(sets_of(surface_once(grid, field, 0, options)), sets_of(extract(packed, 0, options.extract).value().surface))
-                    << "pattern " << pattern << ", tets " << testing::PrintToString(tets) << ", ties " << int(ties) << ", engine "
-                    << int(engine);
+                ASSERT_EQ(sets_of(surface_once(grid, field, 0, options)),
+                          sets_of(extract(packed, 0, options.extract).value().surface))
+                    << "pattern " << pattern << ", tets " << testing::PrintToString(tets) << ", ties " << int(ties)
+                    << ", engine " << int(engine);
             }
     }
 }
@@ -82,7 +83,8 @@ TEST(SplitCellsOnce, KeepFlatPiecesAsUprightAsTheirCell) {
     // A hexahedron squeezed until some of its pieces are flat, and its mirror image.
     for (const double z : {0.0, 1.0, -1.0})
         for (const bool mirrored : {false, true}) {
-            std::vector<float> points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, static_cast<float>(z), 0, 1, 1};
+            std::vector<float> points{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, static_cast<float>(z),
+                                      0, 1, 1};
             if (mirrored)
                 for (std::size_t i = 0; i < points.size(); i += 3) points[i] = -points[i];
             Grid grid;

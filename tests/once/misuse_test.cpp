@@ -28,8 +28,8 @@ std::string message_of(const Result<T>& result, ErrorCode code) {
     return result.error().message;
 }
 
-std::string refusal(const Grid& grid, const PointField& field, const std::vector<double>& isovalues, const OnceOptions& options,
-                    ErrorCode code = ErrorCode::invalid_argument) {
+std::string refusal(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
+                    const OnceOptions& options, ErrorCode code = ErrorCode::invalid_argument) {
     return message_of(extract_once(grid, field, isovalues, options), code);
 }
 
@@ -46,7 +46,8 @@ void expect_refused_as_by_pack(const Grid& grid) {
         }
 }
 
-Grid typed_cells(std::vector<std::int64_t> connectivity, std::vector<std::int64_t> offsets, std::vector<std::uint8_t> types) {
+Grid typed_cells(std::vector<std::int64_t> connectivity, std::vector<std::int64_t> offsets,
+                 std::vector<std::uint8_t> types) {
     Grid grid = one_tet();
     grid.cells.connectivity = Array::own(std::move(connectivity));
     grid.cells.offsets = Array::own(std::move(offsets));
@@ -71,7 +72,8 @@ TEST(BrokenGridsOnce, HavePointNumbersOutOfRange) {
 TEST(BrokenGridsOnce, NameTheFirstBrokenCellOfMany) {
     Grid grid = made_grid("shuffled", 24, {"gyroid"});
     std::vector<std::int64_t> corners;
-    for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i) corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+    for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i)
+        corners.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
     corners[4 * 70000 + 1] = 99999999;
     corners[4 * 9000 + 2] = -5;
     grid.cells.connectivity = Array::own(std::move(corners));
@@ -79,7 +81,8 @@ TEST(BrokenGridsOnce, NameTheFirstBrokenCellOfMany) {
 }
 
 TEST(BrokenGridsOnce, HaveOffsetsThatFallOrLeadOutside) {
-    for (const std::vector<std::int64_t>& offsets : {std::vector<std::int64_t>{0, 4, 2}, {0, 4, 9}, {0, 3, 8}, {-4, 4, 8}, {9, 4, 8}}) {
+    for (const std::vector<std::int64_t>& offsets :
+         {std::vector<std::int64_t>{0, 4, 2}, {0, 4, 9}, {0, 3, 8}, {-4, 4, 8}, {9, 4, 8}}) {
         Grid grid = tet_grid(unit, {{0, 1, 2, 3}, {1, 2, 3, 4}});
         grid.cells.offsets = Array::own(offsets);
         expect_refused_as_by_pack(grid);
@@ -95,12 +98,14 @@ TEST(BrokenGridsOnce, HaveCoordinatesThatAreNotFiniteOrTooLarge) {
             points[2][axis] = wrong;
             expect_refused_as_by_pack(tet_grid<double>(points, {{0, 1, 2, 3}}));
             expect_refused_as_by_pack(tet_grid<float>(points, {{0, 1, 2, 3}}));
-            expect_refused_as_by_pack(tet_grid<float>(points, {{0, 1, 3, 4}, {2, 2, 2, 2}})); // a collapsed tet uses it, too
+            expect_refused_as_by_pack(
+                tet_grid<float>(points, {{0, 1, 3, 4}, {2, 2, 2, 2}})); // a collapsed tet uses it, too
             Grid hexahedron = tet_grid<float>(points, {});
             hexahedron.cells.connectivity = Array::own(std::vector<std::int32_t>{0, 1, 2, 3, 4, 0, 1, 2});
             hexahedron.cells.uniform_type = CellType::hexahedron;
             expect_refused_as_by_pack(hexahedron);
-            EXPECT_TRUE(extract_once(tet_grid<float>(points, {{0, 1, 3, 4}}), some_field(), std::vector<double>{0.5})) << wrong;
+            EXPECT_TRUE(extract_once(tet_grid<float>(points, {{0, 1, 3, 4}}), some_field(), std::vector<double>{0.5}))
+                << wrong;
         }
 }
 
@@ -125,13 +130,16 @@ TEST(BrokenGridsOnce, HaveArraysOfTheWrongTypeOrShape) {
 TEST(WrongCallsOnce, AreRefusedInWords) {
     EXPECT_EQ(refusal(one_tet(), some_field(), {0, std::nan("")}, {}), "isovalues[1] is nan, but must be finite");
     EXPECT_EQ(refusal(one_tet(), some_field(), {infinity}, {}), "the isovalue is inf, but must be finite");
-    EXPECT_EQ(refusal(one_tet(), field_of<float>({0, 1, 2}, "short"), {0}, {}), "field 'short' has 3 values, but the grid has 5 points");
+    EXPECT_EQ(refusal(one_tet(), field_of<float>({0, 1, 2}, "short"), {0}, {}),
+              "field 'short' has 3 values, but the grid has 5 points");
     PointField vector = field_of(std::vector<float>(15, 0), "velocity");
     vector.values = Array(ScalarType::float32, vector.values.data(), 5, 3, nullptr);
-    EXPECT_EQ(refusal(one_tet(), vector, {0}, {}), "field 'velocity' has 3 components, but the contoured field must have 1");
+    EXPECT_EQ(refusal(one_tet(), vector, {0}, {}),
+              "field 'velocity' has 3 components, but the contoured field must have 1");
     OnceOptions options;
     options.extract.point_fields = {{"p", Array::own(std::vector<float>{1, 2})}};
-    EXPECT_EQ(refusal(one_tet(), some_field(), {0}, options), "point field 'p' has 2 tuples, but the grid has 5 points");
+    EXPECT_EQ(refusal(one_tet(), some_field(), {0}, options),
+              "point field 'p' has 2 tuples, but the grid has 5 points");
     options = {};
     options.extract.cell_fields = {{"c", Array::own(std::vector<float>{1, 2})}};
     EXPECT_EQ(refusal(one_tet(), some_field(), {0}, options), "cell field 'c' has 2 tuples, but the grid has 1 cells");
@@ -161,7 +169,9 @@ void extract_with_little_memory(std::uint64_t side, std::uint64_t bytes) {
     OnceOptions options;
     options.extract.threads = 1;
     options.extract.ties = Ties::keep;
-    if (!extract_once(made_grid("kuhn", 2, {"integer"}), field_of(std::vector<float>(27, 0)), std::vector<double>{0}, options)) std::exit(3);
+    if (!extract_once(made_grid("kuhn", 2, {"integer"}), field_of(std::vector<float>(27, 0)), std::vector<double>{0},
+                      options))
+        std::exit(3);
     leave_memory(bytes);
     const auto result = extract_once(grid, point_field(grid), std::vector<double>{2}, options);
     if (result) std::exit(1);
@@ -180,7 +190,8 @@ TEST_F(OutOfMemoryOnce, IsToldWhileCellsAreLookedAt) {
 }
 
 TEST_F(OutOfMemoryOnce, IsToldBeforeTheSurfaceIsMade) {
-    EXPECT_EXIT(extract_with_little_memory(72, 80 << 20), testing::ExitedWithCode(0), "^the surface needs [0-9.]+ MB, but [0-9.]+ MB are free");
+    EXPECT_EXIT(extract_with_little_memory(72, 80 << 20), testing::ExitedWithCode(0),
+                "^the surface needs [0-9.]+ MB, but [0-9.]+ MB are free");
 }
 
 } // namespace

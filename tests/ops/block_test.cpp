@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t megabyte = std::size_t{1} << 20;
 
 TEST(Block, OfAnySizeCanBeWrittenToItsEnd) {
-    for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, large_block - 1, large_block, large_block + 1, 9 * megabyte + 123}) {
+    for (const std::size_t bytes :
+         {std::size_t{0}, std::size_t{1}, large_block - 1, large_block, large_block + 1, 9 * megabyte + 123}) {
         const Block block = take_block(bytes);
         ASSERT_NE(block.data, nullptr);
         EXPECT_GE(block.bytes, bytes);
@@ -92,7 +93,8 @@ TEST(BlockReuse, KeepsNothingThatWouldRaiseThePeak) {
     const BlockReuse reuse;
     const Block first = take_block(40 * megabyte);
     give_back(first);
-    const Block second = take_block(60 * megabyte); // the first is not large enough: both together were more than either
+    const Block second =
+        take_block(60 * megabyte); // the first is not large enough: both together were more than either
     EXPECT_EQ(drop_kept_blocks(), 0u);
     const Block third = take_block(20 * megabyte); // 80 MB is the peak from now on
     give_back(second);

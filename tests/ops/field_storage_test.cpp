@@ -28,13 +28,15 @@ T some_value(std::mt19937& random, int kind) {
     } else {
         const double rare = std::uniform_real_distribution<double>(0, 1)(random);
         if (kind >= 4 && rare < 0.05) return std::numeric_limits<T>::quiet_NaN();
-        if (kind >= 4 && rare < 0.08) return rare < 0.065 ? std::numeric_limits<T>::infinity() : -std::numeric_limits<T>::infinity();
+        if (kind >= 4 && rare < 0.08)
+            return rare < 0.065 ? std::numeric_limits<T>::infinity() : -std::numeric_limits<T>::infinity();
         if (kind >= 4 && rare < 0.12) return T(-0.0);
         switch (kind % 4) {
         case 0: return static_cast<T>(x - 50);
         case 1: return static_cast<T>(101325 + x / 100); // an offset
         case 2: return static_cast<T>(x * 1e-25);        // a scale
-        default: return static_cast<T>(rare < 0.5 ? x * 1e30 : x * 1e-30); // a scale, and values too small beside others
+        default:
+            return static_cast<T>(rare < 0.5 ? x * 1e30 : x * 1e-30); // a scale, and values too small beside others
         }
     }
 }
@@ -51,7 +53,8 @@ Expected expected_of(const Array& values, const Packed& packed, std::vector<Real
     std::vector<double> exact;
     for (std::size_t i = 0; i < packed.points(); ++i) exact.push_back(values.at(packed.user_point(i)));
     for (const double value : exact) out.statistics.add(value);
-    out.storage = core::choose_offset(values.type(), out.statistics, packed.single() ? Precision::single : Precision::double_);
+    out.storage =
+        core::choose_offset(values.type(), out.statistics, packed.single() ? Precision::single : Precision::double_);
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (const double value : exact) {
         const double magnitude = std::abs(value - out.storage.offset);
@@ -115,7 +118,8 @@ TEST(GroupRanges, AreThoseOfTheCornersOnEveryLevel) {
     constexpr std::size_t groups = 9;
     std::vector<core::StoredTet> tets(core::group_size * groups);
     for (core::StoredTet& tet : tets)
-        for (std::uint8_t& corner : tet.corners) corner = static_cast<std::uint8_t>(random() % core::max_cluster_points);
+        for (std::uint8_t& corner : tet.corners)
+            corner = static_cast<std::uint8_t>(random() % core::max_cluster_points);
     for (int round = 0; round < 20; ++round) {
         core::PointSteps lower, upper;
         for (std::size_t k = 0; k < lower.size(); ++k) {

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 class ControlGroup : public testing::Test {
 protected:
     ControlGroup()
-        : folder(fs::path(testing::TempDir()) /
-                 ("isotet_" + std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name())) {}
+        : folder(fs::path(testing::TempDir()) / ("isotet_" + std::to_string(::getpid()) +
+                                                 testing::UnitTest::GetInstance()->current_test_info()->name())) {}
     ~ControlGroup() override { fs::remove_all(folder); }
     void put(const std::string& name, const std::string& content) const {
         fs::create_directories((folder / name).parent_path());

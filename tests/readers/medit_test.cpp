@@ -124,8 +124,9 @@ TEST(ReadMeditErrors, OfTheSolutionSaySo) {
     const std::string mesh = head + "Tetrahedra 1 1 2 3 4 5 End";
     EXPECT_EQ(error_of(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 3 1 1 1 2 3 End"),
               "the .sol file beside it has values for 3 vertices, but there are 4");
-    EXPECT_EQ(error_of(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 4 1 9 1 2 3 4 End"),
-              "the .sol file beside it: SolAtVertices: field 1 is of kind 9, but 1 to 4 are the rule, at line 1 (its end)");
+    EXPECT_EQ(
+        error_of(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 4 1 9 1 2 3 4 End"),
+        "the .sol file beside it: SolAtVertices: field 1 is of kind 9, but 1 to 4 are the rule, at line 1 (its end)");
 }
 
 } // namespace

@@ -19,7 +19,8 @@ using render::ticks_of;
 
 std::vector<std::string> labels(double lower, double upper, std::size_t most = 6, bool logarithmic = false) {
     std::vector<std::string> all;
-    for (const Tick& tick : ticks_of({.lower = lower, .upper = upper, .logarithmic = logarithmic}, most)) all.push_back(tick.label);
+    for (const Tick& tick : ticks_of({.lower = lower, .upper = upper, .logarithmic = logarithmic}, most))
+        all.push_back(tick.label);
     return all;
 }
 
@@ -100,12 +101,15 @@ TEST(Annotations, StandBesideTheScene) {
     // Every colour of the map, from the top down.
     const auto seen = [&](const Color& color) {
         return std::ranges::any_of(picture.pixels, [&](const auto& pixel) {
-            return std::abs(pixel[0] - 255 * color.red) < 3 && std::abs(pixel[1] - 255 * color.green) < 3 && std::abs(pixel[2] - 255 * color.blue) < 3;
+            return std::abs(pixel[0] - 255 * color.red) < 3 && std::abs(pixel[1] - 255 * color.green) < 3 &&
+                   std::abs(pixel[2] - 255 * color.blue) < 3;
         });
     };
-    for (const double place : {0.01, 0.25, 0.5, 0.75, 0.99}) EXPECT_TRUE(seen(color_at(ColorMap::plasma, place))) << place;
+    for (const double place : {0.01, 0.25, 0.5, 0.75, 0.99})
+        EXPECT_TRUE(seen(color_at(ColorMap::plasma, place))) << place;
     EXPECT_TRUE(seen(sample().scale->no_data));
-    EXPECT_TRUE(annotate(scene_of(room, green), sample(), whole, {1, 1, 1, 1}).value().pixels == picture.pixels) << "the same every time";
+    EXPECT_TRUE(annotate(scene_of(room, green), sample(), whole, {1, 1, 1, 1}).value().pixels == picture.pixels)
+        << "the same every time";
 }
 
 TEST(Annotations, AreLeftOutWhereThePictureIsTooSmall) {
@@ -116,7 +120,8 @@ TEST(Annotations, AreLeftOutWhereThePictureIsTooSmall) {
 
 TEST(Annotations, TakeAnyText) {
     Annotation annotation = sample();
-    for (const std::string& text : {std::string(5000, 'W'), std::string("\xff\xfe\xf0\x9f"), std::string("\u4e2d\u6587 \u03bc\u00b2"), std::string(1, '\0')}) {
+    for (const std::string& text : {std::string(5000, 'W'), std::string("\xff\xfe\xf0\x9f"),
+                                    std::string("\u4e2d\u6587 \u03bc\u00b2"), std::string(1, '\0')}) {
         annotation.title = annotation.caption = text;
         const PictureSize whole{500, 300};
         const auto room = room_beside(annotation, whole).value();

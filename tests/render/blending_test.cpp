@@ -18,7 +18,8 @@ double coded(double part) { return part <= 0.0031308 ? part * 12.92 : 1.055 * st
 /// `front`, with an opacity, over what is opaque.
 Color over(const Color& front, double opacity, const Color& back) {
     const auto mixed = [&](float f, float b) {
-        return static_cast<float>(coded(opacity * light(static_cast<double>(f)) + (1 - opacity) * light(static_cast<double>(b))));
+        return static_cast<float>(
+            coded(opacity * light(static_cast<double>(f)) + (1 - opacity) * light(static_cast<double>(b))));
     };
     return {mixed(front.red, back.red), mixed(front.green, back.green), mixed(front.blue, back.blue), 1};
 }

@@ -26,8 +26,9 @@ std::array<double, 2> seen(const Camera& camera, double aspect, const std::array
     const auto eye = plus(camera.target, camera.direction, camera.distance);
     const auto from_eye = minus(point, eye);
     const double depth = -dot(from_eye, camera.direction);
-    const double half =
-        camera.projection == Projection::parallel ? camera.height / 2 : depth * std::tan(camera.angle * std::numbers::pi / 360);
+    const double half = camera.projection == Projection::parallel
+                            ? camera.height / 2
+                            : depth * std::tan(camera.angle * std::numbers::pi / 360);
     return {dot(from_eye, cross(camera.up, camera.direction)) / (half * aspect), dot(from_eye, camera.up) / half};
 }
 
@@ -39,7 +40,8 @@ Places places_of(const Camera& camera, double aspect, const Box& box) {
     Places places;
     for (int corner = 0; corner < 8; ++corner) {
         std::array<double, 3> point{};
-        for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = corner >> axis & 1 ? box.upper[axis] : box.lower[axis];
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            point[axis] = corner >> axis & 1 ? box.upper[axis] : box.lower[axis];
         const auto [x, y] = seen(camera, aspect, point);
         places.left = std::min(places.left, x);
         places.right = std::max(places.right, x);
@@ -57,7 +59,8 @@ TEST(Camera, SeesTheWholeBoxAsLargeAsItCan) {
                 Camera camera = camera_of(view, projection);
                 camera.fit(box, aspect, 0.05);
                 const Places places = places_of(camera, aspect, box);
-                EXPECT_NEAR(std::max({-places.left, places.right, -places.lower, places.upper}), 0.9, 0.02) << name_of(view) << aspect;
+                EXPECT_NEAR(std::max({-places.left, places.right, -places.lower, places.upper}), 0.9, 0.02)
+                    << name_of(view) << aspect;
                 EXPECT_NEAR(places.left + places.right, 0, 0.1) << name_of(view);
                 EXPECT_NEAR(places.lower + places.upper, 0, 0.1) << name_of(view);
             }

@@ -21,9 +21,12 @@ protected:
 constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
 
 TEST_F(Colors, AreThoseOfTheMap) {
-    for (const ColorMap map : {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm})
+    for (const ColorMap map :
+         {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm})
         for (const float value : {-1.0F, 0.0F, 2.5F, 7.0F, 10.0F, 1e38F})
-            EXPECT_LE(difference(seen(value, {.map = map, .lower = 0, .upper = 10}), pixel_of(color_at(map, static_cast<double>(value) / 10))), 1)
+            EXPECT_LE(difference(seen(value, {.map = map, .lower = 0, .upper = 10}),
+                                 pixel_of(color_at(map, static_cast<double>(value) / 10))),
+                      1)
                 << name_of(map) << " at " << value;
 }
 
@@ -62,7 +65,8 @@ TEST_F(Colors, BetweenVerticesAreThoseOfTheValuesBetween) {
 }
 
 TEST(ColorMaps, HaveNamesThatLeadBack) {
-    for (const ColorMap map : {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm})
+    for (const ColorMap map :
+         {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm})
         EXPECT_EQ(parse_color_map(name_of(map)), map);
     EXPECT_FALSE(parse_color_map("rainbow"));
 }
@@ -82,7 +86,8 @@ TEST(ColorNames, AreWordsOrHexadecimal) {
     EXPECT_EQ(parse_color("transparent"), (Color{0, 0, 0, 0}));
     EXPECT_EQ(parse_color("#ff0000"), (Color{1, 0, 0, 1}));
     EXPECT_EQ(parse_color("#FF000000"), (Color{1, 0, 0, 0}));
-    for (const char* wrong : {"", "#", "#fff", "#gg0000", "whitish", "#ff00000"}) EXPECT_FALSE(parse_color(wrong)) << wrong;
+    for (const char* wrong : {"", "#", "#fff", "#gg0000", "whitish", "#ff00000"})
+        EXPECT_FALSE(parse_color(wrong)) << wrong;
 }
 
 } // namespace

@@ -43,14 +43,16 @@ protected:
         scene_.surfaces.clear();
         DrawnSurface& drawn = add(surface, DrawnSurface{}.color);
         if (association) {
-            const Array& carried = association == Association::point ? surface.point_fields[0].values : surface.cell_fields[0].values;
+            const Array& carried =
+                association == Association::point ? surface.point_fields[0].values : surface.cell_fields[0].values;
             std::vector<float> floats;
             for (std::size_t i = 0; i < carried.size(); ++i) floats.push_back(static_cast<float>(carried.at(i)));
             color_by(drawn, floats, scale, *association);
         }
         const Picture uploaded = draw();
         int differing = 0;
-        for (std::size_t i = 0; i < direct.pixels.size(); ++i) differing += difference(direct.pixels[i], uploaded.pixels[i]) > 1;
+        for (std::size_t i = 0; i < direct.pixels.size(); ++i)
+            differing += difference(direct.pixels[i], uploaded.pixels[i]) > 1;
         EXPECT_EQ(differing, 0);
         EXPECT_NE(centre(direct), (Pixel{255, 255, 255, 255})) << "something is seen";
     }
@@ -63,7 +65,9 @@ protected:
 
 TEST_F(DeviceSurfaces, AreDrawnWithoutCrossingTheBus) { expect_the_same({}, {}); }
 
-TEST_F(DeviceSurfaces, AreColouredByPointsOfTheGrid) { expect_the_same(find_field(grid_, "sphere").value().values, Association::point); }
+TEST_F(DeviceSurfaces, AreColouredByPointsOfTheGrid) {
+    expect_the_same(find_field(grid_, "sphere").value().values, Association::point);
+}
 
 TEST_F(DeviceSurfaces, AreColouredByCellsOfTheGrid) {
     std::vector<float> values;
@@ -78,7 +82,8 @@ TEST_F(DeviceSurfaces, SayWhatTheyWereExtractedWithout) {
     scene_.surfaces = {{.surface = &surface_, .colors = &colors}};
     const Result<Picture> picture = renderer_->draw(scene_, options_);
     ASSERT_FALSE(picture);
-    EXPECT_NE(picture.error().message.find("must be extracted with edge_ends"), std::string::npos) << picture.error().message;
+    EXPECT_NE(picture.error().message.find("must be extracted with edge_ends"), std::string::npos)
+        << picture.error().message;
 }
 
 TEST_F(DeviceSurfaces, ThatAreEmptyOrWereNeverExtractedDrawNothing) {

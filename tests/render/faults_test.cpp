@@ -21,7 +21,8 @@ protected:
         packed_ = pack(grid, point_field(grid)).value();
         for (std::uint32_t tet = 0; tet < packed_.report().tets; ++tet) list_.push_back(tet);
         right_ = work_through(none_).value();
-        ASSERT_TRUE(std::ranges::any_of(right_.pixels, [&](const Pixel& pixel) { return pixel != right_.at(0, 0); })) << "nothing is seen";
+        ASSERT_TRUE(std::ranges::any_of(right_.pixels, [&](const Pixel& pixel) { return pixel != right_.at(0, 0); }))
+            << "nothing is seen";
     }
 
     /// Opens a device, draws, and closes it. What the validation layer complains about fails the test.
@@ -48,7 +49,8 @@ protected:
         if (!colors) return colors.error();
         auto groups = TetStore::upload(device, packed_, DrawMethod::mesh);
         if (!groups) return groups.error();
-        const TetStoreOptions nothing_there{.gradients = false, .picture_bytes = std::numeric_limits<std::uint64_t>::max()};
+        const TetStoreOptions nothing_there{.gradients = false,
+                                            .picture_bytes = std::numeric_limits<std::uint64_t>::max()};
         auto registers = TetStore::upload(device, packed_, DrawMethod::registers, nothing_there);
         if (!registers) return registers.error();
         auto opaque = groups->at(0.3);
@@ -58,7 +60,8 @@ protected:
         if (const auto triangles = translucent->triangles(); !triangles) return triangles.error();
         Scene scene;
         scene.bounds = {{-1, -1, -1}, {1, 1, 1}};
-        scene.surfaces = {{.mesh = &*mesh, .colors = &*colors}, {.tets = &*opaque}, {.opacity = 0.5, .tets = &*translucent}};
+        scene.surfaces = {
+            {.mesh = &*mesh, .colors = &*colors}, {.tets = &*opaque}, {.opacity = 0.5, .tets = &*translucent}};
         scene.lines = {outline_of(scene.bounds)};
         PictureOptions options;
         options.width = options.height = 24;
@@ -76,7 +79,8 @@ protected:
         }
         ++errors;
         const ErrorCode code = picture.error().code;
-        EXPECT_TRUE(code == ErrorCode::machine || code == ErrorCode::out_of_memory) << what << ": " << picture.error().message;
+        EXPECT_TRUE(code == ErrorCode::machine || code == ErrorCode::out_of_memory)
+            << what << ": " << picture.error().message;
         EXPECT_GT(picture.error().message.size(), 20u) << what;
     }
 
@@ -105,7 +109,8 @@ TEST_F(DrawingFaults, AnyCallThatFailsIsAnErrorOrDoneWithout) {
 }
 
 TEST_F(DrawingFaults, AnyAllocationThatFailsLeavesNothingBehind) {
-    for (const std::string function : {"vkAllocateMemory", "vkCreateBuffer", "vkCreateImage", "vkCreateGraphicsPipelines"}) {
+    for (const std::string function :
+         {"vkAllocateMemory", "vkCreateBuffer", "vkCreateImage", "vkCreateGraphicsPipelines"}) {
         const auto calls = std::ranges::count(none_.calls, function);
         ASSERT_GE(calls, 2) << function;
         std::size_t errors = 0;

@@ -51,7 +51,8 @@ TEST_F(Gallery, ShowsWhatItsCommandsDraw) {
 
 TEST_F(Gallery, HasNoPictureWithoutACommand) {
     std::size_t pictures = 0;
-    for (const auto& entry : fs::directory_iterator(root / "docs/gallery")) pictures += entry.path().extension() == ".png";
+    for (const auto& entry : fs::directory_iterator(root / "docs/gallery"))
+        pictures += entry.path().extension() == ".png";
     EXPECT_EQ(pictures, commands().size());
 }
 

@@ -34,7 +34,8 @@ protected:
     static Picture sample(std::uint8_t opacity) {
         Picture picture{7, 5, {}};
         for (int i = 0; i < 35; ++i)
-            picture.pixels.push_back({static_cast<std::uint8_t>(7 * i), static_cast<std::uint8_t>(255 - i), 3, i == 12 ? opacity : std::uint8_t{255}});
+            picture.pixels.push_back({static_cast<std::uint8_t>(7 * i), static_cast<std::uint8_t>(255 - i), 3,
+                                      i == 12 ? opacity : std::uint8_t{255}});
         return picture;
     }
 
@@ -77,8 +78,9 @@ TEST_F(PictureFile, BrokenOnesAreErrors) {
 
 /// Else a file of a hundred bytes could ask for gigabytes.
 TEST_F(PictureFile, TooShortForItsSizeIsAnErrorBeforeMemoryIsTaken) {
-    constexpr std::array<unsigned char, 33> head{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0,
-                                                 0, 0x80, 0, 0, 0, 0x80, 0, 1, 0, 0, 0, 0, 0xec, 0x07, 0x9e, 0xd2};
+    constexpr std::array<unsigned char, 33> head{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,    0,    0,
+                                                 13,   'I', 'H', 'D', 'R',  0,    0,    0x80, 0,    0,    0,
+                                                 0x80, 0,   1,   0,   0,    0,    0,    0xec, 0x07, 0x9e, 0xd2};
     constexpr std::array<unsigned char, 12> data{0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e};
     std::ofstream(path("b.png"), std::ios::binary)
         .write(reinterpret_cast<const char*>(head.data()), head.size())
@@ -86,7 +88,8 @@ TEST_F(PictureFile, TooShortForItsSizeIsAnErrorBeforeMemoryIsTaken) {
     const Result<Picture> picture = read_picture(path("b.png"));
     ASSERT_FALSE(picture);
     EXPECT_EQ(picture.error().code, ErrorCode::invalid_data);
-    EXPECT_NE(picture.error().message.find("45 bytes are too few for 32768 x 32768 pixels"), std::string::npos) << picture.error().message;
+    EXPECT_NE(picture.error().message.find("45 bytes are too few for 32768 x 32768 pixels"), std::string::npos)
+        << picture.error().message;
 }
 
 TEST_F(PictureFile, IsTheSameEveryTime) {

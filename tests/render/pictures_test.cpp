@@ -52,7 +52,8 @@ TEST_F(Pictures, WhatIsNearerHidesWhatIsFarther) {
 }
 
 TEST_F(Pictures, NothingGivesTheBackground) {
-    for (const Color& background : {Color{1, 1, 1, 1}, Color{0, 0, 0, 1}, Color{0, 0, 0, 0}, Color{0.2F, 0.4F, 0.6F, 0.5F}}) {
+    for (const Color& background :
+         {Color{1, 1, 1, 1}, Color{0, 0, 0, 1}, Color{0, 0, 0, 0}, Color{0.2F, 0.4F, 0.6F, 0.5F}}) {
         options_.background = background;
         const Picture picture = draw();
         for (const Pixel& pixel : picture.pixels) ASSERT_LE(difference(pixel, pixel_of(background)), 1);
@@ -78,8 +79,10 @@ TEST_F(Pictures, AreTheSameEveryTime) {
 
 TEST_F(Pictures, MirroredThingsHaveMirroredPictures) {
     Surface lopsided = square_at(0), mirrored = square_at(0, true);
-    lopsided.positions = Array::own(std::vector<float>{0, -0.3F, -1, 0.4F, 0.9F, -0.5F, -0.2F, 0.4F, 0.8F, 0.1F, -0.7F, 0.6F}, 3);
-    mirrored.positions = Array::own(std::vector<float>{0, 0.3F, -1, 0.4F, -0.9F, -0.5F, -0.2F, -0.4F, 0.8F, 0.1F, 0.7F, 0.6F}, 3);
+    lopsided.positions =
+        Array::own(std::vector<float>{0, -0.3F, -1, 0.4F, 0.9F, -0.5F, -0.2F, 0.4F, 0.8F, 0.1F, -0.7F, 0.6F}, 3);
+    mirrored.positions =
+        Array::own(std::vector<float>{0, 0.3F, -1, 0.4F, -0.9F, -0.5F, -0.2F, -0.4F, 0.8F, 0.1F, 0.7F, 0.6F}, 3);
     add(lopsided, blue);
     const Picture one = draw();
     scene_.surfaces.clear();
@@ -87,7 +90,8 @@ TEST_F(Pictures, MirroredThingsHaveMirroredPictures) {
     const Picture other = draw();
     int differing = 0;
     for (std::uint32_t y = 0; y < one.height; ++y)
-        for (std::uint32_t x = 0; x < one.width; ++x) differing += difference(one.at(x, y), other.at(one.width - 1 - x, y)) > 2;
+        for (std::uint32_t x = 0; x < one.width; ++x)
+            differing += difference(one.at(x, y), other.at(one.width - 1 - x, y)) > 2;
     EXPECT_EQ(differing, 0);
 }
 

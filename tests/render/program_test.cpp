@@ -15,7 +15,8 @@ protected:
         std::ifstream in(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(in), {}};
     }
-    std::vector<std::string> command(const std::string& input, const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> command(const std::string& input, const std::string& out,
+                                     std::vector<std::string> more = {}) {
         more.insert(more.begin(), {"render", input, "-o", path(out), "--size", "80x60", "--device", "software"});
         return more;
     }
@@ -44,7 +45,8 @@ TEST_F(Render, DrawsASurfaceFromAFile) {
 }
 
 TEST_F(Render, ColoursAndSaysWhatTheColoursMean) {
-    auto words = command("make:kuhn:8:sphere,gyroid", "a.png", {"-f", "sphere", "-i", "0.5", "--color-by", "gyroid", "--colormap", "cool-warm"});
+    auto words = command("make:kuhn:8:sphere,gyroid", "a.png",
+                         {"-f", "sphere", "-i", "0.5", "--color-by", "gyroid", "--colormap", "cool-warm"});
     auto report = json_of(words);
     EXPECT_EQ(report["color_by"], "gyroid");
     EXPECT_LE(report["color_range"][0], -1);
@@ -60,7 +62,8 @@ TEST_F(Render, ColoursAndSaysWhatTheColoursMean) {
 
 TEST_F(Render, ExtractsOnEitherEngineTheSamePicture) {
     const std::vector<std::string> more{"-f", "gyroid", "-i", "0.2", "--color-by", "sphere"};
-    auto on_cpu = command("make:kuhn:8:sphere,gyroid", "cpu.png", more), on_device = command("make:kuhn:8:sphere,gyroid", "device.png", more);
+    auto on_cpu = command("make:kuhn:8:sphere,gyroid", "cpu.png", more),
+         on_device = command("make:kuhn:8:sphere,gyroid", "device.png", more);
     on_device.insert(on_device.end(), {"--engine", "vulkan"});
     EXPECT_EQ(json_of(on_cpu)["engine"], "cpu");
     const auto report = json_of(on_device);
@@ -101,8 +104,10 @@ TEST_F(Render, RefusesWhatMethodsThatDrawTetsCannotDo) {
         EXPECT_EQ(run.status, 2);
         return run.err;
     };
-    EXPECT_NE(error({"--method", "textures", "--color-by", "gyroid"}).find("but --method textures makes none"), std::string::npos);
-    EXPECT_NE(error({"--method", "registers", "--engine", "cpu"}).find("but --method registers extracts nothing"), std::string::npos);
+    EXPECT_NE(error({"--method", "textures", "--color-by", "gyroid"}).find("but --method textures makes none"),
+              std::string::npos);
+    EXPECT_NE(error({"--method", "registers", "--engine", "cpu"}).find("but --method registers extracts nothing"),
+              std::string::npos);
     EXPECT_NE(error({"--filter", "octree"}).find("but --method clusters draws surfaces"), std::string::npos);
     EXPECT_NE(error({"--method", "points"}).find("--method got 'points'"), std::string::npos);
 }
@@ -110,20 +115,23 @@ TEST_F(Render, RefusesWhatMethodsThatDrawTetsCannotDo) {
 TEST_F(Render, ComparesWithAReference) {
     ASSERT_EQ(isotet(command("make:kuhn:8:sphere", "a.png", {"-i", "0.5"})).status, 0);
     const auto again = [&](const char* isovalue, const char* threshold) {
-        return isotet(command("make:kuhn:8:sphere", "b.png", {"-i", isovalue, "--reference", path("a.png"), "--threshold", threshold}));
+        return isotet(command("make:kuhn:8:sphere", "b.png",
+                              {"-i", isovalue, "--reference", path("a.png"), "--threshold", threshold}));
     };
     EXPECT_EQ(again("0.5", "0").status, 0);
     const RunResult other = again("0.7", "0.001");
     EXPECT_EQ(other.status, 1);
     EXPECT_NE(other.err.find("% of the pixels differ from "), std::string::npos) << other.err;
     EXPECT_EQ(again("0.7", "1").status, 0);
-    const RunResult missing = isotet({"render", "make:kuhn:8:sphere", "-o", path("b.png"), "--reference", path("none.png")});
+    const RunResult missing =
+        isotet({"render", "make:kuhn:8:sphere", "-o", path("b.png"), "--reference", path("none.png")});
     EXPECT_EQ(missing.status, 3);
 }
 
 TEST_F(Render, WritesTextWhereThereIsRoom) {
     const auto words = [&](const char* out, const char* size) {
-        return std::vector<std::string>{"render", "make:kuhn:8:sphere", "-o", path(out), "--size", size, "--device", "software"};
+        return std::vector<std::string>{"render", "make:kuhn:8:sphere", "-o",      path(out), "--size",
+                                        size,     "--device",           "software"};
     };
     RunResult run = isotet(words("a.png", "400x300"));
     EXPECT_EQ(run.err.find("too small for text"), std::string::npos) << run.err;
@@ -144,8 +152,8 @@ TEST_F(Render, SaysWhenThereIsNoSurface) {
 }
 
 TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndFilter) {
-    const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", "software", "--rounds", "1", "--filters",
-                                 "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
+    const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", "software", "--rounds", "1",
+                                 "--filters", "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
     EXPECT_EQ(report["device"]["kind"], "software");
     ASSERT_EQ(report["rows"].size(), 3 + 4 * 6u);
     const std::uint64_t tets = 6 * 6 * 6 * 6;
@@ -166,17 +174,19 @@ TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndFilter) {
 
 TEST_F(Render, OfWhatDoesNotFitCrossesTheBusWhenBenchMeasuresIt) {
     const auto crossing = [](const char* memory) {
-        return json_of({"bench", "make:kuhn:30:sphere", "-i", "0.6", "--device", "software", "--device-memory", memory, "--rounds", "1", "--methods",
-                        "registers", "--filters", "none"})["rows"][0];
+        return json_of({"bench", "make:kuhn:30:sphere", "-i", "0.6", "--device", "software", "--device-memory", memory,
+                        "--rounds", "1", "--methods", "registers", "--filters", "none"})["rows"][0];
     };
     const auto all = crossing("1GB"), some = crossing("32MB");
     EXPECT_EQ(all["bytes"]["crossing"], 0);
     EXPECT_GT(some["bytes"]["crossing"], 0) << some;
-    EXPECT_EQ(all["bytes"]["device"], some["bytes"]["device"].get<std::uint64_t>() + some["bytes"]["crossing"].get<std::uint64_t>());
+    EXPECT_EQ(all["bytes"]["device"],
+              some["bytes"]["device"].get<std::uint64_t>() + some["bytes"]["crossing"].get<std::uint64_t>());
 }
 
 TEST_F(Render, IsNothingThatBenchCouldMeasureWithoutMemory) {
-    const RunResult run = isotet({"bench", "make:kuhn:4:sphere", "--device", "software", "--device-memory", "1kB", "--rounds", "1"});
+    const RunResult run =
+        isotet({"bench", "make:kuhn:4:sphere", "--device", "software", "--device-memory", "1kB", "--rounds", "1"});
     EXPECT_EQ(run.status, 4);
     EXPECT_NE(run.err.find("nothing could be measured: "), std::string::npos) << run.err;
     EXPECT_NE(run.out.find("not measured: brute on make:kuhn:4:sphere: "), std::string::npos) << run.out;
@@ -237,7 +247,9 @@ TEST_F(Render, RefusesFramesThatFitNoFile) {
         EXPECT_EQ(run.status, 2);
         return run.err;
     };
-    EXPECT_NE(error("a.png", {"--orbit", "4"}).find("but 4 pictures need one that ends in .webp, or that holds {frame}"), std::string::npos);
+    EXPECT_NE(
+        error("a.png", {"--orbit", "4"}).find("but 4 pictures need one that ends in .webp, or that holds {frame}"),
+        std::string::npos);
     EXPECT_NE(error("a{frame}.webp", {"--orbit", "4"}).find("4 pictures need"), std::string::npos);
     EXPECT_NE(error("a{frame}.png", {}).find("only pictures of --sweep and --orbit have numbers"), std::string::npos);
     EXPECT_NE(error("a.webp", {}).find("it must end in .png"), std::string::npos);

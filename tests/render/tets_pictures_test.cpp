@@ -101,7 +101,8 @@ TEST_F(TetPictures, SeveralSurfacesAndMeshesShareAPicture) {
     const Picture clusters = draw();
     scene_.surfaces = {{.color = color_, .opacity = 0.5, .tets = &low}, {.color = color_, .tets = &high}};
     expect_alike(draw(), clusters);
-    scene_.surfaces = {{.color = color_, .opacity = 0.5, .tets = &low}, {.mesh = meshes_.back().get(), .color = color_}};
+    scene_.surfaces = {{.color = color_, .opacity = 0.5, .tets = &low},
+                       {.mesh = meshes_.back().get(), .color = color_}};
     expect_alike(draw(), clusters);
 }
 
@@ -117,7 +118,8 @@ TEST_F(TetPictures, AreTheSameWhereTheDeviceHasNoRoomForAllTets) {
     for (const std::uint64_t pages_there : {3, 1, 0}) {
         SCOPED_TRACE(pages_there);
         const bool has_room = pages_there == 3;
-        reopen_with(has_room ? 0 : (1 + pages_there) * page + 6 * mega + mega / 2); // with room for the page that is sent
+        reopen_with(has_room ? 0
+                             : (1 + pages_there) * page + 6 * mega + mega / 2); // with room for the page that is sent
         TetStore store = TetStore::upload(*device_, packed_, DrawMethod::registers_instanced,
                                           {.gradients = false, .picture_bytes = 6 * mega})
                              .value();
@@ -129,7 +131,8 @@ TEST_F(TetPictures, AreTheSameWhereTheDeviceHasNoRoomForAllTets) {
         for (auto* known : {&opaque, &translucent}) {
             const Picture picture = drawn(all, known == &opaque ? 1 : 0.4);
             EXPECT_GE(renderer_->work().uploaded_bytes, elsewhere);
-            EXPECT_LT(renderer_->work().uploaded_bytes, 2 * elsewhere + 2 * mega) << "twice where fragments had no room";
+            EXPECT_LT(renderer_->work().uploaded_bytes, 2 * elsewhere + 2 * mega)
+                << "twice where fragments had no room";
             if (!*known) *known = picture;
             EXPECT_TRUE(picture.pixels == (*known)->pixels);
         }
@@ -155,7 +158,8 @@ TEST_F(TetPictures, NoRoomForOnePageIsAnErrorThatSaysSo) {
 TEST_F(TetPictures, OfAFieldAreRefused) {
     TetStore store = TetStore::upload(*device_, packed_, DrawMethod::textures).value();
     const TetSurface tets = store.at(0.1).value();
-    const DeviceColors colors = DeviceColors::of_grid(*device_, packed_, point_field(grid_).values, Association::point, {}).value();
+    const DeviceColors colors =
+        DeviceColors::of_grid(*device_, packed_, point_field(grid_).values, Association::point, {}).value();
     scene_.surfaces = {{.colors = &colors, .tets = &tets}};
     EXPECT_NE(renderer_->draw(scene_, options_).error().message.find("a field cannot colour them"), std::string::npos);
     scene_.surfaces = {{.opacity = 2, .tets = &tets}};

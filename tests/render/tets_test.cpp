@@ -58,7 +58,8 @@ protected:
     /// With all tets, and with the list of every filter.
     void expect_reference_triangles(const PackedGrid& packed, const std::vector<double>& isovalues) {
         std::vector<TetStore> stores;
-        for (const DrawMethod method : all_draw_methods) stores.push_back(TetStore::upload(*device_, packed, method).value());
+        for (const DrawMethod method : all_draw_methods)
+            stores.push_back(TetStore::upload(*device_, packed, method).value());
         for (const double isovalue : isovalues) {
             SCOPED_TRACE(isovalue);
             const Triangles expected = reference_triangles(packed, isovalue);
@@ -90,7 +91,8 @@ TEST_F(Tets, StoresTakeWhatThePaperSays) {
     const std::uint64_t tables = 4 * (8 * 4 + 6 * 2);
     EXPECT_EQ(tet_store_bytes(DrawMethod::textures, 1000, 300, false), 16u * 1000 + 16 * 300 + tables);
     EXPECT_EQ(tet_store_bytes(DrawMethod::textures, 1000, 300, true), 16u * 1000 + 32 * 300 + tables);
-    EXPECT_EQ(tet_store_bytes(DrawMethod::mesh, 1000, 300, true), 16u * 1000 + 32 * 300 + tables + 8 * 32) << "32 groups";
+    EXPECT_EQ(tet_store_bytes(DrawMethod::mesh, 1000, 300, true), 16u * 1000 + 32 * 300 + tables + 8 * 32)
+        << "32 groups";
     const Grid grid = made_grid("mixed", 8, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid), {.gradients = true}).value();
     const std::uint64_t tets = packed.report().tets, points = packed.report().points;
@@ -184,7 +186,8 @@ TEST_F(Tets, MeshShadersAreAskedOfDevicesThatHaveThemOnly) {
     const auto without = TetStore::upload(*device_, packed, DrawMethod::mesh);
     ASSERT_FALSE(without);
     EXPECT_EQ(without.error().code, ErrorCode::machine);
-    EXPECT_NE(without.error().message.find("has no mesh shaders (VK_EXT_mesh_shader)"), std::string::npos) << without.error().message;
+    EXPECT_NE(without.error().message.find("has no mesh shaders (VK_EXT_mesh_shader)"), std::string::npos)
+        << without.error().message;
     TetStore textures = TetStore::upload(*device_, packed, DrawMethod::textures).value();
     const TetSurface tets = textures.at(0.1).value();
     scene_.surfaces = {{.tets = &tets}};
@@ -213,7 +216,8 @@ TEST_F(Tets, WhatCannotBeIsRefused) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    EXPECT_EQ(TetStore::upload(*device_, packed, DrawMethod::textures, {}, 0, progress).error().code, ErrorCode::cancelled);
+    EXPECT_EQ(TetStore::upload(*device_, packed, DrawMethod::textures, {}, 0, progress).error().code,
+              ErrorCode::cancelled);
 }
 
 } // namespace

@@ -20,7 +20,9 @@
 namespace isotet::test {
 namespace {
 
-bool is_exact(Filter filter) { return filter == Filter::interval_tree || filter == Filter::seed_set || filter == Filter::span_space; }
+bool is_exact(Filter filter) {
+    return filter == Filter::interval_tree || filter == Filter::seed_set || filter == Filter::span_space;
+}
 
 /// Builds every filter on a field, and asks it for the isovalues one after another.
 void expect_all_cut_tets_found(const Grid& grid, const PointField& field, const std::vector<double>& isovalues) {
@@ -56,7 +58,8 @@ TEST(Filters, FindAllCutTetsOfManyComponentsAndExtrema) {
     Grid grid = made_grid("shuffled", 14, {"wavelet"});
     std::vector<float> values(grid.points.tuples());
     for (std::size_t p = 0; p < values.size(); ++p) // a bump around every fifth point or so
-        values[p] = static_cast<float>(std::sin(9 * grid.points.at(p, 0)) * std::sin(8 * grid.points.at(p, 1)) * std::sin(7 * grid.points.at(p, 2)));
+        values[p] = static_cast<float>(std::sin(9 * grid.points.at(p, 0)) * std::sin(8 * grid.points.at(p, 1)) *
+                                       std::sin(7 * grid.points.at(p, 2)));
     expect_all_cut_tets_found(grid, field_of(values), {0.9, 0.5, 0.1, 0, -0.1, -0.5, -0.9, 0.95});
 }
 
@@ -76,7 +79,8 @@ TEST(Filters, FindAllCutTetsOfNastyFields) {
 TEST(Filters, FindAllCutTetsOfPlateaus) {
     Grid grid = made_grid("kuhn", 10, {"plane"});
     std::vector<float> values(grid.points.tuples());
-    for (std::size_t p = 0; p < values.size(); ++p) values[p] = static_cast<float>(std::round(2 * std::hypot(grid.points.at(p, 0), grid.points.at(p, 1))));
+    for (std::size_t p = 0; p < values.size(); ++p)
+        values[p] = static_cast<float>(std::round(2 * std::hypot(grid.points.at(p, 0), grid.points.at(p, 1))));
     expect_all_cut_tets_found(grid, field_of(values), {0, 1, 2, 0.5, 1.5, 3});
 }
 
@@ -87,7 +91,8 @@ TEST(Filters, FindNothingInAConstantFieldOrOneWithoutData) {
         for (const Filter filter : all_filters) {
             TetFilter tets = TetFilter::build(packed, filter).value();
             const std::size_t expected = filter == Filter::none ? packed.report().tets : 0;
-            for (const double isovalue : {1.0, 0.0, 2.0}) EXPECT_EQ(tets.find(isovalue).value()->size(), expected) << name_of(filter);
+            for (const double isovalue : {1.0, 0.0, 2.0})
+                EXPECT_EQ(tets.find(isovalue).value()->size(), expected) << name_of(filter);
         }
     }
 }
@@ -113,7 +118,8 @@ TEST(Filters, AreTheSameForAnyNumberOfThreads) {
     for (const Filter filter : all_filters) {
         TetFilter one = TetFilter::build(packed, filter, 1).value(), four = TetFilter::build(packed, filter, 4).value();
         EXPECT_EQ(one.report().filter_bytes, four.report().filter_bytes);
-        for (const double isovalue : {0.1, 0.2, -0.3}) EXPECT_EQ(*one.find(isovalue).value(), *four.find(isovalue).value()) << name_of(filter);
+        for (const double isovalue : {0.1, 0.2, -0.3})
+            EXPECT_EQ(*one.find(isovalue).value(), *four.find(isovalue).value()) << name_of(filter);
     }
 }
 

@@ -22,7 +22,9 @@ namespace {
 using core::TetTable;
 using search::FaceNeighbours;
 
-TetTable table_of(const Grid& grid, const PointField& field) { return core::make_tet_table(pack(grid, field).value().data()).value(); }
+TetTable table_of(const Grid& grid, const PointField& field) {
+    return core::make_tet_table(pack(grid, field).value().data()).value();
+}
 
 TEST(TetTables, HoldSixteenBytesATetAndAPoint) {
     const Grid grid = made_grid("mixed", 5, {"gyroid"});
@@ -32,7 +34,8 @@ TEST(TetTables, HoldSixteenBytesATetAndAPoint) {
     EXPECT_EQ(table.clusters(), packed.report().clusters);
     std::multiset<float> values, expected;
     for (const auto& point : table.points) values.insert(point[3]);
-    for (std::size_t p = 0; p < grid.points.tuples(); ++p) expected.insert(static_cast<float>(grid.point_fields[0].values.at(p)));
+    for (std::size_t p = 0; p < grid.points.tuples(); ++p)
+        expected.insert(static_cast<float>(grid.point_fields[0].values.at(p)));
     EXPECT_EQ(values, expected);
 }
 

@@ -32,7 +32,8 @@ TEST_P(ReadExodus, SharesNodesBetweenBlocksAndDoesNotMoveThem) {
     EXPECT_EQ(result->grid.points.at(1, 0), 1);
     ASSERT_EQ(result->grid.cells.count(), 2u);
     const std::vector<std::int64_t> corners = {0, 1, 2, 3, 0, 2, 1, 4};
-    for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(result->grid.cells.connectivity.at(i), static_cast<double>(corners[i]));
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(result->grid.cells.connectivity.at(i), static_cast<double>(corners[i]));
 }
 
 TEST_P(ReadExodus, KeepsTheNamesOfVariables) {

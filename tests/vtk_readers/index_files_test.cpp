@@ -55,7 +55,8 @@ TEST_F(IndexFiles, PvtuJoinsPiecesByCoordinatesWhenAsked) {
 }
 
 TEST_F(IndexFiles, PvdSortsItsTimes) {
-    const std::string path = folder_.write("case/run.pvd", pvd({{"2.5", "parts/a.vtu"}, {"1", "parts/a.vtu"}, {"2.5", "parts/a.vtu"}}));
+    const std::string path =
+        folder_.write("case/run.pvd", pvd({{"2.5", "parts/a.vtu"}, {"1", "parts/a.vtu"}, {"2.5", "parts/a.vtu"}}));
     const auto info = inspect(path);
     ASSERT_TRUE(info) << info.error().message;
     EXPECT_EQ(info->times, (std::vector<double>{1, 2.5}));
@@ -70,8 +71,10 @@ TEST_F(IndexFiles, PvdSortsItsTimes) {
 TEST_F(IndexFiles, OutsideOfTheFolderIsRefusedUnlessAllowed) {
     const std::string absolute = folder_.file("outside.vtu");
     for (const std::string& name : {std::string("../outside.vtu"), std::string("parts/../../outside.vtu"), absolute}) {
-        EXPECT_NE(error_of("case/a.pvtu", pvtu({name})).find("only files below its own folder"), std::string::npos) << name;
-        EXPECT_NE(error_of("case/a.pvd", pvd({{"0", name}})).find("only files below its own folder"), std::string::npos) << name;
+        EXPECT_NE(error_of("case/a.pvtu", pvtu({name})).find("only files below its own folder"), std::string::npos)
+            << name;
+        EXPECT_NE(error_of("case/a.pvd", pvd({{"0", name}})).find("only files below its own folder"), std::string::npos)
+            << name;
         EXPECT_EQ(error_of("case/a.pvtu", pvtu({name}), true), "read");
     }
 }
@@ -80,7 +83,8 @@ TEST_F(IndexFiles, LinksThatLeadOutsideAreRefused) {
     std::filesystem::create_symlink("../outside.vtu", folder_.file("case/link.vtu"));
     std::filesystem::create_directory_symlink("..", folder_.file("case/up"));
     for (const char* name : {"link.vtu", "up/outside.vtu"})
-        EXPECT_NE(error_of("case/a.pvtu", pvtu({name})).find("only files below its own folder"), std::string::npos) << name;
+        EXPECT_NE(error_of("case/a.pvtu", pvtu({name})).find("only files below its own folder"), std::string::npos)
+            << name;
 }
 
 TEST_F(IndexFiles, UrlsAreRefusedAlways) {

@@ -120,7 +120,8 @@ TEST(Join, IsAnErrorWhenACellHasAPointOutOfRange) {
     loaded.pieces[1].grid.cells.connectivity = numbers({0, 1, 2, 4});
     const auto result = join(std::move(loaded), false);
     ASSERT_FALSE(result);
-    EXPECT_NE(result.error().message.find("cell 0 has point 4, but there are 4 points"), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().message.find("cell 0 has point 4, but there are 4 points"), std::string::npos)
+        << result.error().message;
 }
 
 TEST(Join, IsAnErrorWhenAFieldHasTheWrongLength) {

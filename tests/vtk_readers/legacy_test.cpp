@@ -48,29 +48,34 @@ TEST_P(ReadLegacy, AnnouncesFieldsWithTheirTypes) {
 /// The format has no end mark: cut between two sections a file is a whole one with fewer fields. It never has other values.
 TEST_P(ReadLegacy, IsAnErrorOrHasFewerFieldsForEveryTruncation) {
     const std::string content = content_of(written());
-    read_prefixes(content, "cut.vtk", content.size() / 40 + 1, [&](const Result<ReadResult>& result, std::size_t length) {
-        if (!result) return;
-        EXPECT_GT(length, content.find("CELL_TYPES")) << "cut to " << length << " bytes";
-        EXPECT_EQ(result->grid.points.tuples(), 14u);
-        EXPECT_EQ(result->grid.cells.count(), 9u);
-        EXPECT_LT(result->grid.point_fields.size() + result->grid.cell_fields.size(), 5u) << "cut to " << length << " bytes";
-    });
+    read_prefixes(content, "cut.vtk", content.size() / 40 + 1,
+                  [&](const Result<ReadResult>& result, std::size_t length) {
+                      if (!result) return;
+                      EXPECT_GT(length, content.find("CELL_TYPES")) << "cut to " << length << " bytes";
+                      EXPECT_EQ(result->grid.points.tuples(), 14u);
+                      EXPECT_EQ(result->grid.cells.count(), 9u);
+                      EXPECT_LT(result->grid.point_fields.size() + result->grid.cell_fields.size(), 5u)
+                          << "cut to " << length << " bytes";
+                  });
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ReadLegacy, testing::Values(Kind{false, 42}, Kind{true, 42}, Kind{false, 51}, Kind{true, 51}));
+INSTANTIATE_TEST_SUITE_P(Kinds, ReadLegacy,
+                         testing::Values(Kind{false, 42}, Kind{true, 42}, Kind{false, 51}, Kind{true, 51}));
 
 TEST(ReadLegacy, RefusesPolygonData) {
     const TemporaryFolder folder;
-    const auto result = read(folder.write("surface.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n"));
+    const auto result =
+        read(folder.write("surface.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n"));
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().message.find("polydata"), std::string::npos) << result.error().message;
 }
 
 TEST(ReadLegacy, ReadsStructuredPointsAsHexahedra) {
     const TemporaryFolder folder;
-    const auto result = read(folder.write("box.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\n"
-                                                     "ORIGIN 10 0 0\nSPACING 1 2 4\nPOINT_DATA 12\nSCALARS s short\nLOOKUP_TABLE default\n"
-                                                     "0 1 2 3 4 5 6 7 8 9 10 11\n"));
+    const auto result = read(
+        folder.write("box.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\n"
+                                "ORIGIN 10 0 0\nSPACING 1 2 4\nPOINT_DATA 12\nSCALARS s short\nLOOKUP_TABLE default\n"
+                                "0 1 2 3 4 5 6 7 8 9 10 11\n"));
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->grid.cells.count(), 2u);
     EXPECT_EQ(result->grid.cells.uniform_type, CellType::hexahedron);

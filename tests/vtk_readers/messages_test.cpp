@@ -27,7 +27,8 @@ ReadResult made_result() {
 
 class MemoryFile {
 public:
-    explicit MemoryFile(const std::string& content = {}) : number(::memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
+    explicit MemoryFile(const std::string& content = {})
+        : number(::memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
         EXPECT_EQ(::pwrite(number, content.data(), content.size(), 0), static_cast<ssize_t>(content.size()));
     }
     ~MemoryFile() { ::close(number); }
@@ -46,7 +47,8 @@ std::size_t touch(const Reply& reply) {
         for (std::size_t i = 0; i < array.bytes(); ++i) sum += static_cast<const unsigned char*>(array.data())[i];
     };
     if (const auto* result = std::get_if<ReadResult>(&reply)) {
-        for (const Array* array : {&result->grid.points, &result->grid.cells.connectivity, &result->grid.cells.offsets, &result->grid.cells.types})
+        for (const Array* array : {&result->grid.points, &result->grid.cells.connectivity, &result->grid.cells.offsets,
+                                   &result->grid.cells.types})
             add(*array);
         for (const auto* fields : {&result->grid.point_fields, &result->grid.cell_fields})
             for (const Field& field : *fields) add(field.values);

@@ -10,9 +10,10 @@
 namespace isotet::test {
 namespace {
 
-const std::string ucd = "# a comment\n5 2 3 1 0\n10 0 0 0\n11 1 0 0\n12 1 1 0\n13 0 1 0\n7 0 0 1\n"
-                        "1 4 tet 10 11 12 7\n2 5 pyr 7 10 11 12 13\n"
-                        "2 1 2\ntemp, K\nflow, m/s\n10 1 2 3\n11 4 5 6\n12 7 8 9\n13 10 11 12\n7 13 14 15\n1 1\nload, N\n1 0.5\n2 1.5\n";
+const std::string ucd =
+    "# a comment\n5 2 3 1 0\n10 0 0 0\n11 1 0 0\n12 1 1 0\n13 0 1 0\n7 0 0 1\n"
+    "1 4 tet 10 11 12 7\n2 5 pyr 7 10 11 12 13\n"
+    "2 1 2\ntemp, K\nflow, m/s\n10 1 2 3\n11 4 5 6\n12 7 8 9\n13 10 11 12\n7 13 14 15\n1 1\nload, N\n1 0.5\n2 1.5\n";
 
 TEST(ReadUcd, GivesPointsCellsAndFields) {
     const TemporaryFolder folder;
@@ -49,10 +50,12 @@ TEST(ReadUcd, CountsThatAreNegativeOrHugeAreErrors) {
 }
 
 std::string ensight_geometry() {
-    return "made for a test\nline two\nnode id off\nelement id off\npart\n1\nsolid\ncoordinates\n5\n0\n1\n0\n0\n0\n0\n0\n1\n0\n0\n0\n0\n0\n1\n-1\n"
+    return "made for a test\nline two\nnode id off\nelement id "
+           "off\npart\n1\nsolid\ncoordinates\n5\n0\n1\n0\n0\n0\n0\n0\n1\n0\n0\n0\n0\n0\n1\n-1\n"
            "tetra4\n2\n1 2 3 4\n1 3 2 5\n";
 }
-const std::string ensight_case = "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\nscalar per node: temp temp.scl\n";
+const std::string ensight_case =
+    "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\nscalar per node: temp temp.scl\n";
 
 TEST(ReadEnsight, GivesPartsAndVariables) {
     const TemporaryFolder folder;
@@ -81,24 +84,29 @@ TEST(ReadEnsight, RefusesFilesOutsideItsFolder) {
 }
 
 std::string foam(const std::string& kind, const std::string& object, const std::string& body) {
-    return "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class " + kind + ";\n    object " + object + ";\n}\n" + body;
+    return "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class " + kind + ";\n    object " + object +
+           ";\n}\n" + body;
 }
 
 /// Two hexahedra side by side.
 void write_foam_case(const TemporaryFolder& folder) {
-    folder.write("system/controlDict", foam("dictionary", "controlDict",
-                                            "application x;\nstartFrom startTime;\nstartTime 0;\nendTime 1;\ndeltaT 1;\n"
-                                            "writeControl timeStep;\nwriteInterval 1;\ntimeFormat general;\n"));
-    folder.write("constant/polyMesh/points", foam("vectorField", "points",
-                                                  "12\n(\n(0 0 0)\n(1 0 0)\n(2 0 0)\n(0 1 0)\n(1 1 0)\n(2 1 0)\n(0 0 1)\n(1 0 1)\n(2 0 1)\n"
-                                                  "(0 1 1)\n(1 1 1)\n(2 1 1)\n)\n"));
-    folder.write("constant/polyMesh/faces", foam("faceList", "faces",
-                                                 "11\n(\n4(1 4 10 7)\n4(0 6 9 3)\n4(2 5 11 8)\n4(0 1 7 6)\n4(1 2 8 7)\n4(3 9 10 4)\n4(4 10 11 5)\n"
-                                                 "4(0 3 4 1)\n4(1 4 5 2)\n4(6 7 10 9)\n4(7 8 11 10)\n)\n"));
+    folder.write("system/controlDict",
+                 foam("dictionary", "controlDict",
+                      "application x;\nstartFrom startTime;\nstartTime 0;\nendTime 1;\ndeltaT 1;\n"
+                      "writeControl timeStep;\nwriteInterval 1;\ntimeFormat general;\n"));
+    folder.write("constant/polyMesh/points",
+                 foam("vectorField", "points",
+                      "12\n(\n(0 0 0)\n(1 0 0)\n(2 0 0)\n(0 1 0)\n(1 1 0)\n(2 1 0)\n(0 0 1)\n(1 0 1)\n(2 0 1)\n"
+                      "(0 1 1)\n(1 1 1)\n(2 1 1)\n)\n"));
+    folder.write("constant/polyMesh/faces",
+                 foam("faceList", "faces",
+                      "11\n(\n4(1 4 10 7)\n4(0 6 9 3)\n4(2 5 11 8)\n4(0 1 7 6)\n4(1 2 8 7)\n4(3 9 10 4)\n4(4 10 11 5)\n"
+                      "4(0 3 4 1)\n4(1 4 5 2)\n4(6 7 10 9)\n4(7 8 11 10)\n)\n"));
     folder.write("constant/polyMesh/owner", foam("labelList", "owner", "11\n(\n0\n0\n1\n0\n1\n0\n1\n0\n1\n0\n1\n)\n"));
     folder.write("constant/polyMesh/neighbour", foam("labelList", "neighbour", "1\n(\n1\n)\n"));
-    folder.write("constant/polyMesh/boundary", foam("polyBoundaryMesh", "boundary",
-                                                    "1\n(\nwalls\n{\n    type wall;\n    nFaces 10;\n    startFace 1;\n}\n)\n"));
+    folder.write("constant/polyMesh/boundary",
+                 foam("polyBoundaryMesh", "boundary",
+                      "1\n(\nwalls\n{\n    type wall;\n    nFaces 10;\n    startFace 1;\n}\n)\n"));
     folder.write("1/p", foam("volScalarField", "p",
                              "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar>\n2\n(\n3\n4\n)\n;\n"
                              "boundaryField\n{\n    walls\n    {\n        type zeroGradient;\n    }\n}\n"));
@@ -133,7 +141,8 @@ TEST(ReadVtkhdf, GivesPointsCellsAndFields) {
     const TemporaryFolder folder;
     {
         Hdf5Writer file(folder.file("a.hdf"));
-        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"}) file.group(name);
+        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
+            file.group(name);
         file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
         file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
         file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {5}, {1});

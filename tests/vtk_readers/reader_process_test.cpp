@@ -30,7 +30,8 @@ protected:
         return result ? Error{ErrorCode::internal, "no error"} : result.error();
     }
     static void expect_words(const Error& error, std::initializer_list<std::string_view> words) {
-        for (const std::string_view word : words) EXPECT_NE(error.message.find(word), std::string::npos) << error.message;
+        for (const std::string_view word : words)
+            EXPECT_NE(error.message.find(word), std::string::npos) << error.message;
     }
     TemporaryFolder folder_;
     std::chrono::seconds time_limit_{60};
@@ -147,7 +148,8 @@ TEST_F(ReaderProcess, ServesManyThreadsAtOnce) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 4; ++i)
         threads.emplace_back([&] {
-            if (const auto result = read(folder_.file("sample.vtu")); result && result->grid.cells.count() == 9) ++read_well;
+            if (const auto result = read(folder_.file("sample.vtu")); result && result->grid.cells.count() == 9)
+                ++read_well;
         });
     for (std::thread& thread : threads) thread.join();
     EXPECT_EQ(read_well, 4);

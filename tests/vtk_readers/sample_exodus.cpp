@@ -22,7 +22,8 @@ void write(const ExodusSample& sample, const std::string& path) {
     ex_put_coord(file, axes[0].data(), axes[1].data(), axes[2].data());
     for (std::size_t b = 0; b < sample.blocks.size(); ++b) {
         const auto id = static_cast<ex_entity_id>(10 * (b + 1));
-        ex_put_block(file, EX_ELEM_BLOCK, id, "TETRA", static_cast<std::int64_t>(sample.blocks[b].size() / 4), 4, 0, 0, 0);
+        ex_put_block(file, EX_ELEM_BLOCK, id, "TETRA", static_cast<std::int64_t>(sample.blocks[b].size() / 4), 4, 0, 0,
+                     0);
         ex_put_conn(file, EX_ELEM_BLOCK, id, sample.blocks[b].data(), nullptr, nullptr);
     }
     ex_put_id_map(file, EX_NODE_MAP, sample.node_ids.data());
@@ -44,9 +45,12 @@ void write(const ExodusSample& sample, const std::string& path) {
         const Real time = static_cast<Real>(0.5 * step);
         ex_put_time(file, step + 1, &time);
         std::vector<Real> values;
-        for (std::int64_t node = 0; node < count; ++node) values.push_back(static_cast<Real>(10 * step + static_cast<int>(node)));
-        for (int variable = 1; variable <= 4; ++variable) ex_put_var(file, step + 1, EX_NODAL, variable, 1, count, values.data());
-        ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, static_cast<std::int64_t>(sample.blocks[0].size() / 4), values.data());
+        for (std::int64_t node = 0; node < count; ++node)
+            values.push_back(static_cast<Real>(10 * step + static_cast<int>(node)));
+        for (int variable = 1; variable <= 4; ++variable)
+            ex_put_var(file, step + 1, EX_NODAL, variable, 1, count, values.data());
+        ex_put_var(file, step + 1, EX_ELEM_BLOCK, 1, 10, static_cast<std::int64_t>(sample.blocks[0].size() / 4),
+                   values.data());
     }
     ASSERT_GE(ex_close(file), 0);
 }

@@ -17,16 +17,30 @@
 namespace isotet::test {
 namespace {
 
-constexpr std::array<std::array<double, 3>, 14> places = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1},
-                                                           {0, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}, {3, 0.5, 0.5}, {0.5, 2, 0.5}}};
+constexpr std::array<std::array<double, 3>, 14> places = {{{0, 0, 0},
+                                                           {1, 0, 0},
+                                                           {1, 1, 0},
+                                                           {0, 1, 0},
+                                                           {0, 0, 1},
+                                                           {1, 0, 1},
+                                                           {1, 1, 1},
+                                                           {0, 1, 1},
+                                                           {2, 0, 0},
+                                                           {2, 1, 0},
+                                                           {2, 0, 1},
+                                                           {2, 1, 1},
+                                                           {3, 0.5, 0.5},
+                                                           {0.5, 2, 0.5}}};
 
 struct Cell {
     int type;
     std::vector<vtkIdType> corners;
 };
 const std::vector<Cell>& cells() {
-    static const std::vector<Cell> list = {{10, {0, 1, 2, 5}},  {10, {0, 2, 7, 5}},  {10, {0, 2, 3, 7}}, {10, {0, 5, 7, 4}}, {10, {2, 7, 5, 6}},
-                                           {12, {1, 8, 9, 2, 5, 10, 11, 6}}, {14, {8, 9, 11, 10, 12}}, {13, {2, 3, 13, 6, 7, 13}}, {5, {0, 1, 2}}};
+    static const std::vector<Cell> list = {
+        {10, {0, 1, 2, 5}},       {10, {0, 2, 7, 5}},         {10, {0, 2, 3, 7}},
+        {10, {0, 5, 7, 4}},       {10, {2, 7, 5, 6}},         {12, {1, 8, 9, 2, 5, 10, 11, 6}},
+        {14, {8, 9, 11, 10, 12}}, {13, {2, 3, 13, 6, 7, 13}}, {5, {0, 1, 2}}};
     return list;
 }
 
@@ -47,13 +61,15 @@ const Array* find(const std::vector<Field>& fields, const std::string& name) {
 
 std::vector<std::int64_t> corners_of(const Grid& grid, std::size_t cell) {
     std::vector<std::int64_t> result;
-    const auto begin = static_cast<std::size_t>(grid.cells.offsets.at(cell)), end = static_cast<std::size_t>(grid.cells.offsets.at(cell + 1));
-    for (std::size_t i = begin; i < end; ++i) result.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
+    const auto begin = static_cast<std::size_t>(grid.cells.offsets.at(cell)),
+               end = static_cast<std::size_t>(grid.cells.offsets.at(cell + 1));
+    for (std::size_t i = begin; i < end; ++i)
+        result.push_back(static_cast<std::int64_t>(grid.cells.connectivity.at(i)));
     return result;
 }
 
-void expect_field(const std::vector<Field>& fields, const std::string& name, ScalarType type, std::size_t components, std::size_t tuples,
-                  const std::function<double(std::size_t, std::size_t)>& value) {
+void expect_field(const std::vector<Field>& fields, const std::string& name, ScalarType type, std::size_t components,
+                  std::size_t tuples, const std::function<double(std::size_t, std::size_t)>& value) {
     const Array* values = find(fields, name);
     ASSERT_TRUE(values) << name;
     EXPECT_EQ(values->type(), type) << name;
@@ -71,7 +87,8 @@ vtkSmartPointer<vtkUnstructuredGrid> sample_grid() {
     points->SetDataTypeToDouble();
     for (const auto& place : places) points->InsertNextPoint(place.data());
     grid->SetPoints(points);
-    for (const Cell& cell : cells()) grid->InsertNextCell(cell.type, static_cast<vtkIdType>(cell.corners.size()), cell.corners.data());
+    for (const Cell& cell : cells())
+        grid->InsertNextCell(cell.type, static_cast<vtkIdType>(cell.corners.size()), cell.corners.data());
     const vtkIdType point_count = places.size(), cell_count = grid->GetNumberOfCells();
     const auto height = field<vtkDoubleArray>("height", 1, point_count);
     const auto velocity = field<vtkFloatArray>("velocity", 3, point_count);
@@ -87,8 +104,10 @@ vtkSmartPointer<vtkUnstructuredGrid> sample_grid() {
         region->SetValue(i, 5000000000 + i);
         quality->SetValue(i, static_cast<float>(i) / 8);
     }
-    for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{height, velocity, number}) grid->GetPointData()->AddArray(array);
-    for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{region, quality}) grid->GetCellData()->AddArray(array);
+    for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{height, velocity, number})
+        grid->GetPointData()->AddArray(array);
+    for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{region, quality})
+        grid->GetCellData()->AddArray(array);
     return grid;
 }
 
@@ -104,11 +123,16 @@ void expect_sample(const Result<ReadResult>& result) {
         EXPECT_EQ(corners_of(grid, i), std::vector<std::int64_t>(cells()[i].corners.begin(), cells()[i].corners.end()));
     }
     const std::size_t points = places.size(), count = cells().size();
-    expect_field(grid.point_fields, "height", ScalarType::float64, 1, points, [](auto i, auto) { return places[i][2] + 0.1; });
-    expect_field(grid.point_fields, "velocity", ScalarType::float32, 3, points, [](auto i, auto c) { return static_cast<double>(i * 4 + c); });
-    expect_field(grid.point_fields, "number", ScalarType::int32, 1, points, [](auto i, auto) { return static_cast<double>(i) - 3; });
-    expect_field(grid.cell_fields, "region", ScalarType::int64, 1, count, [](auto i, auto) { return 5e9 + static_cast<double>(i); });
-    expect_field(grid.cell_fields, "quality: a/b", ScalarType::float32, 1, count, [](auto i, auto) { return static_cast<double>(i) / 8; });
+    expect_field(grid.point_fields, "height", ScalarType::float64, 1, points,
+                 [](auto i, auto) { return places[i][2] + 0.1; });
+    expect_field(grid.point_fields, "velocity", ScalarType::float32, 3, points,
+                 [](auto i, auto c) { return static_cast<double>(i * 4 + c); });
+    expect_field(grid.point_fields, "number", ScalarType::int32, 1, points,
+                 [](auto i, auto) { return static_cast<double>(i) - 3; });
+    expect_field(grid.cell_fields, "region", ScalarType::int64, 1, count,
+                 [](auto i, auto) { return 5e9 + static_cast<double>(i); });
+    expect_field(grid.cell_fields, "quality: a/b", ScalarType::float32, 1, count,
+                 [](auto i, auto) { return static_cast<double>(i) / 8; });
 }
 
 void write_vtu(vtkUnstructuredGrid* grid, const std::string& path, Encoding encoding) {

@@ -26,14 +26,15 @@ TEST_P(ReadVtu, IsAnErrorForEveryTruncation) {
     write_vtu(sample_grid(), folder.file("sample.vtu"), GetParam());
     std::string content = content_of(folder.file("sample.vtu"));
     while (content.ends_with('\n')) content.pop_back();
-    read_prefixes(content, "cut.vtu", content.size() / 25 + 1, [](const Result<ReadResult>& result, std::size_t length) {
-        EXPECT_FALSE(result) << "cut to " << length << " bytes";
-    });
+    read_prefixes(content, "cut.vtu", content.size() / 25 + 1,
+                  [](const Result<ReadResult>& result, std::size_t length) {
+                      EXPECT_FALSE(result) << "cut to " << length << " bytes";
+                  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, ReadVtu,
-                         testing::Values(Encoding::ascii, Encoding::base64, Encoding::appended_base64, Encoding::appended_raw,
-                                         Encoding::appended_raw_compressed));
+                         testing::Values(Encoding::ascii, Encoding::base64, Encoding::appended_base64,
+                                         Encoding::appended_raw, Encoding::appended_raw_compressed));
 
 TEST(ReadVtu, RecognizesTheContentWhateverTheName) {
     const TemporaryFolder folder;

@@ -16,19 +16,22 @@ std::string document(const std::string& domain, const std::string& doctype = {})
 
 const std::string points = "<Geometry GeometryType=\"XYZ\"><DataItem Format=\"XML\" Dimensions=\"5 3\" Precision=\"8\">"
                            "0 0 0  1 0 0  0 1 0  0 0 1  0 0 -1</DataItem></Geometry>";
-const std::string tets = "<Topology TopologyType=\"Tetrahedron\" NumberOfElements=\"2\"><DataItem Format=\"XML\" NumberType=\"Int\" "
-                         "Dimensions=\"2 4\">0 1 2 3  0 2 1 4</DataItem></Topology>";
+const std::string tets =
+    "<Topology TopologyType=\"Tetrahedron\" NumberOfElements=\"2\"><DataItem Format=\"XML\" NumberType=\"Int\" "
+    "Dimensions=\"2 4\">0 1 2 3  0 2 1 4</DataItem></Topology>";
 
-std::string field(const std::string& name, const std::string& values, const std::string& attributes = "AttributeType=\"Scalar\" Center=\"Node\"",
+std::string field(const std::string& name, const std::string& values,
+                  const std::string& attributes = "AttributeType=\"Scalar\" Center=\"Node\"",
                   const std::string& dimensions = "5") {
-    return "<Attribute Name=\"" + name + "\" " + attributes + "><DataItem Format=\"XML\" Dimensions=\"" + dimensions + "\">" + values +
-           "</DataItem></Attribute>";
+    return "<Attribute Name=\"" + name + "\" " + attributes + "><DataItem Format=\"XML\" Dimensions=\"" + dimensions +
+           "\">" + values + "</DataItem></Attribute>";
 }
 std::string grid(const std::string& content) { return "<Grid Name=\"g\" GridType=\"Uniform\">" + content + "</Grid>"; }
 
 class ReadXdmf : public testing::Test {
 protected:
-    Result<ReadResult> read_domain(const std::string& domain, const ReadOptions& options = {}, const std::string& doctype = {}) {
+    Result<ReadResult> read_domain(const std::string& domain, const ReadOptions& options = {},
+                                   const std::string& doctype = {}) {
         return read(folder_.write("grid.xdmf", document(domain, doctype)), options);
     }
     std::string error_of(const std::string& domain) {
@@ -60,8 +63,10 @@ TEST_F(ReadXdmf, ReadsHdf5WithHyperSlabsEntitiesAndReferences) {
     }
     const std::string domain =
         "<DataItem Name=\"cells\" Format=\"HDF\" Dimensions=\"2 4\">&Heavy;:/mesh/cells</DataItem>" +
-        grid("<Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" Dimensions=\"5 3\"> heavy.h5:/mesh/points </DataItem></Geometry>"
-             "<Topology TopologyType=\"Tetrahedron\"><DataItem Reference=\"XML\"> /Xdmf/Domain/DataItem[@Name='cells'] </DataItem></Topology>"
+        grid("<Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" Dimensions=\"5 3\"> heavy.h5:/mesh/points "
+             "</DataItem></Geometry>"
+             "<Topology TopologyType=\"Tetrahedron\"><DataItem Reference=\"XML\"> /Xdmf/Domain/DataItem[@Name='cells'] "
+             "</DataItem></Topology>"
              "<Attribute Name=\"p\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" Dimensions=\"1 5 1\">"
              "<DataItem Format=\"XML\" Dimensions=\"3 3\">1 0 0  1 1 1  1 5 1</DataItem>"
              "<DataItem Format=\"HDF\" Dimensions=\"2 5 1\">&Heavy;:/steps</DataItem></DataItem></Attribute>");
@@ -92,7 +97,8 @@ TEST_F(ReadXdmf, ReadsBinaryFilesFromAPlaceOnAndChecksTheirLength) {
 TEST_F(ReadXdmf, ReadsTemporalCollections) {
     std::string steps = "<Grid GridType=\"Collection\" CollectionType=\"Temporal\">";
     for (const char* time : {"0.5", "1.5"})
-        steps += grid(points + tets + "<Time Value=\"" + std::string(time) + "\"/>" + field("p", std::string(time) + " 2 3 4 5"));
+        steps += grid(points + tets + "<Time Value=\"" + std::string(time) + "\"/>" +
+                      field("p", std::string(time) + " 2 3 4 5"));
     const std::string domain = steps + "</Grid>";
     ReadOptions options;
     options.step = 1;
@@ -103,15 +109,17 @@ TEST_F(ReadXdmf, ReadsTemporalCollections) {
 }
 
 TEST_F(ReadXdmf, JoinsSpatialCollections) {
-    const auto result = read_domain("<Grid GridType=\"Collection\" CollectionType=\"Spatial\">" + grid(points + tets) + grid(points + tets) + "</Grid>");
+    const auto result = read_domain("<Grid GridType=\"Collection\" CollectionType=\"Spatial\">" + grid(points + tets) +
+                                    grid(points + tets) + "</Grid>");
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->grid.points.tuples(), 10u);
     EXPECT_EQ(result->grid.cells.count(), 4u);
 }
 
 TEST_F(ReadXdmf, ReadsMixedTopologies) {
-    const std::string mixed = "<Topology TopologyType=\"Mixed\" NumberOfElements=\"3\"><DataItem Format=\"XML\" NumberType=\"Int\" "
-                              "Dimensions=\"15\">6 0 1 2 3  3 3 0 1 2  6 0 2 1 4</DataItem></Topology>";
+    const std::string mixed =
+        "<Topology TopologyType=\"Mixed\" NumberOfElements=\"3\"><DataItem Format=\"XML\" NumberType=\"Int\" "
+        "Dimensions=\"15\">6 0 1 2 3  3 3 0 1 2  6 0 2 1 4</DataItem></Topology>";
     const auto result = read_domain(grid(points + mixed));
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->grid.cells.types.at(0), 10);
@@ -130,13 +138,16 @@ TEST_F(ReadXdmf, RefusesWhatLiesOutside) {
         other.data<float>("/p", {1, 2, 3, 4, 5}, {5});
     }
     const auto with = [](const std::string& name) {
-        return grid(points + tets + "<Attribute Name=\"p\" Center=\"Node\"><DataItem Format=\"HDF\" Dimensions=\"5\">" + name + "</DataItem></Attribute>");
+        return grid(points + tets + "<Attribute Name=\"p\" Center=\"Node\"><DataItem Format=\"HDF\" Dimensions=\"5\">" +
+                    name + "</DataItem></Attribute>");
     };
     EXPECT_EQ(error_of(with("other.h5:/p")), "read");
     EXPECT_NE(error_of(with("linked.h5:/p")).find("link to another file"), std::string::npos);
     EXPECT_NE(error_of(with("../other.h5:/p")).find("only files below"), std::string::npos);
     EXPECT_NE(error_of(with("/etc/passwd:/p")).find("only files below"), std::string::npos);
-    EXPECT_NE(error_of("<xi:include xmlns:xi=\"http://www.w3.org/2001/XInclude\" href=\"grid.xdmf\"/>").find("includes other XML"), std::string::npos);
+    EXPECT_NE(error_of("<xi:include xmlns:xi=\"http://www.w3.org/2001/XInclude\" href=\"grid.xdmf\"/>")
+                  .find("includes other XML"),
+              std::string::npos);
 }
 
 TEST_F(ReadXdmf, GridsThatReferToEachOtherWithoutEndAreAnError) {
@@ -151,8 +162,10 @@ TEST_F(ReadXdmf, CountsThatDoNotFitAreErrors) {
     EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4 5 6"))), "read");
     EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4", "Center=\"Node\"", "4"))), "read");
     EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4 x"))), "read");
-    EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4 5", "Center=\"Node\"", "99999999999999999999"))), "read");
-    EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4 5", "Center=\"Node\"", "4611686018427387904 4"))), "read");
+    EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4 5", "Center=\"Node\"", "99999999999999999999"))),
+              "read");
+    EXPECT_NE(error_of(grid(points + tets + field("p", "1 2 3 4 5", "Center=\"Node\"", "4611686018427387904 4"))),
+              "read");
     EXPECT_NE(error_of(grid(points)), "read");
     EXPECT_NE(error_of(""), "read");
 }

@@ -37,7 +37,8 @@ protected:
     }
 
     std::vector<float> divide(std::span<const float> a, std::span<const float> b, int units_off) {
-        const Kernel& kernel = **context().kernels().get(vulkan::test_shaders::divide, std::array{static_cast<std::uint32_t>(units_off)});
+        const Kernel& kernel =
+            **context().kernels().get(vulkan::test_shaders::divide, std::array{static_cast<std::uint32_t>(units_off)});
         const Buffer up_a = take(a.size_bytes()), up_b = take(b.size_bytes()), down = take(a.size_bytes());
         context().staging().upload(up_a, 0, std::as_bytes(a)).value();
         context().staging().upload(up_b, 0, std::as_bytes(b)).value();
@@ -46,8 +47,9 @@ protected:
             std::uint32_t count, unused;
         };
         vulkan::Recorder recorder(context());
-        recorder.dispatch(kernel, Push{up_a.address(), up_b.address(), down.address(), static_cast<std::uint32_t>(a.size()), 0},
-                          (a.size() + workgroup - 1) / workgroup, {vulkan::reads(up_a), vulkan::reads(up_b), vulkan::writes(down)});
+        recorder.dispatch(
+            kernel, Push{up_a.address(), up_b.address(), down.address(), static_cast<std::uint32_t>(a.size()), 0},
+            (a.size() + workgroup - 1) / workgroup, {vulkan::reads(up_a), vulkan::reads(up_b), vulkan::writes(down)});
         recorder.run().value();
         std::vector<float> quotients(a.size());
         context().staging().download(down, 0, std::as_writable_bytes(std::span(quotients))).value();
@@ -55,7 +57,8 @@ protected:
     }
 
     std::vector<float> roots(std::uint32_t first_bits, std::uint32_t count, int units_off) {
-        const Kernel& kernel = **context().kernels().get(vulkan::test_shaders::root, std::array{static_cast<std::uint32_t>(units_off)});
+        const Kernel& kernel =
+            **context().kernels().get(vulkan::test_shaders::root, std::array{static_cast<std::uint32_t>(units_off)});
         const Buffer down = take(std::uint64_t{count} * 4);
         struct Push {
             VkDeviceAddress roots;
@@ -77,8 +80,8 @@ protected:
             float right = a[i] / b[i];
             if (std::abs(right) < 0x1p-126f) right = std::copysign(0.0f, right);
             if (bits_of(found[i]) != bits_of(right))
-                return testing::PrintToString(a[i]) + " / " + testing::PrintToString(b[i]) + " with the quotient off by " +
-                       std::to_string(units_off) + ": case " + std::to_string(i);
+                return testing::PrintToString(a[i]) + " / " + testing::PrintToString(b[i]) +
+                       " with the quotient off by " + std::to_string(units_off) + ": case " + std::to_string(i);
         }
         return {};
     }
@@ -87,7 +90,8 @@ protected:
         const std::vector<float> found = roots(first_bits, count, units_off);
         for (std::uint32_t i = 0; i < count; ++i)
             if (bits_of(found[i]) != bits_of(std::sqrt(std::bit_cast<float>(first_bits + i))))
-                return "the root of " + testing::PrintToString(std::bit_cast<float>(first_bits + i)) + " off by " + std::to_string(units_off);
+                return "the root of " + testing::PrintToString(std::bit_cast<float>(first_bits + i)) + " off by " +
+                       std::to_string(units_off);
         return {};
     }
 };
@@ -99,7 +103,8 @@ void fill_hard(std::vector<float>& a, std::vector<float>& b, std::mt19937_64& ra
     for (std::size_t i = 0; i < a.size();) {
         const std::uint32_t divisor = static_cast<std::uint32_t>(random() % (1 << 23)) | 1u << 23 | 1u;
         const std::uint32_t nearness = static_cast<std::uint32_t>(random() % 4);
-        const std::uint32_t dividend = vulkan::hard_dividend(divisor, random() % 2 ? (divisor + 1) / 2 + nearness : (divisor - 1) / 2 - nearness);
+        const std::uint32_t dividend =
+            vulkan::hard_dividend(divisor, random() % 2 ? (divisor + 1) / 2 + nearness : (divisor - 1) / 2 - nearness);
         if (dividend < 1u << 23) continue;
         a[i] = static_cast<float>(dividend);
         b[i] = static_cast<float>(divisor);
@@ -144,7 +149,8 @@ TEST_F(DeviceArithmetic, DividesNumbersOfAnySizeAndSign) {
     const auto number = [&] {
         const std::uint32_t mask = ~0u << random() % 24;
         const auto exponent = static_cast<std::uint32_t>(127 - 96 + random() % 189);
-        return std::bit_cast<float>(static_cast<std::uint32_t>(random() & 1) << 31 | exponent << 23 | (static_cast<std::uint32_t>(random()) & mask & 0x7fffffu));
+        return std::bit_cast<float>(static_cast<std::uint32_t>(random() & 1) << 31 | exponent << 23 |
+                                    (static_cast<std::uint32_t>(random()) & mask & 0x7fffffu));
     };
     for (std::size_t i = 0; i < a.size(); ++i) {
         do {
@@ -157,7 +163,8 @@ TEST_F(DeviceArithmetic, DividesNumbersOfAnySizeAndSign) {
 
 TEST_F(DeviceArithmetic, RoundsTheRootOfEverySignificandAsTheProcessorDoes) {
     // From 1 to 4: all significands with even and with odd exponents.
-    for (std::uint32_t first = bits_of(1.0f); first < bits_of(4.0f); first += batch) ASSERT_EQ(wrong_root(first, batch, 0), "");
+    for (std::uint32_t first = bits_of(1.0f); first < bits_of(4.0f); first += batch)
+        ASSERT_EQ(wrong_root(first, batch, 0), "");
 }
 
 TEST_F(DeviceArithmetic, CorrectsRootsThatAreOffByAFewUnits) {
@@ -170,7 +177,8 @@ TEST_F(DeviceArithmetic, CorrectsRootsThatAreOffByAFewUnits) {
 }
 
 TEST_F(DeviceArithmetic, TakesRootsOfNumbersOfAnySize) {
-    for (std::uint32_t exponent = 1; exponent < 255; ++exponent) EXPECT_EQ(wrong_root(exponent << 23 | exponent * 1000, 2000, 0), "");
+    for (std::uint32_t exponent = 1; exponent < 255; ++exponent)
+        EXPECT_EQ(wrong_root(exponent << 23 | exponent * 1000, 2000, 0), "");
     EXPECT_EQ(roots(0, 1, 0)[0], 0.0f);
 }
 

@@ -12,8 +12,10 @@ namespace {
 
 using vulkan::Capabilities;
 
-constexpr VkMemoryPropertyFlags own = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT,
-                                coherent = VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, cached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+constexpr VkMemoryPropertyFlags own = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                                visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT,
+                                coherent = VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                                cached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 constexpr VkDeviceSize gigabyte = 1'000'000'000;
 
 struct Type {
@@ -44,11 +46,13 @@ Capabilities card() {
     device.properties11.maxMemoryAllocationSize = 4 * gigabyte;
     device.features12.bufferDeviceAddress = VK_TRUE;
     device.features12.scalarBlockLayout = VK_TRUE;
-    device.queues = {{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 64}, {VK_QUEUE_TRANSFER_BIT, 64}};
+    device.queues = {{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 64},
+                     {VK_QUEUE_TRANSFER_BIT, 64}};
     device.compute_family = 0;
     device.transfer_family = 1;
-    set_memory(device, {24 * gigabyte, 64 * gigabyte, gigabyte / 4},
-               {{0, 1}, {own, 0}, {visible | coherent, 1}, {visible | coherent | cached, 1}, {own | visible | coherent, 2}});
+    set_memory(
+        device, {24 * gigabyte, 64 * gigabyte, gigabyte / 4},
+        {{0, 1}, {own, 0}, {visible | coherent, 1}, {visible | coherent | cached, 1}, {own | visible | coherent, 2}});
     return device;
 }
 
@@ -74,9 +78,12 @@ TEST(Capabilities, ThatAreMissingAreNamed) {
     };
     EXPECT_EQ(why([](auto& d) { d.properties.apiVersion = VK_MAKE_API_VERSION(0, 1, 1, 177); }),
               "it has Vulkan 1.1.177, but 1.2 is needed");
-    EXPECT_EQ(why([](auto& d) { d.features12.bufferDeviceAddress = VK_FALSE; }), "it lacks the feature bufferDeviceAddress");
-    EXPECT_EQ(why([](auto& d) { d.features12.scalarBlockLayout = VK_FALSE; }), "it lacks the feature scalarBlockLayout");
-    EXPECT_EQ(why([](auto& d) { d.compute_family = Capabilities::none; }), "it cannot compute: no queue takes compute work");
+    EXPECT_EQ(why([](auto& d) { d.features12.bufferDeviceAddress = VK_FALSE; }),
+              "it lacks the feature bufferDeviceAddress");
+    EXPECT_EQ(why([](auto& d) { d.features12.scalarBlockLayout = VK_FALSE; }),
+              "it lacks the feature scalarBlockLayout");
+    EXPECT_EQ(why([](auto& d) { d.compute_family = Capabilities::none; }),
+              "it cannot compute: no queue takes compute work");
     EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeSharedMemorySize = 16384; }),
               "its shared memory in bytes is 16384, but 32768 is needed");
     EXPECT_EQ(why([](auto& d) { d.properties.limits.maxComputeWorkGroupInvocations = 64; }),
@@ -85,7 +92,8 @@ TEST(Capabilities, ThatAreMissingAreNamed) {
               "its largest workgroup is 32, but 128 is needed");
     EXPECT_EQ(why([](auto& d) { d.properties.limits.maxPushConstantsSize = 64; }),
               "its room for push constants in bytes is 64, but 128 is needed");
-    EXPECT_EQ(why([](auto& d) { set_memory(d, {gigabyte}, {{own, 0}}); }), "it has no memory that the processor can reach");
+    EXPECT_EQ(why([](auto& d) { set_memory(d, {gigabyte}, {{own, 0}}); }),
+              "it has no memory that the processor can reach");
 }
 
 TEST(Capabilities, OfAnOldSoftwareDeviceAreNotTrusted) {
@@ -95,8 +103,8 @@ TEST(Capabilities, OfAnOldSoftwareDeviceAreNotTrusted) {
         std::strcpy(device.properties12.driverInfo, info);
         return vulkan::why_unusable(device);
     };
-    EXPECT_EQ(with_driver("Mesa 22.3.6 (LLVM 15.0.6)"),
-              "it is the software device of Mesa 22.3.6 (LLVM 15.0.6), which ends long loops early; Mesa 25 or later is needed");
+    EXPECT_EQ(with_driver("Mesa 22.3.6 (LLVM 15.0.6)"), "it is the software device of Mesa 22.3.6 (LLVM 15.0.6), which "
+                                                        "ends long loops early; Mesa 25 or later is needed");
     EXPECT_NE(with_driver("Mesa 24.99.0"), "");
     EXPECT_NE(with_driver("something else"), "");
     EXPECT_EQ(with_driver("Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)"), "");
@@ -125,7 +133,8 @@ TEST(Capabilities, OfACardWhoseMemoryIsAllVisibleStillStage) {
 TEST(Capabilities, OfAProcessorWithGraphicsMapTheMemoryOfBoth) {
     Capabilities device = card();
     device.properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
-    set_memory(device, {16 * gigabyte}, {{own, 0}, {own | visible | coherent, 0}, {own | visible | coherent | cached, 0}});
+    set_memory(device, {16 * gigabyte},
+               {{own, 0}, {own | visible | coherent, 0}, {own | visible | coherent | cached, 0}});
     EXPECT_EQ(vulkan::device_memory_type(device), 2u) << "cached: read fast";
     EXPECT_EQ(vulkan::upload_memory_type(device), 1u) << "not cached: written fast";
     EXPECT_EQ(vulkan::download_memory_type(device), 2u);

@@ -81,7 +81,8 @@ TEST_F(Choosing, SaysWhyTheDeviceThatWasNamedCannotBeUsed) {
 }
 
 TEST_F(Choosing, SaysWhatThereIs) {
-    EXPECT_NE(chosen("amd").find("4: NVIDIA Quadro 600 (discrete GPU; cannot be used: it has Vulkan 1.0.3"), std::string::npos);
+    EXPECT_NE(chosen("amd").find("4: NVIDIA Quadro 600 (discrete GPU; cannot be used: it has Vulkan 1.0.3"),
+              std::string::npos);
     devices.clear();
     EXPECT_EQ(chosen("software"), "no Vulkan device is called 'software'; devices: there is none");
     EXPECT_EQ(chosen(""), "no graphics card that can be used; devices: there is none");

@@ -40,9 +40,9 @@ void replace(Function& function) {
     }
 }
 
-#define ISOTET_NAME(name)                        \
-    struct NameOf_##name {                       \
-        static constexpr const char* text = #name; \
+#define ISOTET_NAME(name)                                                                                              \
+    struct NameOf_##name {                                                                                             \
+        static constexpr const char* text = #name;                                                                     \
     };
 ISOTET_VULKAN_DEVICE_FUNCTIONS(ISOTET_NAME)
 #undef ISOTET_NAME

@@ -49,7 +49,8 @@ Result<std::vector<std::uint32_t>> work_through(const Settings& settings) {
     recorder.copy(*one, 0, *two, 0, 4000);
     for (int i = 0; i < 2; ++i)
         if (auto ran = recorder.run(); !ran) return ran.error();
-    if (auto down = context.staging().download(*two, 0, std::as_writable_bytes(std::span(words))); !down) return down.error();
+    if (auto down = context.staging().download(*two, 0, std::as_writable_bytes(std::span(words))); !down)
+        return down.error();
     return words;
 }
 
@@ -97,8 +98,10 @@ TEST_P(FailingCall, OfAnyNumberIsAnErrorAndLeavesNothingBehind) {
         if (result) {
             EXPECT_EQ(*result, right_words()) << when;
             const bool spared = name.find("PipelineCache") != std::string::npos;
-            const bool replaced = GetParam() == VK_ERROR_OUT_OF_DEVICE_MEMORY && (name == "vkAllocateMemory" || name == "vkMapMemory");
-            EXPECT_TRUE(spared || replaced) << when << ": only the cache is done without, only large blocks become smaller ones";
+            const bool replaced =
+                GetParam() == VK_ERROR_OUT_OF_DEVICE_MEMORY && (name == "vkAllocateMemory" || name == "vkMapMemory");
+            EXPECT_TRUE(spared || replaced)
+                << when << ": only the cache is done without, only large blocks become smaller ones";
         } else {
             const bool memory = GetParam() == VK_ERROR_OUT_OF_DEVICE_MEMORY && name != "vkWaitForFences";
             EXPECT_EQ(result.error().code, memory ? ErrorCode::out_of_memory : ErrorCode::machine) << when;
@@ -109,7 +112,9 @@ TEST_P(FailingCall, OfAnyNumberIsAnErrorAndLeavesNothingBehind) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Results, FailingCall, testing::Values(VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_DEVICE_LOST),
-                         [](const auto& result) { return result.param == VK_ERROR_DEVICE_LOST ? "DeviceLost" : "OutOfMemory"; });
+                         [](const auto& result) {
+                             return result.param == VK_ERROR_DEVICE_LOST ? "DeviceLost" : "OutOfMemory";
+                         });
 
 class Faults : public OnDevice {
 protected:
@@ -131,7 +136,8 @@ TEST_F(Faults, ALostDeviceSaysSoFromThenOn) {
         const auto lost = recorder.run();
         ASSERT_FALSE(lost);
         EXPECT_EQ(lost.error().code, ErrorCode::machine);
-        EXPECT_NE(lost.error().message.find("was lost before running 'fill'"), std::string::npos) << lost.error().message;
+        EXPECT_NE(lost.error().message.find("was lost before running 'fill'"), std::string::npos)
+            << lost.error().message;
         std::vector<std::byte> bytes(4);
         const std::vector<std::string> later = {
             recorder.run().error().message,
@@ -152,7 +158,8 @@ TEST_F(Faults, AFailedAllocationSaysWhatWasWanted) {
     const auto refused = context().memory().take(100'000'000, vulkan::Where::device, "vertices");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
-    EXPECT_NE(refused.error().message.find("the device buffer 'vertices' of 100.0 MB: allocating 100.0 MB"), std::string::npos)
+    EXPECT_NE(refused.error().message.find("the device buffer 'vertices' of 100.0 MB: allocating 100.0 MB"),
+              std::string::npos)
         << refused.error().message;
     EXPECT_TRUE(context().memory().take(100'000'000, vulkan::Where::device, "vertices")) << "the next call works";
 }

@@ -18,7 +18,8 @@ using Words = std::vector<std::uint32_t>;
 std::vector<Words> instructions(std::span<const std::uint32_t> words) {
     std::vector<Words> list;
     for (std::size_t i = 5; i < words.size() && words[i] >> 16 > 0; i += words[i] >> 16)
-        list.emplace_back(words.begin() + static_cast<std::ptrdiff_t>(i), words.begin() + static_cast<std::ptrdiff_t>(i + (words[i] >> 16)));
+        list.emplace_back(words.begin() + static_cast<std::ptrdiff_t>(i),
+                          words.begin() + static_cast<std::ptrdiff_t>(i + (words[i] >> 16)));
     return list;
 }
 
@@ -28,7 +29,8 @@ std::size_t place(const std::vector<Words>& list, const Words& one) {
 
 std::size_t first_of(const std::vector<Words>& list, std::uint32_t opcode) {
     return static_cast<std::size_t>(
-        std::find_if(list.begin(), list.end(), [&](const Words& one) { return (one[0] & 0xffff) == opcode; }) - list.begin());
+        std::find_if(list.begin(), list.end(), [&](const Words& one) { return (one[0] & 0xffff) == opcode; }) -
+        list.begin());
 }
 
 TEST(FloatControls, ChangeNothingWhereTheDevicePromisesNothing) {
@@ -38,7 +40,8 @@ TEST(FloatControls, ChangeNothingWhereTheDevicePromisesNothing) {
 
 TEST(FloatControls, StandWhereTheSpecificationWantsThem) {
     const auto& code = vulkan::test_shaders::add;
-    const auto before = instructions(code.words), after = instructions(vulkan::with_float_controls(code.words, {true, true}));
+    const auto before = instructions(code.words),
+               after = instructions(vulkan::with_float_controls(code.words, {true, true}));
     ASSERT_EQ(after.size(), before.size() + 5);
     const std::uint32_t entry = before[first_of(before, 15)][2];
     constexpr std::uint32_t extension = 10, memory_model = 14, debug_source = 3;
@@ -57,7 +60,8 @@ TEST(FloatControls, StandWhereTheSpecificationWantsThem) {
 
 TEST(FloatControls, AskOnlyForWhatIsPromised) {
     const auto& code = vulkan::test_shaders::add;
-    EXPECT_EQ(instructions(vulkan::with_float_controls(code.words, {true, false})).size(), instructions(code.words).size() + 3);
+    EXPECT_EQ(instructions(vulkan::with_float_controls(code.words, {true, false})).size(),
+              instructions(code.words).size() + 3);
 }
 
 } // namespace

@@ -57,14 +57,16 @@ TEST_P(RandomRanges, NeverOverlapAndAreWholeAgainAtTheEnd) {
         if (!begin) { // then no aligned run of so many free bytes exists
             for (std::uint64_t from = 0; from + bytes <= size; from += alignment) {
                 const auto first = owner.begin() + static_cast<std::ptrdiff_t>(from);
-                ASSERT_FALSE(std::all_of(first, first + static_cast<std::ptrdiff_t>(bytes), [](int o) { return o == -1; }))
+                ASSERT_FALSE(
+                    std::all_of(first, first + static_cast<std::ptrdiff_t>(bytes), [](int o) { return o == -1; }))
                     << "seed " << GetParam() << ", step " << step;
             }
             continue;
         }
         ASSERT_EQ(*begin % alignment, 0u);
         for (std::uint64_t i = *begin; i < *begin + bytes; ++i) {
-            ASSERT_EQ(owner[i], -1) << "seed " << GetParam() << ", step " << step << ": byte " << i << " is given twice";
+            ASSERT_EQ(owner[i], -1) << "seed " << GetParam() << ", step " << step << ": byte " << i
+                                    << " is given twice";
             owner[i] = step;
         }
         taken.emplace(step, std::pair(*begin, bytes));

@@ -19,10 +19,11 @@ using vulkan::Barrier;
 using vulkan::BufferUse;
 using vulkan::Hazards;
 
-constexpr VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, transfer = VK_PIPELINE_STAGE_TRANSFER_BIT,
+constexpr VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                               transfer = VK_PIPELINE_STAGE_TRANSFER_BIT,
                                indirect = VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-                       draw_stages = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
-                                     VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+                               draw_stages = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
+                                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
 
 Barrier next(Hazards& hazards, std::vector<BufferUse> uses) { return hazards.before(uses); }
 
@@ -49,7 +50,8 @@ TEST(Hazards, WritersWaitForWriters) {
     Hazards hazards;
     next(hazards, {{1, Access::copy_write}});
     EXPECT_EQ(next(hazards, {{1, Access::kernel_write}}),
-              (Barrier{transfer, compute, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT}));
+              (Barrier{transfer, compute, VK_ACCESS_TRANSFER_WRITE_BIT,
+                       VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT}));
 }
 
 TEST(Hazards, PassesOnDifferentBuffersDoNotWait) {
@@ -101,7 +103,8 @@ public:
 
 private:
     static bool writes(const BufferUse& use) {
-        return use.access == Access::kernel_write || use.access == Access::copy_write || use.access == Access::draw_write;
+        return use.access == Access::kernel_write || use.access == Access::copy_write ||
+               use.access == Access::draw_write;
     }
     static VkPipelineStageFlags stage(const BufferUse& use) {
         if (use.access == Access::arguments) return indirect;
@@ -117,7 +120,8 @@ private:
         case Access::kernel_write: return VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
         case Access::copy_read: return VK_ACCESS_TRANSFER_READ_BIT;
         case Access::copy_write: return VK_ACCESS_TRANSFER_WRITE_BIT;
-        case Access::draw_read: return VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT;
+        case Access::draw_read:
+            return VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_INDEX_READ_BIT | VK_ACCESS_SHADER_READ_BIT;
         case Access::draw_write: return VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
         case Access::mesh_read: return VK_ACCESS_SHADER_READ_BIT;
         case Access::arguments: break;
@@ -138,7 +142,8 @@ private:
         // An overwritten value: whoever overwrote it is ordered after the first and before the last.
         for (std::size_t middle = early + 1; middle < late; ++middle)
             for (const BufferUse& c : passes_[middle])
-                if (c.buffer == a.buffer && writes(c) && safe(early, a, middle, c) && safe(middle, c, late, b)) return true;
+                if (c.buffer == a.buffer && writes(c) && safe(early, a, middle, c) && safe(middle, c, late, b))
+                    return true;
         return false;
     }
 
@@ -154,7 +159,9 @@ std::vector<BufferUse> random_uses(std::mt19937& random) {
         const Access of_kernel[] = {Access::kernel_read, Access::kernel_write, Access::arguments};
         const Access of_copy[] = {Access::copy_read, Access::copy_write};
         const Access of_draw[] = {Access::draw_read, Access::draw_write, Access::mesh_read};
-        const Access access = kind == 0 ? of_kernel[random() % 3] : kind == 1 ? of_copy[random() % 2] : of_draw[random() % 3];
+        const Access access = kind == 0   ? of_kernel[random() % 3]
+                              : kind == 1 ? of_copy[random() % 2]
+                                          : of_draw[random() % 3];
         const auto same = [&](const BufferUse& use) { return use.buffer == buffer; };
         if (kind != 1 || std::none_of(uses.begin(), uses.end(), same)) uses.push_back({buffer, access});
     }
@@ -199,7 +206,8 @@ TEST(Hazards, TheModelNoticesAMissingBarrier) {
 
 TEST(Groups, AreFoldedIntoThreeAxesWithFewTooMany) {
     for (const std::uint64_t limit : {1u, 2u, 7u, 1000u, 65535u}) {
-        for (const std::uint64_t count : {std::uint64_t{1}, limit, limit + 1, limit * limit, limit * limit + 1, limit * limit * limit}) {
+        for (const std::uint64_t count :
+             {std::uint64_t{1}, limit, limit + 1, limit * limit, limit * limit + 1, limit * limit * limit}) {
             const auto folded = vulkan::fold_groups(count, limit);
             if (count > limit * limit * limit) {
                 EXPECT_FALSE(folded) << count << " by " << limit;

@@ -21,7 +21,8 @@ class DeviceMemory : public OnDevice {};
 
 TEST_F(DeviceMemory, GivesAlignedBuffersThatDoNotOverlap) {
     std::vector<Buffer> buffers;
-    for (const std::uint64_t bytes : {0u, 1u, 4u, 255u, 256u, 257u, 1000000u, 40000000u}) buffers.push_back(take(bytes));
+    for (const std::uint64_t bytes : {0u, 1u, 4u, 255u, 256u, 257u, 1000000u, 40000000u})
+        buffers.push_back(take(bytes));
     for (const Buffer& a : buffers) {
         EXPECT_NE(a.address(), 0u);
         EXPECT_EQ(a.address() % 16, 0u);
@@ -39,7 +40,8 @@ TEST_F(DeviceMemory, IsCountedAndGivenBack) {
         const Buffer one = take(mebi), two = take(3 * mebi);
         EXPECT_EQ(memory.used(), before + Memory::cost(mebi) + Memory::cost(3 * mebi));
         const Buffer away = take(mebi, Where::upload);
-        EXPECT_EQ(memory.used(), before + Memory::cost(mebi) + Memory::cost(3 * mebi)) << "the machine's memory does not count";
+        EXPECT_EQ(memory.used(), before + Memory::cost(mebi) + Memory::cost(3 * mebi))
+            << "the machine's memory does not count";
     }
     EXPECT_EQ(memory.used(), before);
     EXPECT_GE(memory.peak(), before + 4 * mebi);
@@ -65,7 +67,8 @@ TEST_F(DeviceMemory, StaysWithinItsLimit) {
     const auto refused = memory.take(4 * mebi, Where::device, "triangles");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
-    EXPECT_EQ(refused.error().message, "the device buffer 'triangles' needs 4.2 MB, but 3.1 MB are free of the 8.4 MB allowed");
+    EXPECT_EQ(refused.error().message,
+              "the device buffer 'triangles' needs 4.2 MB, but 3.1 MB are free of the 8.4 MB allowed");
     EXPECT_TRUE(memory.take(memory.free() - 4, Where::device, "the rest")) << "up to the last bytes";
     EXPECT_TRUE(memory.take(9 * mebi, Where::download, "not on the device"));
 }

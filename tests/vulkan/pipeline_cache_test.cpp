@@ -62,12 +62,14 @@ TEST_F(CompiledPipelines, AreReadByTheNextDevice) {
 TEST_F(CompiledPipelines, AreNotReadFromABrokenFile) {
     open();
     const std::string whole = content();
-    for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{24}, whole.size() / 2, whole.size() - 1}) {
+    for (const std::size_t length :
+         {std::size_t{0}, std::size_t{7}, std::size_t{24}, whole.size() / 2, whole.size() - 1}) {
         replace(whole.substr(0, length));
         EXPECT_EQ(open(), 0u) << "cut to " << length;
         EXPECT_EQ(content().size(), whole.size()) << "written anew";
     }
-    for (const std::size_t place : {std::size_t{0}, std::size_t{9}, std::size_t{16}, std::size_t{24}, whole.size() - 1}) {
+    for (const std::size_t place :
+         {std::size_t{0}, std::size_t{9}, std::size_t{16}, std::size_t{24}, whole.size() - 1}) {
         std::string broken = whole;
         broken[place] = static_cast<char>(broken[place] ^ 0x10);
         replace(broken);
@@ -89,13 +91,16 @@ TEST_F(CompiledPipelines, OfOtherBuildsGoWhenThereAreMany) {
         return folder() / name;
     };
     std::vector<fs::path> others;
-    for (int i = 0; i < 12; ++i) others.push_back(add("pipelines-00000000000000" + std::to_string(10 + i) + ".bin", 1 + i));
-    const fs::path killed = add("pipelines-0000000000000000.bin.123", 2), writing = add("pipelines-0000000000000000.bin.456", 0);
+    for (int i = 0; i < 12; ++i)
+        others.push_back(add("pipelines-00000000000000" + std::to_string(10 + i) + ".bin", 1 + i));
+    const fs::path killed = add("pipelines-0000000000000000.bin.123", 2),
+                   writing = add("pipelines-0000000000000000.bin.456", 0);
     const fs::path foreign = add("notes.txt", 1000);
     fs::last_write_time(own, fs::file_time_type::clock::now() - std::chrono::hours(100));
     EXPECT_GT(open(), 0u);
     for (std::size_t i = 0; i < others.size(); ++i)
-        EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::most_files) << "file " << i << " of others, newest first";
+        EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::most_files)
+            << "file " << i << " of others, newest first";
     EXPECT_TRUE(fs::exists(own)) << "it is the newest now";
     EXPECT_FALSE(fs::exists(killed));
     EXPECT_TRUE(fs::exists(writing)) << "somebody may be at it";

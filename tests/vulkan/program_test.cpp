@@ -37,13 +37,15 @@ TEST(DevicesCommand, RefusesDevicesThatAreNotThere) {
 }
 
 /// A machine without a driver for Vulkan.
-const RunOptions no_driver = {.environment = {{"VK_DRIVER_FILES", "/nonexistent.json"}, {"VK_ICD_FILENAMES", "/nonexistent.json"}}};
+const RunOptions no_driver = {
+    .environment = {{"VK_DRIVER_FILES", "/nonexistent.json"}, {"VK_ICD_FILENAMES", "/nonexistent.json"}}};
 
 TEST(DevicesCommand, SaysThatThereIsNoDriver) {
     const RunResult run = isotet({"devices"}, no_driver);
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.out, "");
-    EXPECT_EQ(run.err, "isotet: note: there is a Vulkan loader on this machine, but no driver that it can use; isotet works on the CPU\n");
+    EXPECT_EQ(run.err, "isotet: note: there is a Vulkan loader on this machine, but no driver that it can use; isotet "
+                       "works on the CPU\n");
     const RunResult chosen = isotet({"devices", "--device", "software"}, no_driver);
     EXPECT_EQ(chosen.status, 4);
     EXPECT_TRUE(is_one_error(chosen, "no driver that it can use"));
@@ -51,7 +53,9 @@ TEST(DevicesCommand, SaysThatThereIsNoDriver) {
 
 TEST_F(Program, IsNotStoppedByABrokenDescriptionOfADriver) {
     put_content(path("broken.json"), "{ \"file_format_version\": ");
-    const RunResult run = isotet({"devices"}, {.environment = {{"VK_DRIVER_FILES", path("broken.json")}, {"VK_ICD_FILENAMES", path("broken.json")}}});
+    const RunResult run =
+        isotet({"devices"},
+               {.environment = {{"VK_DRIVER_FILES", path("broken.json")}, {"VK_ICD_FILENAMES", path("broken.json")}}});
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.out, "");
     EXPECT_TRUE(run.err.starts_with("isotet: note: ") && run.err.ends_with("; isotet works on the CPU\n")) << run.err;
@@ -59,7 +63,8 @@ TEST_F(Program, IsNotStoppedByABrokenDescriptionOfADriver) {
 
 TEST(DevicesCommand, FindsExactArithmeticAtAnySubgroupSize) {
     for (const auto& [bits, size] : {std::pair{"128", 4}, {"256", 8}, {"512", 16}}) {
-        const RunResult run = isotet({"devices", "--device", "software", "--json", "-"}, {.environment = {{"LP_NATIVE_VECTOR_WIDTH", bits}}});
+        const RunResult run = isotet({"devices", "--device", "software", "--json", "-"},
+                                     {.environment = {{"LP_NATIVE_VECTOR_WIDTH", bits}}});
         ASSERT_EQ(run.status, 0) << run.err;
         const auto report = nlohmann::json::parse(run.out);
         EXPECT_EQ(report["devices"][0]["subgroup_size"], size);

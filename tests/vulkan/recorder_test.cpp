@@ -33,7 +33,8 @@ protected:
     }
     void dispatch_add(Recorder& recorder, const Buffer& words, std::uint32_t term, std::uint32_t factor = 1) {
         const auto count = static_cast<std::uint32_t>(words.size() / 4);
-        recorder.dispatch(add(factor), AddPush{words.address(), count, term}, (count + add_size - 1) / add_size, {writes(words)});
+        recorder.dispatch(add(factor), AddPush{words.address(), count, term}, (count + add_size - 1) / add_size,
+                          {writes(words)});
     }
 };
 
@@ -93,7 +94,8 @@ TEST_F(Recording, FoldsManyWorkgroupsIntoShortAxes) {
     vulkan::Settings settings = watched();
     settings.groups_an_axis = 7;
     reopen(settings);
-    for (const std::uint32_t count : {1u, 6 * 32u, 7 * 32u, 7 * 32u + 1, 49 * 32u, 49 * 32u + 1, 50 * 32u, 342 * 32u, 343 * 32u}) {
+    for (const std::uint32_t count :
+         {1u, 6 * 32u, 7 * 32u, 7 * 32u + 1, 49 * 32u, 49 * 32u + 1, 50 * 32u, 342 * 32u, 343 * 32u}) {
         const Buffer words = upload(ramp(count));
         Recorder recorder(context());
         dispatch_add(recorder, words, 1);

@@ -58,7 +58,8 @@ TEST(SelfTest, NoticesADeviceWhoseQuotientsAndRootsAreFarOff) {
     });
     ASSERT_EQ(notices.size(), 1u);
     EXPECT_NE(notices[0].find("is not exact (of 4096 cases, wrong: weights "), std::string::npos) << notices[0];
-    EXPECT_NE(notices[0].find("surfaces may differ from the CPU's in their last bits"), std::string::npos) << notices[0];
+    EXPECT_NE(notices[0].find("surfaces may differ from the CPU's in their last bits"), std::string::npos)
+        << notices[0];
 }
 
 TEST(SelfTest, NoticesADeviceThatComputesSomethingElse) {
@@ -104,7 +105,8 @@ TEST(SelfTest, HasCasesOfEveryKind) {
         EXPECT_TRUE(product == 0 || product >= 0x1p-126f) << "denormal: outside of the contract";
         no_vertex_normal += std::ranges::all_of(answer.vertex_normal, [](std::uint32_t bits) { return bits == 0; });
         no_area += std::ranges::all_of(answer.face_normal, [](std::uint32_t bits) { return bits == 0; });
-        for (const std::uint32_t bits : {answer.weight, answer.interpolated, answer.vertex_normal[0], answer.face_normal[0]})
+        for (const std::uint32_t bits :
+             {answer.weight, answer.interpolated, answer.vertex_normal[0], answer.face_normal[0]})
             nan += (bits & 0x7fffffffu) >= 0x7f800000u;
         EXPECT_TRUE(t >= 0 && t <= 1) << t;
     }

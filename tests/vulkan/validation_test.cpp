@@ -58,7 +58,8 @@ TEST(Validation, SeesWhatIsNotGivenBack) {
         VkFenceCreateInfo create{};
         create.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         VkFence fence = VK_NULL_HANDLE;
-        ASSERT_EQ(context->device().call().vkCreateFence(context->device().handle(), &create, nullptr, &fence), VK_SUCCESS);
+        ASSERT_EQ(context->device().call().vkCreateFence(context->device().handle(), &create, nullptr, &fence),
+                  VK_SUCCESS);
     }
     EXPECT_FALSE(settings.watch.complaints->all().empty());
 }

@@ -78,12 +78,15 @@ private:
     Result<void> extract_all(const Progress& progress) {
         survey_ = survey_points<Real>(input_, nullptr);
         const std::size_t count = request_.isovalues.size();
-        const auto share = [&](std::size_t done) { return 0.8 * static_cast<double>(done) / static_cast<double>(count); };
+        const auto share = [&](std::size_t done) {
+            return 0.8 * static_cast<double>(done) / static_cast<double>(count);
+        };
         for (std::size_t i = 0; i < count; ++i) {
             const Progress part = part_of(progress, share(i), share(i + 1));
             std::optional<ops::BruteSurface> surface;
             while (!surface) { // again when what was assumed turned out wrong: each assumption once
-                auto tried = wide_ ? extract<std::uint64_t>(request_.isovalues[i], part) : extract<std::uint32_t>(request_.isovalues[i], part);
+                auto tried = wide_ ? extract<std::uint64_t>(request_.isovalues[i], part)
+                                   : extract<std::uint32_t>(request_.isovalues[i], part);
                 if (!tried) return tried.error();
                 surface = *std::move(tried);
             }
@@ -96,7 +99,8 @@ private:
     template <class Point>
     Result<std::optional<ops::BruteSurface>> extract(double isovalue, const Progress& progress) {
         const Real stored = core::store_isovalue<Real>(isovalue, survey_.field.storage);
-        const SidesFound found = find_sides(input_, survey_, isovalue, stored, request_.ties, settled_ ? Watch::nothing : Watch::deciding, sides_);
+        const SidesFound found = find_sides(input_, survey_, isovalue, stored, request_.ties,
+                                            settled_ ? Watch::nothing : Watch::deciding, sides_);
         CutContext context{input_, sides_, Ranges(sides_.points())};
         context.mostly_negative = mostly_negative_.value_or(false);
         context.rounds_coordinates = survey_.rounds_coordinates;
@@ -129,29 +133,32 @@ private:
             if (!context.broken) return cut;
         } catch (const Budget::Exceeded&) {
             const std::uint64_t tets = count_cut_tets(input_.cells, sides_);
-            const std::uint64_t most = tets * (24 + 4 * (sizeof(CrossedEdge<Point>) + sizeof(FoundEdge<Point>) + 3 * sizeof(Real)));
+            const std::uint64_t most =
+                tets * (24 + 4 * (sizeof(CrossedEdge<Point>) + sizeof(FoundEdge<Point>) + 3 * sizeof(Real)));
             return Error{ErrorCode::out_of_memory,
-                         fmt::format("extraction may need {} for {} cut tets, but {} are free", core::format_bytes(most), tets,
-                                     core::format_bytes(core::free_memory()))};
+                         fmt::format("extraction may need {} for {} cut tets, but {} are free",
+                                     core::format_bytes(most), tets, core::format_bytes(core::free_memory()))};
         }
         if (auto sound = core::check_cells(input_.grid, input_.cells, progress); !sound) return sound.error();
         return Error{ErrorCode::internal, "extraction found a broken cell that the check of cells does not find"};
     }
 
     template <class Point>
-    Result<ops::BruteSurface> make_surface(const VertexSource<Real>& source, CutCells<Point> cut, const CutContext& context, const Progress& progress) {
+    Result<ops::BruteSurface> make_surface(const VertexSource<Real>& source, CutCells<Point> cut,
+                                           const CutContext& context, const Progress& progress) {
         const CutCounts counts = cut.counts();
         EmitOptions options{request_.ends || request_.normals, request_.source_cells, counts.edges >= wide_from};
-        const std::uint64_t needed = welding_memory<Point>(counts.edges) +
-                                     emitting_memory<Real, Point>(counts.edges, counts.triangles, counts.edges, options);
+        const std::uint64_t needed =
+            welding_memory<Point>(counts.edges) +
+            emitting_memory<Real, Point>(counts.edges, counts.triangles, counts.edges, options);
         if (auto ok = require_if_much("the surface", needed); !ok) return ok.error();
         Welded<Point> welded = weld(cut, context.ranges);
         if (progress.cancelled()) return cancelled();
         progress("extract", 0.7);
         options.wide = welded.vertices() >= wide_from;
         const std::uint64_t kept = sides_.bytes() + context.budget.taken();
-        result_.transient_bytes = std::max(result_.transient_bytes,
-                                           kept + welding_memory<Point>(counts.edges) + counts.edges * (options.wide ? 8 : 4));
+        result_.transient_bytes = std::max(result_.transient_bytes, kept + welding_memory<Point>(counts.edges) +
+                                                                        counts.edges * (options.wide ? 8 : 4));
         result_.predicted_bytes = std::max(result_.predicted_bytes, kept + needed);
 
         ops::BruteSurface out;
@@ -167,7 +174,8 @@ private:
         return out;
     }
 
-    Result<Array> gradients(const VertexSource<Real>& source, const ops::RawSurface& surface, const Progress& progress) {
+    Result<Array> gradients(const VertexSource<Real>& source, const ops::RawSurface& surface,
+                            const Progress& progress) {
         auto normals = gradient_normals(source, sides_, mostly_negative_.value_or(false), surface, progress);
         if (normals && normals->saw_flat && !mostly_negative_ && ask_for_most())
             normals = gradient_normals(source, sides_, true, surface, progress);
@@ -214,9 +222,9 @@ private:
     const ops::BruteRequest& request_;
     Sides sides_;
     PointSurvey survey_;
-    bool settled_ = false; ///< the survey is that of the points that tets use, not only of all points
+    bool settled_ = false;                ///< the survey is that of the points that tets use, not only of all points
     std::optional<bool> mostly_negative_; ///< nothing: never asked, and assumed not to be
-    bool wide_; ///< point numbers
+    bool wide_;                           ///< point numbers
     ops::BruteResult result_;
 };
 
@@ -226,11 +234,14 @@ private:
 namespace isotet::cpu {
 
 template <class Real>
-Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress) {
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request,
+                                       const Progress& progress) {
     return brute::BruteRun<Real>(input, request).run(progress);
 }
 
-template Result<ops::BruteResult> extract_brute<float>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
-template Result<ops::BruteResult> extract_brute<double>(const ops::BruteInput&, const ops::BruteRequest&, const Progress&);
+template Result<ops::BruteResult> extract_brute<float>(const ops::BruteInput&, const ops::BruteRequest&,
+                                                       const Progress&);
+template Result<ops::BruteResult> extract_brute<double>(const ops::BruteInput&, const ops::BruteRequest&,
+                                                        const Progress&);
 
 } // namespace isotet::cpu

@@ -28,7 +28,8 @@ bool is_collapsed(const core::Tet& t) {
     return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
 }
 
-constexpr std::size_t tets_at_once = 1 << 10; ///< few enough that their corners are still near when cut ones are fetched
+constexpr std::size_t tets_at_once =
+    1 << 10; ///< few enough that their corners are still near when cut ones are fetched
 
 /// Adds up the flags of each tet's corners. False when a number has no flags, and so is no point; numbers that have none are
 /// masked before they are looked up.
@@ -45,7 +46,8 @@ bool add_up_sides(const Sides& sides, const Index* corners, std::size_t tets, st
             std::memcpy(words.data(), corners + 4 * i, sizeof words);
             all |= words[0] | words[1];
             const std::uint64_t p = words[0] & both, q = words[1] & both;
-            const unsigned sum = sides[static_cast<std::uint32_t>(p)] + sides[p >> 32] + sides[static_cast<std::uint32_t>(q)] + sides[q >> 32];
+            const unsigned sum = sides[static_cast<std::uint32_t>(p)] + sides[p >> 32] +
+                                 sides[static_cast<std::uint32_t>(q)] + sides[q >> 32];
             sums[i] = static_cast<std::uint16_t>(sum);
         }
         return (all & ~both) == 0;
@@ -91,7 +93,8 @@ std::size_t find_worth_looking(const std::array<std::uint16_t, tets_at_once>& su
 template <class Point>
 class ChunkPass {
 public:
-    ChunkPass(CutContext& context, Cutter<Point>& cutter) : context_(context), cells_(context.input.cells), cutter_(cutter) {}
+    ChunkPass(CutContext& context, Cutter<Point>& cutter)
+        : context_(context), cells_(context.input.cells), cutter_(cutter) {}
 
     /// Cells that are nothing but four numbers, `corners` those of the first.
     template <class Index>
@@ -107,9 +110,10 @@ public:
             for (std::size_t i = 0; i < found; ++i) {
                 const std::uint32_t place = places[i];
                 const Index* const v = part + 4 * std::size_t{place};
-                const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]), static_cast<Point>(v[2]),
-                                               static_cast<Point>(v[3])};
-                if (sums[place] >= 16) [[unlikely]] look_at({tet[0], tet[1], tet[2], tet[3]});
+                const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]),
+                                               static_cast<Point>(v[2]), static_cast<Point>(v[3])};
+                if (sums[place] >= 16) [[unlikely]]
+                    look_at({tet[0], tet[1], tet[2], tet[3]});
                 if (sums[place] % 4 != 0) cutter_.add(tet, static_cast<std::uint32_t>(begin + place));
             }
             if (context_.broken.load(std::memory_order_relaxed)) return;
@@ -168,7 +172,8 @@ private:
             if (watched)
                 for (const std::uint64_t point : tet) context_.sides.saw(point);
             if (above % 4 != 0)
-                cutter_.add({static_cast<Point>(tet[0]), static_cast<Point>(tet[1]), static_cast<Point>(tet[2]), static_cast<Point>(tet[3])},
+                cutter_.add({static_cast<Point>(tet[0]), static_cast<Point>(tet[1]), static_cast<Point>(tet[2]),
+                             static_cast<Point>(tet[3])},
                             place);
         }
         return true;
@@ -203,7 +208,8 @@ CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
         if (!context.broken.load(std::memory_order_relaxed)) cutter.end();
     };
     for (std::size_t first = 0; first < chunks; first += chunks_a_report) {
-        core::parallel_each(std::min(chunks_a_report, chunks - first), 1, [&](std::size_t chunk) { pass_chunk(first + chunk); });
+        core::parallel_each(std::min(chunks_a_report, chunks - first), 1,
+                            [&](std::size_t chunk) { pass_chunk(first + chunk); });
         if (progress.cancelled() || context.broken) break;
         progress("extract", static_cast<double>(first) / static_cast<double>(chunks));
     }

@@ -24,7 +24,8 @@ struct SortedPolygon {
 constexpr std::array<SortedPolygon, 32> sorted_polygons = [] {
     std::array<SortedPolygon, 32> table{};
     for (unsigned code = 0; code < 32; ++code) {
-        const std::array<std::uint8_t, 4> place = code & 16 ? std::array<std::uint8_t, 4>{0, 1, 3, 2} : std::array<std::uint8_t, 4>{0, 1, 2, 3};
+        const std::array<std::uint8_t, 4> place =
+            code & 16 ? std::array<std::uint8_t, 4>{0, 1, 3, 2} : std::array<std::uint8_t, 4>{0, 1, 2, 3};
         unsigned stored_case = 0;
         for (unsigned k = 0; k < 4; ++k) stored_case |= (code >> place[k] & 1) << k;
         const core::TetCase& c = core::case_table[stored_case];
@@ -43,8 +44,8 @@ template <class Coordinate, std::size_t batch>
 using Gathered = std::array<std::array<std::array<Coordinate, batch>, 3>, 4>;
 
 template <class Point, class Coordinate, std::size_t batch>
-inline void sort_and_sign(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes, std::size_t count,
-                          const Coordinate* coordinates) {
+inline void sort_and_sign(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                          std::size_t count, const Coordinate* coordinates) {
     sort_corners(sorted, codes, count);
     alignas(64) Gathered<Coordinate, batch> xyz;
     for (std::size_t k = 0; k < 4; ++k)
@@ -59,21 +60,21 @@ inline void sort_and_sign(std::array<std::array<Point, batch>, 4>& sorted, std::
 // Everything is inlined into these, and so compiled for their instruction set.
 template <class Point, class Coordinate, std::size_t batch>
 [[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2"), gnu::flatten]] void
-sort_and_sign_avx512(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes, std::size_t count,
-                     const Coordinate* coordinates) {
+sort_and_sign_avx512(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                     std::size_t count, const Coordinate* coordinates) {
     sort_and_sign(sorted, codes, count, coordinates);
 }
 template <class Point, class Coordinate, std::size_t batch>
 [[gnu::target("avx2,bmi,bmi2"), gnu::flatten]] void
-sort_and_sign_avx2(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes, std::size_t count,
-                   const Coordinate* coordinates) {
+sort_and_sign_avx2(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                   std::size_t count, const Coordinate* coordinates) {
     sort_and_sign(sorted, codes, count, coordinates);
 }
 #endif
 
 template <class Point, class Coordinate, std::size_t batch>
-void sort_and_sign_best(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes, std::size_t count,
-                        const Coordinate* coordinates) {
+void sort_and_sign_best(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                        std::size_t count, const Coordinate* coordinates) {
     switch (level()) {
 #if defined(__x86_64__)
     case Level::avx512: return sort_and_sign_avx512(sorted, codes, count, coordinates);
@@ -92,8 +93,12 @@ double squared_distance(const core::Point& a, const core::Point& b) {
 
 template <class Point>
 Cutter<Point>::Cutter(CutContext& context, std::size_t number)
-    : context_(context), number_(number), points_(context.input.grid.points), arena_(context.budget),
-      in_range_(context.ranges.count, 0), memory_(std::size_t{1} << memory_bits, Remembered{{0, 0}, 0, 0}) {}
+    : context_(context),
+      number_(number),
+      points_(context.input.grid.points),
+      arena_(context.budget),
+      in_range_(context.ranges.count, 0),
+      memory_(std::size_t{1} << memory_bits, Remembered{{0, 0}, 0, 0}) {}
 
 template <class Point>
 void Cutter<Point>::begin(Chunk<Point>& chunk, std::uint64_t first_cell) {
@@ -162,7 +167,8 @@ void Cutter<Point>::cut() {
         } else {
             const SortedPolygon& p = sorted_polygons[codes_[i]];
             made = p.triangles;
-            for (std::size_t k = 0; k < 4; ++k) numbers[k] = number_of({sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1});
+            for (std::size_t k = 0; k < 4; ++k)
+                numbers[k] = number_of({sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1});
         }
         triangles[tets] = static_cast<std::uint8_t>(made);
         if (cells) cells[tets] = cells_[i];
@@ -200,7 +206,8 @@ unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<CrossedEdge<
     const SortedPolygon& p = sorted_polygons[code & (tet_code::case_mask | tet_code::negative)];
     for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t a = p.lower[k], b = p.higher[k], above = code >> a & 1 ? a : b;
-        polygon[k] = is_tied[above] ? CrossedEdge<Point>{corner[above], corner[above]} : CrossedEdge<Point>{corner[a], corner[b]};
+        polygon[k] = is_tied[above] ? CrossedEdge<Point>{corner[above], corner[above]}
+                                    : CrossedEdge<Point>{corner[a], corner[b]};
     }
     const auto differ = [&](std::size_t a, std::size_t b, std::size_t c) {
         return polygon[a] != polygon[b] && polygon[b] != polygon[c] && polygon[c] != polygon[a];

@@ -19,10 +19,12 @@ constexpr std::size_t grain = 1 << 13;
 /// The ends of edges, numbered by ascending point.
 class EndPoints {
 public:
-    EndPoints(std::size_t points, std::span<const std::int64_t> ends) : bits_(core::words_of_bits(points), 0), before_(bits_.size() + 1, 0) {
+    EndPoints(std::size_t points, std::span<const std::int64_t> ends)
+        : bits_(core::words_of_bits(points), 0), before_(bits_.size() + 1, 0) {
         core::parallel_each(ends.size(), grain, [&](std::size_t i) {
             const auto point = static_cast<std::size_t>(ends[i]);
-            std::atomic_ref<std::uint64_t>(bits_[point / 64]).fetch_or(std::uint64_t{1} << point % 64, std::memory_order_relaxed);
+            std::atomic_ref<std::uint64_t>(bits_[point / 64])
+                .fetch_or(std::uint64_t{1} << point % 64, std::memory_order_relaxed);
         });
         for (std::size_t word = 0; word < bits_.size(); ++word)
             before_[word + 1] = before_[word] + static_cast<std::uint64_t>(std::popcount(bits_[word]));
@@ -50,8 +52,11 @@ template <class Real>
 class GradientSummer {
 public:
     GradientSummer(const VertexSource<Real>& source, const Sides& sides, bool mostly_negative, const EndPoints& ends)
-        : source_(source), cells_(source.input().cells), sides_(sides),
-          orienter_(source.input().grid.points, mostly_negative), ends_(ends) {}
+        : source_(source),
+          cells_(source.input().cells),
+          sides_(sides),
+          orienter_(source.input().grid.points, mostly_negative),
+          ends_(ends) {}
 
     /// The codes of all ends.
     template <class Index>
@@ -126,14 +131,18 @@ Result<GradientNormals> gradient_normals(const VertexSource<Real>& source, const
     if (progress.cancelled()) return cancelled();
     core::Buffer<float> normals(3 * weights.size());
     core::parallel_each(weights.size(), grain, [&](std::size_t v) {
-        const auto code = [&](std::size_t end) { return codes[points.number(static_cast<std::uint64_t>(ends[2 * v + end]))]; };
+        const auto code = [&](std::size_t end) {
+            return codes[points.number(static_cast<std::uint64_t>(ends[2 * v + end]))];
+        };
         const auto normal = core::vertex_normal(code(0), code(1), weights[v]);
         for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * v + axis] = static_cast<float>(normal[axis]);
     });
     return GradientNormals{std::move(normals).to_array(3), summer.saw_flat()};
 }
 
-template Result<GradientNormals> gradient_normals<float>(const VertexSource<float>&, const Sides&, bool, const ops::RawSurface&, const Progress&);
-template Result<GradientNormals> gradient_normals<double>(const VertexSource<double>&, const Sides&, bool, const ops::RawSurface&, const Progress&);
+template Result<GradientNormals> gradient_normals<float>(const VertexSource<float>&, const Sides&, bool,
+                                                         const ops::RawSurface&, const Progress&);
+template Result<GradientNormals> gradient_normals<double>(const VertexSource<double>&, const Sides&, bool,
+                                                          const ops::RawSurface&, const Progress&);
 
 } // namespace isotet::cpu::brute

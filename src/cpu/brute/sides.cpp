@@ -25,9 +25,13 @@ template <class Real, class T>
 class SideFinder {
 public:
     SideFinder(const StoredField& field, Real stored, std::optional<double> nearest, Ties ties, Watch watch)
-        : storage_(field.storage), stored_(stored), lower_(static_cast<Number>(field.statistics.lower)), upper_(static_cast<Number>(field.statistics.upper)),
+        : storage_(field.storage),
+          stored_(stored),
+          lower_(static_cast<Number>(field.statistics.lower)),
+          upper_(static_cast<Number>(field.statistics.upper)),
           tied_flags_(ties == Ties::merge ? side::watched | side::tied : side::watched),
-          near_flag_(nearest ? side::watched : 0), deciding_flag_(watch == Watch::deciding ? side::watched : 0),
+          near_flag_(nearest ? side::watched : 0),
+          deciding_flag_(watch == Watch::deciding ? side::watched : 0),
           as_they_are_(field.storage.offset == 0 && field.storage.scale == 1 && !field.may_flush()) {
         if (nearest) stored_nearest_ = core::store_value<Real>(*nearest, storage_);
     }
@@ -35,7 +39,9 @@ public:
     SidesFound find(const T* values, std::size_t count, std::uint8_t* flags) const {
         // Infinities compare as +-2^91 would; so nothing else is changed by storing such a field.
         return as_they_are_ ? find(values, count, flags, [](T value) { return static_cast<Real>(value); })
-                            : find(values, count, flags, [&](T value) { return core::store_value<Real>(static_cast<double>(value), storage_); });
+                            : find(values, count, flags, [&](T value) {
+                                  return core::store_value<Real>(static_cast<double>(value), storage_);
+                              });
     }
 
 private:
@@ -52,11 +58,12 @@ private:
             const auto value = static_cast<Number>(values[i]);
             const Real s = store(values[i]);
             const bool no_data = value != value, tied = s == stored;
-            const bool deciding = no_data | (value == lower) | (value == upper) | (std::abs(value) == infinity) | ((s == 0) & (value != offset));
+            const bool deciding = no_data | (value == lower) | (value == upper) | (std::abs(value) == infinity) |
+                                  ((s == 0) & (value != offset));
             const auto if_tied = static_cast<std::uint8_t>(tied ? tied_flags : 0);
             const auto if_near = static_cast<std::uint8_t>(s == stored_nearest ? near_flag : 0);
-            flags[i] = static_cast<std::uint8_t>((s >= stored ? side::above : 0) | (no_data ? side::no_data : 0) | if_tied | if_near |
-                                                 (deciding ? deciding_flag : 0));
+            flags[i] = static_cast<std::uint8_t>((s >= stored ? side::above : 0) | (no_data ? side::no_data : 0) |
+                                                 if_tied | if_near | (deciding ? deciding_flag : 0));
             any_tied |= if_tied;
             any_near |= if_near;
         }
@@ -82,7 +89,8 @@ void watch_field(const Array& values, const StoredField& field, Sides& sides) {
             for (std::size_t k = 0; k < components; ++k) {
                 const auto value = static_cast<double>(typed[point * components + k]);
                 const double magnitude = std::abs(value - field.storage.offset);
-                deciding |= value == field.statistics.lower || value == field.statistics.upper || (magnitude > 0 && magnitude < core::tiny);
+                deciding |= value == field.statistics.lower || value == field.statistics.upper ||
+                            (magnitude > 0 && magnitude < core::tiny);
             }
             if (deciding) sides.flags()[point] |= side::watched;
         });
@@ -103,8 +111,8 @@ void add_flags(const Array& points, Sides& sides, const F& f) {
 } // namespace
 
 template <class Real>
-SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, Ties ties, Watch watch,
-                      Sides& sides) {
+SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, Ties ties,
+                      Watch watch, Sides& sides) {
     const Array& values = input.field.values;
     std::atomic<bool> tied{false}, near{false};
     values.visit([&]<class T>(std::span<const T> typed) {
@@ -116,19 +124,20 @@ SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, d
         });
     });
     if (watch == Watch::deciding) {
-        for (std::size_t i = 0; i < survey.carried.size(); ++i) watch_field(input.carried[i].values, survey.carried[i], sides);
+        for (std::size_t i = 0; i < survey.carried.size(); ++i)
+            watch_field(input.carried[i].values, survey.carried[i], sides);
         watch_field(values, survey.field, sides);
         if (survey.rounds_coordinates)
             add_flags(input.grid.points, sides, [&](const core::Point& p) {
                 bool deciding = false;
-                for (std::size_t axis = 0; axis < 3; ++axis) deciding |= p[axis] == survey.lower[axis] || p[axis] == survey.upper[axis];
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    deciding |= p[axis] == survey.lower[axis] || p[axis] == survey.upper[axis];
                 return deciding ? side::watched : std::uint8_t{0};
             });
     }
     if (survey.has_unsound)
-        add_flags(input.grid.points, sides, [](const core::Point& p) {
-            return is_sound(p) ? std::uint8_t{0} : side::unsound;
-        });
+        add_flags(input.grid.points, sides,
+                  [](const core::Point& p) { return is_sound(p) ? std::uint8_t{0} : side::unsound; });
     return {tied, near};
 }
 
@@ -136,8 +145,8 @@ template SidesFound find_sides<float>(const ops::BruteInput&, const PointSurvey&
 template SidesFound find_sides<double>(const ops::BruteInput&, const PointSurvey&, double, double, Ties, Watch, Sides&);
 
 template <class Real>
-void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, SidesFound found,
-                 const Sides& sides, ops::BruteSurface& surface) {
+void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored,
+                 SidesFound found, const Sides& sides, ops::BruteSurface& surface) {
     surface.isovalue_stored = core::restore_value(static_cast<double>(stored), survey.field.storage);
     if (!found.tied && !found.near) return;
     const Array& values = input.field.values;
@@ -159,7 +168,9 @@ void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double
     surface.near_tie = tied == 0 && near;
 }
 
-template void report_ties<float>(const ops::BruteInput&, const PointSurvey&, double, float, SidesFound, const Sides&, ops::BruteSurface&);
-template void report_ties<double>(const ops::BruteInput&, const PointSurvey&, double, double, SidesFound, const Sides&, ops::BruteSurface&);
+template void report_ties<float>(const ops::BruteInput&, const PointSurvey&, double, float, SidesFound, const Sides&,
+                                 ops::BruteSurface&);
+template void report_ties<double>(const ops::BruteInput&, const PointSurvey&, double, double, SidesFound, const Sides&,
+                                  ops::BruteSurface&);
 
 } // namespace isotet::cpu::brute

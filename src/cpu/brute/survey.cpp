@@ -21,7 +21,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of all values of the points [begin, end) that count.
 template <class T>
-core::ValueSummary summarize(std::span<const T> values, std::size_t components, const Sides* seen, std::size_t begin, std::size_t end, double offset) {
+core::ValueSummary summarize(std::span<const T> values, std::size_t components, const Sides* seen, std::size_t begin,
+                             std::size_t end, double offset) {
     using Number = std::conditional_t<std::is_same_v<T, float>, float, double>; // floats have no offset
     core::ValueSummary summary;
     if (seen) {
@@ -66,7 +67,8 @@ std::uint64_t count_flushed(const Array& values, const Sides* seen, const core::
             [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t count) {
                 for (std::size_t point = range.begin(); point < range.end(); ++point) {
                     const auto value = static_cast<double>(typed[point]);
-                    count += core::store_value<Real>(value, storage) == 0 && value != storage.offset && !(seen && seen->is_unseen(point));
+                    count += core::store_value<Real>(value, storage) == 0 && value != storage.offset &&
+                             !(seen && seen->is_unseen(point));
                 }
                 return count;
             },
@@ -141,8 +143,7 @@ PointSurvey survey_points(const ops::BruteInput& input, const Sides* seen) {
     constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::single : Precision::double_;
     PointSurvey out;
     out.field = survey_field(input.field.values, seen, precision);
-    if (out.field.may_flush())
-        out.flushed = count_flushed<Real>(input.field.values, seen, out.field.storage);
+    if (out.field.may_flush()) out.flushed = count_flushed<Real>(input.field.values, seen, out.field.storage);
     for (const Field& field : input.carried) out.carried.push_back(survey_field(field.values, seen, precision));
 
     const Array& points = input.grid.points;
@@ -153,7 +154,8 @@ PointSurvey survey_points(const ops::BruteInput& input, const Sides* seen) {
         out.lower = bounds.lower;
         out.upper = bounds.upper;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            out.origin[axis] = core::rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
+            out.origin[axis] =
+                core::rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
     }
     return out;
 }

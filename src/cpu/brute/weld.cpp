@@ -28,7 +28,8 @@ std::vector<std::uint64_t> place_ranges(CutCells<Point>& cut, std::size_t count)
     std::uint64_t next = 0;
     for (std::size_t range = 0; range < count; ++range) {
         first[range] = next;
-        for (const auto& cutter : cut.cutters) next += std::exchange(cutter->in_range()[range], static_cast<Point>(next));
+        for (const auto& cutter : cut.cutters)
+            next += std::exchange(cutter->in_range()[range], static_cast<Point>(next));
     }
     first[count] = next;
     return first;
@@ -58,7 +59,8 @@ struct Scratch {
 
 /// Sorts the edges of one range, whose lowest point is `base`, by their ends.
 template <class Point>
-void sort_range(FoundEdge<Point>* edges, std::size_t count, std::uint64_t base, std::size_t points, Scratch<Point>& scratch) {
+void sort_range(FoundEdge<Point>* edges, std::size_t count, std::uint64_t base, std::size_t points,
+                Scratch<Point>& scratch) {
     const auto comes_before = [](const FoundEdge<Point>& a, const FoundEdge<Point>& b) {
         return a.edge.lower != b.edge.lower ? a.edge.lower < b.edge.lower : a.edge.higher < b.edge.higher;
     };
@@ -93,7 +95,8 @@ Welded<Point> weld(CutCells<Point>& cut, const Ranges& ranges) {
     Welded<Point> out;
     out.first_edge = place_ranges(cut, ranges.count);
     out.edges = core::Buffer<FoundEdge<Point>>(out.first_edge.back());
-    core::parallel_each(cut.cutters.size(), 1, [&](std::size_t cutter) { scatter(cut, cutter, ranges, out.edges.data()); });
+    core::parallel_each(cut.cutters.size(), 1,
+                        [&](std::size_t cutter) { scatter(cut, cutter, ranges, out.edges.data()); });
 
     out.first_vertex.assign(ranges.count + 1, 0);
     tbb::enumerable_thread_specific<Scratch<Point>> scratch;

@@ -59,10 +59,13 @@ struct Animation::Encoder {
     std::uint64_t count = 0;
 
     /// When the next picture begins: no rounding adds up.
-    int milliseconds() const { return static_cast<int>(std::lround(1000 * seconds_a_picture * static_cast<double>(count))); }
+    int milliseconds() const {
+        return static_cast<int>(std::lround(1000 * seconds_a_picture * static_cast<double>(count)));
+    }
 
     Error failed() const {
-        return {ErrorCode::machine, fmt::format("{}: libwebp could not make picture {}: {}", path, count + 1, WebPAnimEncoderGetError(pictures.get()))};
+        return {ErrorCode::machine, fmt::format("{}: libwebp could not make picture {}: {}", path, count + 1,
+                                                WebPAnimEncoderGetError(pictures.get()))};
     }
 };
 
@@ -72,9 +75,11 @@ Animation& Animation::operator=(Animation&&) noexcept = default;
 Animation::~Animation() = default;
 
 Result<Animation> Animation::begin(const std::string& path, double pictures_per_second) {
-    if (!path.ends_with(".webp")) return wrong(fmt::format("{} does not end in .webp, but animations are written as WebP", path));
+    if (!path.ends_with(".webp"))
+        return wrong(fmt::format("{} does not end in .webp, but animations are written as WebP", path));
     if (!(pictures_per_second > 0 && pictures_per_second <= 100))
-        return wrong(fmt::format("{} pictures a second, but they must be above 0 and at most 100", pictures_per_second));
+        return wrong(
+            fmt::format("{} pictures a second, but they must be above 0 and at most 100", pictures_per_second));
     auto encoder = std::make_unique<Encoder>();
     encoder->path = path;
     encoder->seconds_a_picture = 1 / pictures_per_second;
@@ -85,22 +90,28 @@ Result<void> Animation::add(const Picture& picture) {
     Encoder& to = *encoder_;
     if (picture.width == 0 || picture.height == 0 || picture.width > largest_side || picture.height > largest_side ||
         picture.pixels.size() != std::size_t{picture.width} * picture.height)
-        return wrong(fmt::format("a picture of {} x {} with {} pixels, but pictures of an animation have 1 to {} in a row and a column",
-                                 picture.width, picture.height, picture.pixels.size(), largest_side));
+        return wrong(fmt::format(
+            "a picture of {} x {} with {} pixels, but pictures of an animation have 1 to {} in a row and a column",
+            picture.width, picture.height, picture.pixels.size(), largest_side));
     if (to.count > 0 && (picture.width != to.width || picture.height != to.height))
-        return wrong(fmt::format("a picture of {} x {}, but those before it are {} x {}", picture.width, picture.height, to.width, to.height));
-    const Error no_memory{ErrorCode::out_of_memory, fmt::format("no memory left for picture {} of {}", to.count + 1, to.path)};
+        return wrong(fmt::format("a picture of {} x {}, but those before it are {} x {}", picture.width, picture.height,
+                                 to.width, to.height));
+    const Error no_memory{ErrorCode::out_of_memory,
+                          fmt::format("no memory left for picture {} of {}", to.count + 1, to.path)};
     if (!to.pictures) {
         WebPAnimEncoderOptions options;
-        if (!WebPAnimEncoderOptionsInit(&options)) return Error{ErrorCode::internal, "libwebp is not the one that isotet was built for"};
-        to.pictures.reset(WebPAnimEncoderNew(static_cast<int>(picture.width), static_cast<int>(picture.height), &options));
+        if (!WebPAnimEncoderOptionsInit(&options))
+            return Error{ErrorCode::internal, "libwebp is not the one that isotet was built for"};
+        to.pictures.reset(
+            WebPAnimEncoderNew(static_cast<int>(picture.width), static_cast<int>(picture.height), &options));
         if (!to.pictures) return no_memory;
         to.width = picture.width;
         to.height = picture.height;
     }
     WebPConfig config;
     Pixels pixels;
-    if (!WebPConfigPreset(&config, WEBP_PRESET_DRAWING, quality)) return Error{ErrorCode::internal, "libwebp has no preset for drawings"};
+    if (!WebPConfigPreset(&config, WEBP_PRESET_DRAWING, quality))
+        return Error{ErrorCode::internal, "libwebp has no preset for drawings"};
     if (!pixels.take(picture)) return no_memory;
     if (!WebPAnimEncoderAdd(to.pictures.get(), pixels.get(), to.milliseconds(), &config)) return to.failed();
     ++to.count;
@@ -110,7 +121,8 @@ Result<void> Animation::add(const Picture& picture) {
 Result<std::uint64_t> Animation::finish() {
     Encoder& from = *encoder_;
     if (!from.pictures) return wrong(fmt::format("{} has no picture, but an animation has one at least", from.path));
-    if (!WebPAnimEncoderAdd(from.pictures.get(), nullptr, from.milliseconds(), nullptr)) return from.failed(); // when the last one ends
+    if (!WebPAnimEncoderAdd(from.pictures.get(), nullptr, from.milliseconds(), nullptr))
+        return from.failed(); // when the last one ends
     WebPData data;
     WebPDataInit(&data);
     const std::unique_ptr<WebPData, decltype(&WebPDataClear)> cleared(&data, WebPDataClear);
@@ -118,7 +130,8 @@ Result<std::uint64_t> Animation::finish() {
     from.pictures.reset();
     Result<io::OutputFile> file = io::OutputFile::open(from.path);
     if (!file) return file.error();
-    if (Result<void> written = file->write(std::as_bytes(std::span(data.bytes, data.size))); !written) return written.error();
+    if (Result<void> written = file->write(std::as_bytes(std::span(data.bytes, data.size))); !written)
+        return written.error();
     if (Result<void> done = file->commit(); !done) return done.error();
     return file->bytes();
 }

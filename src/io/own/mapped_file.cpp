@@ -36,7 +36,7 @@ Result<MappedFile> MappedFile::open(const std::string& path) {
     if (path.find('\0') != std::string::npos) return Error{ErrorCode::file, "the path holds a NUL character"};
 
     // Looked at before it is opened: opening a device can do something, opening a pipe can wait for ever.
-    struct stat status {};
+    struct stat status{};
     if (::stat(path.c_str(), &status) != 0) return system_error(path, "cannot be read", errno);
     if (const auto kind = what_else_than_a_file(status.st_mode); !kind.empty()) return not_a_file(path, kind);
 

@@ -43,7 +43,7 @@ std::pair<std::string, std::string> split_path(const std::string& path) {
 Result<std::string> follow_links(const std::string& path) {
     std::string current = path;
     for (int i = 0; i < most_links; ++i) {
-        struct stat status {};
+        struct stat status{};
         if (::lstat(current.c_str(), &status) != 0) {
             if (errno == ENOENT) return current;
             return system_error(path, "cannot be written", errno);
@@ -61,10 +61,16 @@ Result<std::string> follow_links(const std::string& path) {
 } // namespace
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), name_(std::move(other.name_)),
-      temporary_name_(std::exchange(other.temporary_name_, {})), folder_(std::move(other.folder_)),
-      file_(std::move(other.file_)), mode_(other.mode_), buffer_(std::move(other.buffer_)),
-      buffered_(std::exchange(other.buffered_, 0)), bytes_(other.bytes_), error_(std::move(other.error_)) {}
+    : path_(std::move(other.path_)),
+      name_(std::move(other.name_)),
+      temporary_name_(std::exchange(other.temporary_name_, {})),
+      folder_(std::move(other.folder_)),
+      file_(std::move(other.file_)),
+      mode_(other.mode_),
+      buffer_(std::move(other.buffer_)),
+      buffered_(std::exchange(other.buffered_, 0)),
+      bytes_(other.bytes_),
+      error_(std::move(other.error_)) {}
 
 OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
     if (this != &other) {
@@ -94,7 +100,7 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
     out.path_ = path;
 
     // stat() first: it sees through links that only the kernel can follow, as /dev/stdout may be.
-    struct stat status {};
+    struct stat status{};
     if (::stat(path.c_str(), &status) == 0) {
         if (const auto kind = what_else_than_a_file(status.st_mode); !kind.empty()) {
             return Error{ErrorCode::invalid_argument,

@@ -29,9 +29,7 @@ Result<Value> in_file(const std::string& path, Result<Value> result) {
     return Error{ErrorCode::invalid_data, path + ": " + result.error().message};
 }
 
-int by_content_or_name(bool content, bool name) {
-    return content ? 2 : name ? 1 : 0;
-}
+int by_content_or_name(bool content, bool name) { return content ? 2 : name ? 1 : 0; }
 
 /// The file of the same name with another extension.
 std::string beside(const std::string& path, const char* extension) {
@@ -39,7 +37,7 @@ std::string beside(const std::string& path, const char* extension) {
 }
 
 bool is_there(const std::string& path) {
-    struct stat status {};
+    struct stat status{};
     return ::stat(path.c_str(), &status) == 0;
 }
 

@@ -29,7 +29,7 @@ struct Contents {
     std::vector<DataSection> data;
     Wants tags; ///< those the file has
     FileInfo info;
-    std::vector<std::size_t> step_of; ///< of each data section
+    std::vector<std::size_t> step_of;                                                    ///< of each data section
     std::map<std::pair<Association, std::string>, std::vector<std::size_t>> sections_of; ///< of each field
 };
 
@@ -150,8 +150,8 @@ Result<ReadResult> parse_gmsh(std::string_view bytes, const ReadOptions& options
     wants.geometrical = contents->tags.geometrical && wanted(options, Association::cell, geometrical_name);
     for (const FieldInfo& field : contents->info.fields) {
         const bool has_sections = contents->sections_of.contains({field.association, field.name});
-        wants.element_numbers |= has_sections && field.association == Association::cell &&
-                                 wanted(options, field.association, field.name);
+        wants.element_numbers |=
+            has_sections && field.association == Association::cell && wanted(options, field.association, field.name);
     }
     Pace pace(progress, bytes.size());
     auto mesh =

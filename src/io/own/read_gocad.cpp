@@ -275,7 +275,7 @@ private:
     }
 
     struct Atom {
-        std::uint64_t vertex;  ///< its place among vertices and atoms
+        std::uint64_t vertex; ///< its place among vertices and atoms
         std::int64_t refers_to;
         std::int64_t number;
         bool has_properties;
@@ -350,7 +350,7 @@ private:
     bool wants_volumes_ = true;
     bool another_ = false;
     std::vector<Property> point_properties_, cell_properties_;
-    NumberMap numbers_;                         ///< of vertices and atoms
+    NumberMap numbers_;                          ///< of vertices and atoms
     std::vector<std::uint64_t> point_of_vertex_; ///< empty as long as there are no atoms
     std::vector<Atom> atoms_;
     std::vector<double> atom_values_;

@@ -29,9 +29,7 @@ struct Name {
 constexpr Name names[] = {
     {"Dimension", dimension}, {"Vertices", vertices}, {"End", end}, {"SolAtVertices", sol_at_vertices}};
 
-bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 /// Moves to the next word that starts with a letter and is no number.
 void skip_numbers(TextScanner& scanner) {
@@ -145,9 +143,7 @@ Error broken(std::int32_t keyword, const std::string& message) {
     return {ErrorCode::invalid_data, fmt::format("{}: {}", name_of_keyword(keyword), message)};
 }
 
-std::string BinarySource::where() const {
-    return fmt::format("byte {}", reader_.position());
-}
+std::string BinarySource::where() const { return fmt::format("byte {}", reader_.position()); }
 
 Form form_of(std::string_view bytes) {
     std::int32_t one = 0;

@@ -39,17 +39,19 @@ Result<Picture> parse_picture(std::string_view bytes, const std::string& name) {
     if (!png_image_begin_read_from_memory(&image.state, bytes.data(), bytes.size())) return broken(image.state.message);
     const std::uint32_t width = image.state.width, height = image.state.height;
     if (width > most_pixels_an_axis || height > most_pixels_an_axis) {
-        return Error{ErrorCode::invalid_data, fmt::format("{}: a picture of {} x {} pixels, but {} each are the most", name, width,
-                                                          height, most_pixels_an_axis)};
+        return Error{ErrorCode::invalid_data, fmt::format("{}: a picture of {} x {} pixels, but {} each are the most",
+                                                          name, width, height, most_pixels_an_axis)};
     }
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (!can_hold(bytes.size(), pixels))
         return broken(fmt::format("{} bytes are too few for {} x {} pixels", bytes.size(), width, height));
     Picture picture{width, height, {}};
-    if (auto there = core::require_memory("the picture in " + name, pixels * sizeof(picture.pixels[0])); !there) return there.error();
+    if (auto there = core::require_memory("the picture in " + name, pixels * sizeof(picture.pixels[0])); !there)
+        return there.error();
     image.state.format = PNG_FORMAT_RGBA;
     picture.pixels.resize(pixels);
-    if (!png_image_finish_read(&image.state, nullptr, picture.pixels.data(), 0, nullptr)) return broken(image.state.message);
+    if (!png_image_finish_read(&image.state, nullptr, picture.pixels.data(), 0, nullptr))
+        return broken(image.state.message);
     return picture;
 }
 

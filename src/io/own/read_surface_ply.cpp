@@ -118,7 +118,8 @@ Result<Header> read_header(std::string_view content) {
 class ValueReader {
 public:
     ValueReader(std::string_view content, std::size_t begin, Encoding encoding)
-        : ascii_(encoding == Encoding::ascii), text_(content),
+        : ascii_(encoding == Encoding::ascii),
+          text_(content),
           bytes_(content, (encoding == Encoding::big) != (std::endian::native == std::endian::big)) {
         text_.seek(begin);
         bytes_.seek(begin);

@@ -20,9 +20,7 @@ namespace {
 
 constexpr std::string_view marker_name = "boundary_marker";
 
-std::string attribute_name(std::string_view stem, std::int64_t index) {
-    return fmt::format("{}_{}", stem, index);
-}
+std::string attribute_name(std::string_view stem, std::int64_t index) { return fmt::format("{}_{}", stem, index); }
 
 /// One of the two files: records of one line each, after a header line.
 class RecordFile {

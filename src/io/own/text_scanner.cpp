@@ -12,9 +12,7 @@ namespace isotet::io {
 
 namespace {
 
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// True when a decimal number that a double cannot hold is too large, false when it is too small.
 bool is_large(std::string_view number) {

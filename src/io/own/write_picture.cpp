@@ -28,7 +28,8 @@ struct Sink {
 std::vector<std::uint8_t> bytes_of(const Picture& picture, std::size_t channels) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(picture.pixels.size() * channels);
-    for (const auto& pixel : picture.pixels) bytes.insert(bytes.end(), pixel.begin(), pixel.begin() + static_cast<std::ptrdiff_t>(channels));
+    for (const auto& pixel : picture.pixels)
+        bytes.insert(bytes.end(), pixel.begin(), pixel.begin() + static_cast<std::ptrdiff_t>(channels));
     return bytes;
 }
 
@@ -86,10 +87,13 @@ Result<std::uint64_t> write_png(const Picture& picture, const std::string& path)
 Result<std::uint64_t> write_picture(const Picture& picture, const std::string& path) {
     try {
         if (!path.ends_with(".png"))
-            return Error{ErrorCode::invalid_argument, fmt::format("{} does not end in .png, but pictures are written as PNG", path)};
-        if (picture.width == 0 || picture.height == 0 || picture.pixels.size() != std::size_t{picture.width} * picture.height) {
-            return Error{ErrorCode::invalid_argument, fmt::format("a picture of {} x {} with {} pixels cannot be written", picture.width,
-                                                                  picture.height, picture.pixels.size())};
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("{} does not end in .png, but pictures are written as PNG", path)};
+        if (picture.width == 0 || picture.height == 0 ||
+            picture.pixels.size() != std::size_t{picture.width} * picture.height) {
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("a picture of {} x {} with {} pixels cannot be written", picture.width,
+                                     picture.height, picture.pixels.size())};
         }
         return io::write_png(picture, path);
     } catch (const std::bad_alloc&) {

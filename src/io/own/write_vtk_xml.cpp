@@ -27,10 +27,11 @@ std::string_view xml_type(ScalarType type) {
 } // namespace
 
 VtkXmlFile::VtkXmlFile(std::string_view dataset)
-    : dataset_(dataset), header_(fmt::format("<?xml version=\"1.0\"?>\n"
-                                             "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
-                                             "header_type=\"UInt64\">\n<{0}>\n",
-                                             dataset)) {}
+    : dataset_(dataset),
+      header_(fmt::format("<?xml version=\"1.0\"?>\n"
+                          "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                          "header_type=\"UInt64\">\n<{0}>\n",
+                          dataset)) {}
 
 void VtkXmlFile::line(std::string_view text) {
     header_ += text;

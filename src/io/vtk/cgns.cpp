@@ -72,10 +72,11 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
     reader->SetUse3DVector(false); // no third component where the file has two
     reader->SetLoadBndPatch(false);
     reader->SetDoublePrecisionMesh(1); // exact for coordinates of either precision
-    auto loaded = load_with(*reader, path, with_glued_names(options), depth, [&](const ReadOptions& chosen, FileInfo& info) {
-        reader->EnableAllBases();
-        choose_arrays_by_name(*reader, chosen, info);
-    });
+    auto loaded =
+        load_with(*reader, path, with_glued_names(options), depth, [&](const ReadOptions& chosen, FileInfo& info) {
+            reader->EnableAllBases();
+            choose_arrays_by_name(*reader, chosen, info);
+        });
     if (!loaded) return loaded;
     loaded->info.fields = unglued(loaded->info.fields);
     for (Piece& piece : loaded->pieces) {

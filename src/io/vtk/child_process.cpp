@@ -73,7 +73,8 @@ int spawn(const ChildRun& run, int request, int reply, int output, int status, p
     ::posix_spawnattr_setsigmask(&settings.attributes, &none);
     ::posix_spawnattr_setsigdefault(&settings.attributes, &all);
     ::posix_spawnattr_setpgroup(&settings.attributes, 0);
-    ::posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    ::posix_spawnattr_setflags(&settings.attributes,
+                               POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
 
     const std::string parent = std::to_string(::getpid());
     char name[] = "isotet";
@@ -130,7 +131,9 @@ private:
         if (byte == status_memory_ran_out) outcome_.memory_ran_out = true;
         else if (byte <= 100) progress_("read", byte / 100.0);
     }
-    void trim() { outcome_.last_output.erase(0, outcome_.last_output.size() - std::min(outcome_.last_output.size(), most_output)); }
+    void trim() {
+        outcome_.last_output.erase(0, outcome_.last_output.size() - std::min(outcome_.last_output.size(), most_output));
+    }
 
     bool ended(int flags) {
         int status = 0;
@@ -179,12 +182,13 @@ Result<ChildOutcome> run_child(const ChildRun& run, const Progress& progress) {
     // The process is tied to the thread that starts it (PR_SET_PDEATHSIG), which stays here until it has ended.
     const auto deadline = std::chrono::steady_clock::now() + run.time_limit;
     pid_t process = -1;
-    const int failure = spawn(run, request.number(), reply.number(), output.write_end.number(), status.write_end.number(), process);
+    const int failure =
+        spawn(run, request.number(), reply.number(), output.write_end.number(), status.write_end.number(), process);
     output.write_end.reset();
     status.write_end.reset();
     if (failure != 0)
-        return Error{ErrorCode::machine,
-                     fmt::format("the reader program \"{}\" cannot be started: {}", escaped(run.program), std::strerror(failure))};
+        return Error{ErrorCode::machine, fmt::format("the reader program \"{}\" cannot be started: {}",
+                                                     escaped(run.program), std::strerror(failure))};
     return Watch(process, output, status, progress).until(deadline);
 }
 

@@ -20,15 +20,19 @@ Result<void> check_names(const std::string& path, bool allow_outside) {
     TextScanner scanner(file->text());
     while (!scanner.at_end()) {
         std::string_view line = scanner.line();
-        const bool names_file = line.starts_with("model:") || line.starts_with("measured:") || line.starts_with("match:") ||
-                                line.starts_with("boundary:") || line.starts_with("rigid_body:") || line.find(" per ") != std::string_view::npos;
-        if (!names_file || line.find(" constant per case") != std::string_view::npos || line.starts_with("constant")) continue;
+        const bool names_file = line.starts_with("model:") || line.starts_with("measured:") ||
+                                line.starts_with("match:") || line.starts_with("boundary:") ||
+                                line.starts_with("rigid_body:") || line.find(" per ") != std::string_view::npos;
+        if (!names_file || line.find(" constant per case") != std::string_view::npos || line.starts_with("constant"))
+            continue;
         while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
-        for (std::string_view last = line.substr(line.find(':') + 1); !last.empty();) { // every word of it, so none is missed
+        for (std::string_view last = line.substr(line.find(':') + 1);
+             !last.empty();) { // every word of it, so none is missed
             const auto begin = last.find_first_not_of(" \t\"");
             if (begin == std::string_view::npos) break;
             const auto end = std::min(last.find_first_of(" \t\"", begin), last.size());
-            if (auto allowed = check_name(path, last.substr(begin, end - begin), allow_outside); !allowed) return allowed;
+            if (auto allowed = check_name(path, last.substr(begin, end - begin), allow_outside); !allowed)
+                return allowed;
             last.remove_prefix(end);
         }
     }
@@ -42,9 +46,8 @@ Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options,
     vtkNew<vtkGenericEnSightReader> reader;
     reader->SetCaseFileName(path.c_str());
     reader->ReadAllVariablesOff();
-    return load_with(*reader, path, options, depth, [&](const ReadOptions& chosen, FileInfo& info) {
-        choose_arrays_by_name(*reader, chosen, info);
-    });
+    return load_with(*reader, path, options, depth,
+                     [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(*reader, chosen, info); });
 }
 
 } // namespace isotet::io::vtk

@@ -37,12 +37,13 @@ bool is_uniform(const std::vector<ExodusFile::Block>& blocks, std::uint8_t& type
 }
 
 /// Node numbers of the file, from 1, to point numbers from 0, appended.
-Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block, std::uint64_t points,
-                            std::vector<std::int64_t>& connectivity) {
+Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block,
+                            std::uint64_t points, std::vector<std::int64_t>& connectivity) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (nodes[i] < 1 || static_cast<std::uint64_t>(nodes[i]) > points)
             return Error{ErrorCode::invalid_data,
-                         fmt::format("element {} of block {} has node {}, but the nodes are 1 to {}", i / block.corners, block.id, nodes[i], points)};
+                         fmt::format("element {} of block {} has node {}, but the nodes are 1 to {}", i / block.corners,
+                                     block.id, nodes[i], points)};
         connectivity.push_back(nodes[i] - 1);
     }
     return {};
@@ -61,11 +62,13 @@ Result<Cells> read_cells(ExodusFile& file) {
     for (const auto& block : file.blocks()) {
         auto nodes = file.connectivity(block);
         if (!nodes) return nodes.error();
-        if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended) return appended.error();
+        if (auto appended = append_corners(*nodes, block, file.points(), connectivity); !appended)
+            return appended.error();
         if (uniform) continue;
         const std::uint8_t type = cell_type_of_element(block.topology, block.corners);
         types.insert(types.end(), block.cells, type);
-        for (std::uint64_t i = 0; i < block.cells; ++i) offsets.push_back(offsets.back() + static_cast<std::int64_t>(block.corners));
+        for (std::uint64_t i = 0; i < block.cells; ++i)
+            offsets.push_back(offsets.back() + static_cast<std::int64_t>(block.corners));
     }
     cells.connectivity = Array::own(std::move(connectivity));
     if (uniform) cells.uniform_type = static_cast<CellType>(uniform_type);
@@ -76,7 +79,8 @@ Result<Cells> read_cells(ExodusFile& file) {
     return cells;
 }
 
-Result<void> read_fields(ExodusFile& file, const ReadOptions& options, std::size_t step, Grid& grid, std::vector<std::string>& notes) {
+Result<void> read_fields(ExodusFile& file, const ReadOptions& options, std::size_t step, Grid& grid,
+                         std::vector<std::string>& notes) {
     if (file.times().empty()) return {};
     for (std::size_t i = 0; i < file.point_variables().size(); ++i) {
         const std::string& name = file.point_variables()[i];
@@ -93,8 +97,8 @@ Result<void> read_fields(ExodusFile& file, const ReadOptions& options, std::size
         if (!values) return values.error();
         grid.cell_fields.push_back({name, std::move(*values)});
         if (blocks_without > 0)
-            notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there", escaped(name),
-                                        blocks_without, file.blocks().size()));
+            notes.push_back(fmt::format("cell field \"{}\" is not defined in {} of {} element blocks: NaN there",
+                                        escaped(name), blocks_without, file.blocks().size()));
     }
     return {};
 }
@@ -118,7 +122,8 @@ Result<void> read_displacement(ExodusFile& file, const std::string& name, std::s
     return {};
 }
 
-Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded, bool with_ids) {
+Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded,
+                         bool with_ids) {
     Piece piece;
     piece.name = path;
     auto points = file.coordinates();
@@ -154,7 +159,8 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
         FileInfo info = describe(*file);
         if (i == 0) loaded.info.times = info.times;
         if (info.times.size() != loaded.info.times.size())
-            return broken(part, fmt::format("this part has {} time steps, the first one {}", info.times.size(), loaded.info.times.size()));
+            return broken(part, fmt::format("this part has {} time steps, the first one {}", info.times.size(),
+                                            loaded.info.times.size()));
         for (FieldInfo& field : info.fields) announce(loaded.info, std::move(field));
         if (depth == Depth::description) continue;
         auto step = choose_step(loaded.info, options);

@@ -22,9 +22,15 @@ auto with_real(int word, Visit visit) {
 } // namespace
 
 ExodusFile::ExodusFile(ExodusFile&& other) noexcept
-    : path_(std::move(other.path_)), number_(std::exchange(other.number_, -1)), word_(other.word_), dimensions_(other.dimensions_),
-      points_(other.points_), cells_(other.cells_), blocks_(std::move(other.blocks_)),
-      point_variables_(std::move(other.point_variables_)), cell_variables_(std::move(other.cell_variables_)),
+    : path_(std::move(other.path_)),
+      number_(std::exchange(other.number_, -1)),
+      word_(other.word_),
+      dimensions_(other.dimensions_),
+      points_(other.points_),
+      cells_(other.cells_),
+      blocks_(std::move(other.blocks_)),
+      point_variables_(std::move(other.point_variables_)),
+      cell_variables_(std::move(other.cell_variables_)),
       times_(std::move(other.times_)) {}
 
 ExodusFile::~ExodusFile() {
@@ -44,7 +50,8 @@ Result<ExodusFile> ExodusFile::open(const std::string& path) {
     float version = 0;
     int wanted_word = 8, stored_word = 0;
     file.number_ = ex_open(path.c_str(), EX_READ, &wanted_word, &stored_word, &version);
-    if (file.number_ < 0) return Error{ErrorCode::invalid_data, escaped(path) + ": not an Exodus file, or a broken one"};
+    if (file.number_ < 0)
+        return Error{ErrorCode::invalid_data, escaped(path) + ": not an Exodus file, or a broken one"};
     if (stored_word == 4) { // numbers come in the type of the file, which must be known when it is opened
         ex_close(file.number_);
         wanted_word = 4;
@@ -95,9 +102,11 @@ Result<void> ExodusFile::read_blocks(std::size_t count) {
         block.id = id;
         block.type = EX_ELEM_BLOCK;
         if (ex_get_block_param(number_, &block) < 0) return failed(fmt::format("element block {}", id));
-        if (block.num_entry < 0 || block.num_nodes_per_entry < 0 || static_cast<std::uint64_t>(block.num_entry) > most ||
+        if (block.num_entry < 0 || block.num_nodes_per_entry < 0 ||
+            static_cast<std::uint64_t>(block.num_entry) > most ||
             static_cast<std::uint64_t>(block.num_nodes_per_entry) > most)
-            return failed(fmt::format("element block {} of {} elements with {} nodes", id, block.num_entry, block.num_nodes_per_entry));
+            return failed(fmt::format("element block {} of {} elements with {} nodes", id, block.num_entry,
+                                      block.num_nodes_per_entry));
         Block result;
         result.id = id;
         block.topology[MAX_STR_LENGTH] = '\0';
@@ -107,7 +116,8 @@ Result<void> ExodusFile::read_blocks(std::size_t count) {
         result.cells = static_cast<std::uint64_t>(block.num_entry);
         const bool ragged = result.topology.starts_with("NFACED") || result.topology.starts_with("NSIDED");
         result.corners = ragged ? 0 : static_cast<std::uint64_t>(block.num_nodes_per_entry);
-        if (result.corners > 1000) return failed(fmt::format("element block {} with {} nodes an element", id, result.corners));
+        if (result.corners > 1000)
+            return failed(fmt::format("element block {} with {} nodes an element", id, result.corners));
         cells_ += result.cells;
         blocks_.push_back(std::move(result));
     }
@@ -124,7 +134,8 @@ Result<std::vector<std::string>> ExodusFile::variable_names(int entity) {
     std::vector<std::string> names;
     for (int i = 1; i <= count; ++i) {
         std::vector<char> name(static_cast<std::size_t>(length) + 1, '\0');
-        if (ex_get_variable_name(number_, type, i, name.data()) < 0) return failed(fmt::format("the name of variable {}", i));
+        if (ex_get_variable_name(number_, type, i, name.data()) < 0)
+            return failed(fmt::format("the name of variable {}", i));
         name.back() = '\0';
         names.emplace_back(name.data());
         while (names.back().ends_with(' ')) names.back().pop_back();
@@ -160,7 +171,8 @@ Result<Array> ExodusFile::point_variable(std::size_t variable, std::size_t step)
         std::vector<decltype(zero)> values(points_);
         const int status = ex_get_var(number_, static_cast<int>(step) + 1, EX_NODAL, static_cast<int>(variable) + 1, 1,
                                       static_cast<std::int64_t>(points_), values.data());
-        if (status != EX_NOERR) return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
+        if (status != EX_NOERR)
+            return failed(fmt::format("nodal variable \"{}\"", escaped(point_variables_[variable])));
         return Array::own(std::move(values));
     });
 }
@@ -172,11 +184,12 @@ Result<Array> ExodusFile::read_cell_variable(std::size_t variable, std::size_t s
     std::uint64_t first = 0;
     for (const Block& block : blocks_) {
         if (block.cells == 0) continue;
-        if (ex_get_object_truth_vector(number_, EX_ELEM_BLOCK, block.id, static_cast<int>(defined.size()), defined.data()) < 0)
+        if (ex_get_object_truth_vector(number_, EX_ELEM_BLOCK, block.id, static_cast<int>(defined.size()),
+                                       defined.data()) < 0)
             return failed("the table of element variables");
         if (defined[variable] == 0) ++blocks_without;
-        else if (ex_get_var(number_, static_cast<int>(step) + 1, EX_ELEM_BLOCK, static_cast<int>(variable) + 1, block.id,
-                            static_cast<std::int64_t>(block.cells), values.data() + first) != EX_NOERR)
+        else if (ex_get_var(number_, static_cast<int>(step) + 1, EX_ELEM_BLOCK, static_cast<int>(variable) + 1,
+                            block.id, static_cast<std::int64_t>(block.cells), values.data() + first) != EX_NOERR)
             return failed(fmt::format("element variable \"{}\"", escaped(cell_variables_[variable])));
         first += block.cells;
     }
@@ -190,7 +203,8 @@ Result<Array> ExodusFile::cell_variable(std::size_t variable, std::size_t step, 
 
 Result<Array> ExodusFile::id_map(int map, std::uint64_t count) {
     std::vector<std::int64_t> ids(count);
-    if (count > 0 && ex_get_id_map(number_, static_cast<ex_entity_type>(map), ids.data()) < 0) return failed("a map of global numbers");
+    if (count > 0 && ex_get_id_map(number_, static_cast<ex_entity_type>(map), ids.data()) < 0)
+        return failed("a map of global numbers");
     return Array::own(std::move(ids));
 }
 
@@ -204,15 +218,17 @@ std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corne
         std::uint8_t type;
     };
     static constexpr Known known[] = {
-        {"TET", 4, 10},   {"TET", 10, 24},  {"TET", 0, 24},   {"HEX", 8, 12},   {"HEX", 20, 25},  {"HEX", 27, 29},  {"HEX", 0, 25},
-        {"WED", 6, 13},   {"WED", 15, 26},  {"WED", 18, 32},  {"WED", 0, 26},   {"PYR", 5, 14},   {"PYR", 13, 27},  {"PYR", 0, 27},
-        {"TRI", 3, 5},    {"TRI", 6, 22},   {"TRI", 0, 22},   {"QUA", 4, 9},    {"QUA", 8, 23},   {"QUA", 9, 28},   {"QUA", 0, 23},
-        {"SHELL", 3, 5},  {"SHELL", 4, 9},  {"SHELL", 6, 22}, {"SHELL", 8, 23}, {"SHELL", 9, 28}, {"SHELL", 0, 23}, {"BAR", 2, 3},
-        {"BAR", 0, 21},   {"BEAM", 2, 3},   {"BEAM", 0, 21},  {"TRUSS", 2, 3},  {"TRUSS", 0, 21}, {"EDGE", 2, 3},   {"EDGE", 0, 21},
-        {"SPHERE", 0, 1}, {"CIRCLE", 0, 1}, {"NSIDED", 0, 7}, {"NFACED", 0, 42},
+        {"TET", 4, 10},   {"TET", 10, 24},  {"TET", 0, 24},    {"HEX", 8, 12},  {"HEX", 20, 25}, {"HEX", 27, 29},
+        {"HEX", 0, 25},   {"WED", 6, 13},   {"WED", 15, 26},   {"WED", 18, 32}, {"WED", 0, 26},  {"PYR", 5, 14},
+        {"PYR", 13, 27},  {"PYR", 0, 27},   {"TRI", 3, 5},     {"TRI", 6, 22},  {"TRI", 0, 22},  {"QUA", 4, 9},
+        {"QUA", 8, 23},   {"QUA", 9, 28},   {"QUA", 0, 23},    {"SHELL", 3, 5}, {"SHELL", 4, 9}, {"SHELL", 6, 22},
+        {"SHELL", 8, 23}, {"SHELL", 9, 28}, {"SHELL", 0, 23},  {"BAR", 2, 3},   {"BAR", 0, 21},  {"BEAM", 2, 3},
+        {"BEAM", 0, 21},  {"TRUSS", 2, 3},  {"TRUSS", 0, 21},  {"EDGE", 2, 3},  {"EDGE", 0, 21}, {"SPHERE", 0, 1},
+        {"CIRCLE", 0, 1}, {"NSIDED", 0, 7}, {"NFACED", 0, 42},
     };
     for (const Known& element : known)
-        if (topology.starts_with(element.begins) && (element.corners == corners || element.corners == 0)) return element.type;
+        if (topology.starts_with(element.begins) && (element.corners == corners || element.corners == 0))
+            return element.type;
     return 0; // an empty cell: left out
 }
 

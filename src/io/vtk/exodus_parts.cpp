@@ -14,7 +14,8 @@ namespace {
 std::optional<unsigned> whole_number(std::string_view text) {
     unsigned value = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || text.size() > 6 || result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
+    if (text.empty() || text.size() > 6 || result.ec != std::errc() || result.ptr != text.data() + text.size())
+        return std::nullopt;
     return value;
 }
 
@@ -39,8 +40,8 @@ Result<std::vector<std::string>> exodus_parts(const std::string& path) {
     }
     if (missing.empty()) return parts;
     if (parts.size() == 1) return alone;
-    return Error{ErrorCode::file, fmt::format("{}: it is one of {} parts, of which {} are missing, \"{}\" first", escaped(path), *count,
-                                              missing.size(), escaped(missing.front()))};
+    return Error{ErrorCode::file, fmt::format("{}: it is one of {} parts, of which {} are missing, \"{}\" first",
+                                              escaped(path), *count, missing.size(), escaped(missing.front()))};
 }
 
 } // namespace isotet::io::vtk

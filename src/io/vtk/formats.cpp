@@ -66,7 +66,8 @@ int recognizes_xdmf(Head head, std::string_view) { return has(head, "<Xdmf") ? 2
 int recognizes_legacy(Head head, std::string_view) { return head.starts_with("# vtk DataFile") ? 2 : 0; }
 int recognizes_exodus(Head head, std::string_view extension) {
     if (!is_netcdf(head) && !is_hdf5(head)) return 0;
-    if (has(head, "num_nodes") || has(head, "len_string") || has(head, "_nc3_strict") || has(head, "_NCProperties")) return 2;
+    if (has(head, "num_nodes") || has(head, "len_string") || has(head, "_nc3_strict") || has(head, "_NCProperties"))
+        return 2;
     for (const std::string_view name : {".e", ".ex2", ".exo", ".exii", ".g", ".gen"})
         if (extension == name) return 1;
     return 0;
@@ -101,7 +102,8 @@ Format grid_format(std::string name, std::string title, std::vector<std::string>
 }
 
 template <class T>
-Result<T> ask(Task task, std::string format, const std::string& path, const ReadOptions& options, const Progress& progress) {
+Result<T> ask(Task task, std::string format, const std::string& path, const ReadOptions& options,
+              const Progress& progress) {
     auto reply = vtk::ask_reader_process(Request{task, std::move(format), path, options}, progress);
     if (!reply) return reply.error();
     if (auto* content = std::get_if<T>(&*reply)) return std::move(*content);
@@ -159,7 +161,8 @@ std::vector<GridReader> all_readers(std::index_sequence<rows...>) {
 } // namespace
 
 std::span<const GridReader> vtk_readers() {
-    static const std::vector<GridReader> readers = all_readers(std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(table())>>>());
+    static const std::vector<GridReader> readers =
+        all_readers(std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(table())>>>());
     return readers;
 }
 

@@ -34,7 +34,10 @@ private:
 
 std::optional<ScalarType> type_of(hid_t type) {
     const std::size_t size = H5Tget_size(type);
-    if (H5Tget_class(type) == H5T_FLOAT) return size == 4 ? std::optional(ScalarType::float32) : size == 8 ? std::optional(ScalarType::float64) : std::nullopt;
+    if (H5Tget_class(type) == H5T_FLOAT)
+        return size == 4   ? std::optional(ScalarType::float32)
+               : size == 8 ? std::optional(ScalarType::float64)
+                           : std::nullopt;
     if (H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
     const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
     switch (size) {
@@ -60,7 +63,9 @@ hid_t native_type() {
 hid_t access_inside_file() {
     const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
     H5Pset_elink_cb(
-        access, [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; }, nullptr);
+        access,
+        [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
+        nullptr);
     return access;
 }
 
@@ -73,7 +78,9 @@ bool lies_inside_file(hid_t data) {
 /// Selects the box; its size in `dimensions`.
 bool select(hid_t space, const Box& box, std::vector<std::uint64_t>& dimensions) {
     if (box.count.empty()) return true;
-    if (box.count.size() != dimensions.size() || box.start.size() != dimensions.size() || box.stride.size() != dimensions.size()) return false;
+    if (box.count.size() != dimensions.size() || box.start.size() != dimensions.size() ||
+        box.stride.size() != dimensions.size())
+        return false;
     std::vector<hsize_t> start, stride, count;
     for (std::size_t i = 0; i < dimensions.size(); ++i) {
         if (box.count[i] == 0 || box.stride[i] == 0 || box.start[i] >= dimensions[i] ||
@@ -131,7 +138,8 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     return Array(result.values).visit([&](auto none) -> Result<ShapedValues> {
         using T = typename decltype(none)::value_type;
         std::vector<std::remove_const_t<T>> values(count);
-        if (count > 0 && H5Dread(data, native_type<std::remove_const_t<T>>(), memory, space, H5P_DEFAULT, values.data()) < 0)
+        if (count > 0 &&
+            H5Dread(data, native_type<std::remove_const_t<T>>(), memory, space, H5P_DEFAULT, values.data()) < 0)
             return failed("cannot be read");
         result.values = Array::own(std::move(values));
         return std::move(result);

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 Error refused(const std::string& index, std::string_view name, std::string_view why) {
     return {ErrorCode::invalid_data,
-            fmt::format("{} names \"{}\", {}: only files below its own folder are read unless others are allowed", escaped(index),
-                        escaped(name), why)};
+            fmt::format("{} names \"{}\", {}: only files below its own folder are read unless others are allowed",
+                        escaped(index), escaped(name), why)};
 }
 
 } // namespace
@@ -27,17 +27,20 @@ Result<void> check_name(const std::string& index, std::string_view name, bool al
     if (allow_outside) return {};
     const fs::path path(name);
     if (path.is_absolute()) return refused(index, name, "an absolute path");
-    if (std::find(path.begin(), path.end(), "..") != path.end()) return refused(index, name, "which climbs out with \"..\"");
+    if (std::find(path.begin(), path.end(), "..") != path.end())
+        return refused(index, name, "which climbs out with \"..\"");
     return {};
 }
 
 Result<std::string> named_file(const std::string& index, std::string_view name, bool allow_outside) {
     if (auto allowed = check_name(index, name, allow_outside); !allowed) return allowed.error();
     std::error_code error;
-    const fs::path folder = fs::canonical(fs::path(index).parent_path().empty() ? fs::path(".") : fs::path(index).parent_path(), error);
+    const fs::path folder =
+        fs::canonical(fs::path(index).parent_path().empty() ? fs::path(".") : fs::path(index).parent_path(), error);
     const fs::path file = error ? fs::path() : fs::canonical(folder / fs::path(name), error);
     if (error || !fs::is_regular_file(file, error))
-        return Error{ErrorCode::file, fmt::format("{} names \"{}\", which is not there or not a file", escaped(index), escaped(name))};
+        return Error{ErrorCode::file,
+                     fmt::format("{} names \"{}\", which is not there or not a file", escaped(index), escaped(name))};
     const auto [in_folder, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
     if (!allow_outside && in_folder != folder.end()) return refused(index, name, "a link to " + escaped(file.string()));
     if (fs::equivalent(file, index, error)) return Error{ErrorCode::invalid_data, escaped(index) + " names itself"};

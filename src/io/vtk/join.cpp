@@ -24,7 +24,8 @@ public:
     }
     std::size_t count() const { return count_; }
     std::uint8_t type(std::size_t cell) const {
-        return cells_.types.empty() ? static_cast<std::uint8_t>(cells_.uniform_type) : cells_.types.as<std::uint8_t>()[cell];
+        return cells_.types.empty() ? static_cast<std::uint8_t>(cells_.uniform_type)
+                                    : cells_.types.as<std::uint8_t>()[cell];
     }
     std::int64_t begin(std::size_t cell) const {
         if (cells_.offsets.empty()) return static_cast<std::int64_t>(cell) * uniform_corners_;
@@ -47,10 +48,12 @@ std::optional<std::string> misfit(const Piece& piece) {
     const std::size_t points = piece.grid.points.tuples(), count = cells.count();
     for (const Field& field : piece.grid.point_fields)
         if (field.values.tuples() != points)
-            return fmt::format("its point field \"{}\" has {} values for {} points", escaped(field.name), field.values.tuples(), points);
+            return fmt::format("its point field \"{}\" has {} values for {} points", escaped(field.name),
+                               field.values.tuples(), points);
     for (const Field& field : piece.grid.cell_fields)
         if (field.values.tuples() != count)
-            return fmt::format("its cell field \"{}\" has {} values for {} cells", escaped(field.name), field.values.tuples(), count);
+            return fmt::format("its cell field \"{}\" has {} values for {} cells", escaped(field.name),
+                               field.values.tuples(), count);
     if (!piece.point_ids.empty() && piece.point_ids.size() != points) return "it does not have one number a point";
     if (!piece.cell_ids.empty() && piece.cell_ids.size() != count) return "it does not have one number a cell";
     if (!piece.left_out.empty() && piece.left_out.size() != count) return "it does not have one ghost mark a cell";
@@ -66,8 +69,9 @@ struct KeptCells {
 KeptCells keep(const std::vector<Piece>& pieces) {
     KeptCells result;
     result.cells.resize(pieces.size());
-    const bool has_ids = pieces.size() > 1 &&
-                         std::all_of(pieces.begin(), pieces.end(), [](const Piece& p) { return !p.cell_ids.empty() || p.grid.cells.count() == 0; });
+    const bool has_ids = pieces.size() > 1 && std::all_of(pieces.begin(), pieces.end(), [](const Piece& p) {
+                             return !p.cell_ids.empty() || p.grid.cells.count() == 0;
+                         });
     std::unordered_map<std::uint64_t, std::size_t> owner; // global number -> the piece that had it first
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         const Piece& piece = pieces[p];
@@ -84,9 +88,9 @@ KeptCells keep(const std::vector<Piece>& pieces) {
             }
         };
         if (has_ids && count > 0)
-            piece.cell_ids.visit([&](auto ids) { choose([&](std::size_t cell) { return static_cast<std::uint64_t>(ids[cell]); }); });
-        else if (!piece.left_out.empty())
-            choose([](std::size_t) { return std::uint64_t(0); });
+            piece.cell_ids.visit(
+                [&](auto ids) { choose([&](std::size_t cell) { return static_cast<std::uint64_t>(ids[cell]); }); });
+        else if (!piece.left_out.empty()) choose([](std::size_t) { return std::uint64_t(0); });
         if (kept.size() != count && (has_ids || !piece.left_out.empty())) {
             if (kept.empty()) kept.push_back(std::numeric_limits<std::uint64_t>::max()); // none at all
             result.cells[p] = std::move(kept);
@@ -105,9 +109,9 @@ void each_kept(const KeptCells& kept, std::size_t p, std::size_t count, Visit vi
             if (cell < count) visit(cell);
 }
 
-std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const PointNumbers& numbers, const KeptCells& kept,
-                                        std::vector<std::int64_t>& connectivity, std::vector<std::int64_t>& offsets,
-                                        std::vector<std::uint8_t>& types) {
+std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const PointNumbers& numbers,
+                                        const KeptCells& kept, std::vector<std::int64_t>& connectivity,
+                                        std::vector<std::int64_t>& offsets, std::vector<std::uint8_t>& types) {
     const CellView cells(piece.grid.cells);
     const auto size = static_cast<std::int64_t>(piece.grid.cells.connectivity.size());
     const std::uint64_t points = piece.grid.points.tuples();
@@ -122,7 +126,8 @@ std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const
             for (std::int64_t i = begin; i < end; ++i) {
                 const auto point = static_cast<std::uint64_t>(corners[static_cast<std::size_t>(i)]);
                 if (point >= points) {
-                    problem = fmt::format("cell {} has point {}, but there are {} points", cell, corners[static_cast<std::size_t>(i)], points);
+                    problem = fmt::format("cell {} has point {}, but there are {} points", cell,
+                                          corners[static_cast<std::size_t>(i)], points);
                     return;
                 }
                 connectivity.push_back(static_cast<std::int64_t>(numbers(p, point)));
@@ -178,12 +183,15 @@ void copy_tuple(To* to, const From* from, std::size_t components) {
 
 template <class F>
 auto with_scalar(ScalarType type, F&& f) {
-    return Array(type, nullptr, 0, 1, nullptr).visit([&](auto values) { return f(typename decltype(values)::value_type{}); });
+    return Array(type, nullptr, 0, 1, nullptr).visit([&](auto values) {
+        return f(typename decltype(values)::value_type{});
+    });
 }
 
 /// One field over all pieces. `tuples_of(p, visit)` calls visit(tuple in the piece, tuple in the result).
 template <class TuplesOf>
-Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& column, std::size_t tuples, TuplesOf tuples_of) {
+Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& column, std::size_t tuples,
+                   TuplesOf tuples_of) {
     return with_scalar(column.type, [&](auto zero) {
         using T = decltype(zero);
         T missing{};
@@ -194,7 +202,8 @@ Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& colum
             if (!field) continue;
             field->values.visit([&](auto from) {
                 tuples_of(p, [&](std::size_t in_piece, std::size_t in_result) {
-                    copy_tuple(values.data() + in_result * column.components, from.data() + in_piece * column.components, column.components);
+                    copy_tuple(values.data() + in_result * column.components,
+                               from.data() + in_piece * column.components, column.components);
                 });
             });
         }
@@ -204,11 +213,12 @@ Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& colum
 
 void note_column(const Column& column, std::size_t pieces, std::string_view kind, std::vector<std::string>& notes) {
     if (!column.fits)
-        notes.push_back(fmt::format("{} field \"{}\" has different numbers of components in different pieces and was left out", kind,
-                                    escaped(column.name)));
+        notes.push_back(
+            fmt::format("{} field \"{}\" has different numbers of components in different pieces and was left out",
+                        kind, escaped(column.name)));
     else if (column.pieces < pieces)
-        notes.push_back(fmt::format("{} field \"{}\" is in {} of {} pieces only: NaN in the others", kind, escaped(column.name),
-                                    column.pieces, pieces));
+        notes.push_back(fmt::format("{} field \"{}\" is in {} of {} pieces only: NaN in the others", kind,
+                                    escaped(column.name), column.pieces, pieces));
 }
 
 template <class TuplesOf>
@@ -218,7 +228,8 @@ std::vector<Field> joined_fields(std::vector<Piece>& pieces, Fields which, std::
     for (const Column& column : columns(pieces, which)) {
         note_column(column, pieces.size(), kind, notes);
         if (column.fits) result.push_back({column.name, joined_field(pieces, which, column, tuples, tuples_of)});
-        for (Piece& piece : pieces) std::erase_if(piece.grid.*which, [&](const Field& field) { return field.name == column.name; });
+        for (Piece& piece : pieces)
+            std::erase_if(piece.grid.*which, [&](const Field& field) { return field.name == column.name; });
     }
     return result;
 }
@@ -230,28 +241,34 @@ PointNumbers number_points(const std::vector<Piece>& pieces, bool by_coordinates
     });
     if (have_ids) {
         if (auto numbers = number_by_ids(pieces)) {
-            notes.push_back(fmt::format("{} pieces joined by global point numbers: {} points fell together", pieces.size(), numbers->joined));
+            notes.push_back(fmt::format("{} pieces joined by global point numbers: {} points fell together",
+                                        pieces.size(), numbers->joined));
             return std::move(*numbers);
         }
         notes.push_back("the global point numbers of the pieces mean different places and were not used");
     }
     if (by_coordinates) {
         auto numbers = number_by_coordinates(pieces);
-        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points fell together", pieces.size(), numbers.joined));
+        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points fell together", pieces.size(),
+                                    numbers.joined));
         return numbers;
     }
-    notes.push_back(fmt::format("{} pieces without global point numbers lie side by side: surfaces are open between them "
-                                "unless points with equal coordinates are merged",
-                                pieces.size()));
+    notes.push_back(
+        fmt::format("{} pieces without global point numbers lie side by side: surfaces are open between them "
+                    "unless points with equal coordinates are merged",
+                    pieces.size()));
     return number_one_after_another(pieces);
 }
 
 /// Narrow indices where they fit; no types and offsets where all cells are tetrahedra.
-Cells compact(std::vector<std::int64_t> connectivity, std::vector<std::int64_t> offsets, std::vector<std::uint8_t> types) {
+Cells compact(std::vector<std::int64_t> connectivity, std::vector<std::int64_t> offsets,
+              std::vector<std::uint8_t> types) {
     Cells cells;
-    if (std::all_of(types.begin(), types.end(), [](std::uint8_t type) { return type == 10; }) && connectivity.size() == 4 * types.size()) {
+    if (std::all_of(types.begin(), types.end(), [](std::uint8_t type) { return type == 10; }) &&
+        connectivity.size() == 4 * types.size()) {
         bool uniform = true;
-        for (std::size_t i = 0; i < offsets.size(); ++i) uniform = uniform && offsets[i] == static_cast<std::int64_t>(4 * i);
+        for (std::size_t i = 0; i < offsets.size(); ++i)
+            uniform = uniform && offsets[i] == static_cast<std::int64_t>(4 * i);
         if (uniform) {
             cells.connectivity = Array::own(std::move(connectivity));
             return cells;
@@ -277,9 +294,11 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     if (pieces.size() > 1) std::erase_if(pieces, [](const Piece& piece) { return piece.grid.points.tuples() == 0; });
 
     const KeptCells kept = keep(pieces);
-    const bool all_kept = std::all_of(kept.cells.begin(), kept.cells.end(), [](const auto& cells) { return cells.empty(); });
+    const bool all_kept =
+        std::all_of(kept.cells.begin(), kept.cells.end(), [](const auto& cells) { return cells.empty(); });
     if (kept.ghosts > 0) result.notes.push_back(fmt::format("{} ghost or blanked cells were left out", kept.ghosts));
-    if (kept.repeated > 0) result.notes.push_back(fmt::format("{} cells that an earlier piece has, too, were left out", kept.repeated));
+    if (kept.repeated > 0)
+        result.notes.push_back(fmt::format("{} cells that an earlier piece has, too, were left out", kept.repeated));
     if (pieces.empty()) return result;
     if (pieces.size() == 1 && all_kept) {
         result.grid = std::move(pieces.front().grid);
@@ -307,7 +326,8 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     result.grid.cell_fields = joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, result.notes);
     result.grid.cells = compact(std::move(connectivity), std::move(offsets), std::move(types));
     for (Piece& piece : pieces) piece.grid.cells = Cells();
-    result.grid.point_fields = joined_fields(pieces, &Grid::point_fields, "point", numbers.count, points_of, result.notes);
+    result.grid.point_fields =
+        joined_fields(pieces, &Grid::point_fields, "point", numbers.count, points_of, result.notes);
     // The coordinates, as one more field.
     for (Piece& piece : pieces) piece.grid.point_fields.push_back({"points", piece.grid.points});
     const Column coordinates = columns(pieces, &Grid::point_fields).front();

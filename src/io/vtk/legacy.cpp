@@ -17,7 +17,8 @@ Result<Loaded> load_legacy(const std::string& path, const ReadOptions& options, 
     auto layout = legacy_layout(path);
     if (!layout) return layout.error();
     if (!layout->dataset.ends_with("_grid") && layout->dataset != "structured_points")
-        return broken(path, fmt::format("a legacy VTK file of type \"{}\" has no cells with a volume", escaped(layout->dataset)));
+        return broken(
+            path, fmt::format("a legacy VTK file of type \"{}\" has no cells with a volume", escaped(layout->dataset)));
     Loaded loaded;
     loaded.info = std::move(layout->info);
     if (depth == Depth::description) return loaded;

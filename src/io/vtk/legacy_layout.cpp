@@ -16,16 +16,26 @@ struct Type {
     ScalarType type;
 };
 constexpr Type types[] = {
-    {"float", ScalarType::float32},         {"double", ScalarType::float64},         {"int", ScalarType::int32},
-    {"unsigned_int", ScalarType::uint32},   {"long", ScalarType::int64},             {"unsigned_long", ScalarType::uint64},
-    {"vtktypeint64", ScalarType::int64},    {"vtktypeuint64", ScalarType::uint64},   {"vtkidtype", ScalarType::int32},
-    {"short", ScalarType::int16},           {"unsigned_short", ScalarType::uint16},  {"char", ScalarType::int8},
-    {"signed_char", ScalarType::int8},      {"unsigned_char", ScalarType::uint8},
+    {"float", ScalarType::float32},
+    {"double", ScalarType::float64},
+    {"int", ScalarType::int32},
+    {"unsigned_int", ScalarType::uint32},
+    {"long", ScalarType::int64},
+    {"unsigned_long", ScalarType::uint64},
+    {"vtktypeint64", ScalarType::int64},
+    {"vtktypeuint64", ScalarType::uint64},
+    {"vtkidtype", ScalarType::int32},
+    {"short", ScalarType::int16},
+    {"unsigned_short", ScalarType::uint16},
+    {"char", ScalarType::int8},
+    {"signed_char", ScalarType::int8},
+    {"unsigned_char", ScalarType::uint8},
 };
 
 std::string lower(std::string_view word) {
     std::string result(word);
-    std::transform(result.begin(), result.end(), result.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    std::transform(result.begin(), result.end(), result.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
     return result;
 }
 
@@ -42,7 +52,8 @@ std::string decoded(std::string_view name) {
     for (std::size_t i = 0; i < name.size(); ++i) {
         unsigned value = 0;
         const auto code = name.substr(i, 3);
-        if (code.size() == 3 && code[0] == '%' && std::from_chars(code.data() + 1, code.data() + 3, value, 16).ptr == code.data() + 3) {
+        if (code.size() == 3 && code[0] == '%' &&
+            std::from_chars(code.data() + 1, code.data() + 3, value, 16).ptr == code.data() + 3) {
             result += static_cast<char>(value);
             i += 2;
         } else {
@@ -60,7 +71,8 @@ public:
         scanner_.next_line();
         scanner_.next_line(); // the title
         const std::string encoding = lower(scanner_.word());
-        if (encoding != "ascii" && encoding != "binary") return broken(path_, "the third line of a legacy VTK file is ASCII or BINARY");
+        if (encoding != "ascii" && encoding != "binary")
+            return broken(path_, "the third line of a legacy VTK file is ASCII or BINARY");
         binary_ = encoding == "binary";
         while (!stopped_ && !scanner_.at_end()) section(lower(scanner_.word()));
         if (problem_) return *problem_;
@@ -70,7 +82,8 @@ public:
 private:
     void section(const std::string& keyword) {
         if (keyword == "dataset") layout_.dataset = lower(scanner_.word_of_line());
-        else if (keyword == "dimensions" || keyword == "origin" || keyword == "spacing" || keyword == "aspect_ratio") numbers_of_line(3);
+        else if (keyword == "dimensions" || keyword == "origin" || keyword == "spacing" || keyword == "aspect_ratio")
+            numbers_of_line(3);
         else if (keyword == "points") counted_values(keyword, 3);
         else if (keyword.ends_with("_coordinates") && keyword.size() == 13) counted_values(keyword, 1);
         else if (keyword == "cells") cells();
@@ -97,7 +110,8 @@ private:
         } else if (keyword == "vectors" || keyword == "normals") array(name, tuples_, 3, scanner_.word_of_line());
         else if (keyword == "tensors") array(name, tuples_, 9, scanner_.word_of_line());
         else if (keyword == "tensors6") array(name, tuples_, 6, scanner_.word_of_line());
-        else if (keyword == "global_ids" || keyword == "pedigree_ids" || keyword == "edge_flags") array(name, tuples_, 1, scanner_.word_of_line());
+        else if (keyword == "global_ids" || keyword == "pedigree_ids" || keyword == "edge_flags")
+            array(name, tuples_, 1, scanner_.word_of_line());
         else if (keyword == "texture_coordinates") {
             const std::uint64_t components = number();
             array(name, tuples_, components, scanner_.word_of_line());
@@ -147,7 +161,8 @@ private:
     }
     void array(std::string_view name, std::uint64_t tuples, std::uint64_t components, std::string_view type_name) {
         const auto type = type_of(type_name);
-        if (type && !stopped_ && components > 0) announce(layout_.info, {decoded(name), association_, *type, components});
+        if (type && !stopped_ && components > 0)
+            announce(layout_.info, {decoded(name), association_, *type, components});
         values(name, tuples, components, type_name);
     }
     /// A count and a type, then values.
@@ -165,7 +180,8 @@ private:
             return;
         }
         constexpr std::uint64_t most = std::uint64_t(1) << 50;
-        if (tuples > most || components > 1000) return fail(fmt::format("{} has {} x {} values", escaped(what), tuples, components));
+        if (tuples > most || components > 1000)
+            return fail(fmt::format("{} has {} x {} values", escaped(what), tuples, components));
         const std::uint64_t count = tuples * components;
         const std::uint64_t size = bits ? (count + 7) / 8 : count * (type ? size_of(*type) : 1);
         if (binary_) {
@@ -189,7 +205,8 @@ private:
             if (!scanner_.number_of_line(value)) fail("a number is missing at " + scanner_.where());
     }
     void too_short(std::string_view what, std::uint64_t needed, std::string_view unit, std::uint64_t there) {
-        fail(fmt::format("{} has {} {}, but the file ends after {}: it is cut short", escaped(what), needed, unit, there));
+        fail(fmt::format("{} has {} {}, but the file ends after {}: it is cut short", escaped(what), needed, unit,
+                         there));
     }
     void fail(std::string_view what) {
         if (!problem_) problem_ = broken(path_, what);

@@ -22,7 +22,8 @@ Result<void> check_hdf5_length(const std::string& path) {
     std::uint64_t end = 0;
     for (unsigned i = 0; i < size; ++i) end |= std::uint64_t(byte(first + 2 * size + i)) << (8 * i);
     if (end > bytes.size())
-        return broken(path, fmt::format("the file has {} bytes, but its header says {}: it is cut short", bytes.size(), end));
+        return broken(path,
+                      fmt::format("the file has {} bytes, but its header says {}: it is cut short", bytes.size(), end));
     return {};
 }
 

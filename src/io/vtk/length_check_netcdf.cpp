@@ -55,7 +55,8 @@ private:
 };
 
 std::uint64_t size_of_type(std::uint64_t type) {
-    constexpr std::uint64_t sizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8}; // byte char short int float double ubyte ...
+    constexpr std::uint64_t sizes[] = {0, 1, 1, 2, 4, 4,
+                                       8, 1, 2, 4, 8, 8}; // byte char short int float double ubyte ...
     return type < std::size(sizes) ? sizes[type] : 0;
 }
 
@@ -122,7 +123,8 @@ std::optional<std::uint64_t> needed_length(std::string_view bytes, int version) 
     }
     if (!walk.good()) return std::nullopt;
 
-    const auto record_variables = std::count_if(variables.begin(), variables.end(), [](const Variable& v) { return v.record; });
+    const auto record_variables =
+        std::count_if(variables.begin(), variables.end(), [](const Variable& v) { return v.record; });
     std::uint64_t record_size = 0; // a lone record variable is not padded
     for (const Variable& variable : variables)
         if (variable.record) record_size += record_variables == 1 ? variable.size : (variable.size + 3) / 4 * 4;
@@ -151,7 +153,8 @@ Result<void> check_netcdf_length(const std::string& path) {
     const auto needed = needed_length(bytes, version);
     if (!needed) return broken(path, "its netCDF header is broken or cut short");
     if (*needed > bytes.size())
-        return broken(path, fmt::format("the file has {} bytes, but its header needs {}: it is cut short", bytes.size(), *needed));
+        return broken(path, fmt::format("the file has {} bytes, but its header needs {}: it is cut short", bytes.size(),
+                                        *needed));
     return {};
 }
 

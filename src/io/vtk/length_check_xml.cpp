@@ -56,9 +56,10 @@ Result<void> check_blocks(const std::string& path, const pugi::xml_node& root, c
         const auto offset = found.node().attribute("offset").as_ullong();
         const auto needed = blocks.needed(offset);
         if (!needed || offset > blocks.data.size() || *needed > blocks.data.size() - offset)
-            return broken(path, fmt::format("array \"{}\" begins at byte {} of {} appended bytes and does not end inside them: "
-                                            "the file is cut short or broken",
-                                            escaped(found.node().attribute("Name").as_string()), offset, blocks.data.size()));
+            return broken(
+                path, fmt::format("array \"{}\" begins at byte {} of {} appended bytes and does not end inside them: "
+                                  "the file is cut short or broken",
+                                  escaped(found.node().attribute("Name").as_string()), offset, blocks.data.size()));
     }
     return {};
 }
@@ -71,12 +72,14 @@ Result<void> check_xml_length(const std::string& path) {
     const std::string_view text = file->text();
     const std::size_t tail = std::min<std::size_t>(text.size(), 4096);
     if (text.substr(text.size() - tail).find("</VTKFile>") == std::string_view::npos)
-        return broken(path, fmt::format("the file ends after {} bytes without </VTKFile>: it is cut short", text.size()));
+        return broken(path,
+                      fmt::format("the file ends after {} bytes without </VTKFile>: it is cut short", text.size()));
 
     if (text.substr(0, 1 << 16).find("\"appended\"") == std::string_view::npos) return {};
     const auto appended = text.find("<AppendedData");
     const auto underscore = appended == std::string_view::npos ? appended : text.find('_', text.find('>', appended));
-    if (underscore == std::string_view::npos) return broken(path, "arrays are said to be appended, but there is no AppendedData");
+    if (underscore == std::string_view::npos)
+        return broken(path, "arrays are said to be appended, but there is no AppendedData");
     if (text.substr(appended, underscore - appended).find("raw") == std::string_view::npos) return {};
 
     pugi::xml_document document; // the end tags lie after the data: the tree of what comes before it is complete anyway
@@ -84,7 +87,8 @@ Result<void> check_xml_length(const std::string& path) {
     const pugi::xml_node root = document.child("VTKFile");
     Blocks blocks;
     blocks.data = text.substr(underscore + 1);
-    blocks.swap = (std::string_view(root.attribute("byte_order").as_string()) == "BigEndian") != (std::endian::native == std::endian::big);
+    blocks.swap = (std::string_view(root.attribute("byte_order").as_string()) == "BigEndian") !=
+                  (std::endian::native == std::endian::big);
     blocks.wide = std::string_view(root.attribute("header_type").as_string()) == "UInt64";
     blocks.compressed = !root.attribute("compressor").empty();
     return check_blocks(path, root, blocks);

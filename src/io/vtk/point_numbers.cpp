@@ -14,7 +14,8 @@ using Place = std::array<double, 3>;
 
 Place place(const Piece& piece, std::uint64_t point) {
     Place result{};
-    for (std::size_t axis = 0; axis < 3; ++axis) result[axis] = piece.grid.points.at(point, axis) + 0.0; // -0 becomes +0
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        result[axis] = piece.grid.points.at(point, axis) + 0.0; // -0 becomes +0
     return result;
 }
 
@@ -73,7 +74,8 @@ std::optional<PointNumbers> number_by_ids(const std::vector<Piece>& pieces) {
         const bool fits = piece.point_ids.visit([&](auto ids) {
             for (std::size_t i = 0; i < numbers.size(); ++i) {
                 const Place here = place(piece, i);
-                const auto [entry, is_new] = known.try_emplace(static_cast<std::uint64_t>(ids[i]), First{result.count, here});
+                const auto [entry, is_new] =
+                    known.try_emplace(static_cast<std::uint64_t>(ids[i]), First{result.count, here});
                 if (is_new) ++result.count;
                 else if (!same_place(entry->second.place, here)) return false;
                 else ++result.joined;

@@ -26,7 +26,8 @@ Result<FilesByTime> entries(const std::string& path) {
         const pugi::xml_attribute stated = found.node().attribute("timestep");
         double time = 0;
         if (stated && *stated.value() && (!parse_number(stated.value(), time) || time != time))
-            return broken(path, fmt::format("a data set has timestep \"{}\", which is no number", escaped(stated.value())));
+            return broken(path,
+                          fmt::format("a data set has timestep \"{}\", which is no number", escaped(stated.value())));
         files[time].push_back(found.node().attribute("file").as_string());
     }
     if (files.empty()) return broken(path, "the collection has no data sets");
@@ -54,7 +55,9 @@ Result<Loaded> load_pvd(const std::string& path, const ReadOptions& options, Dep
     loaded.step = *step;
     for (const std::string& name : std::next(files->begin(), static_cast<std::ptrdiff_t>(*step))->second) {
         const Load load = loader_of_entry(name);
-        if (!load) return broken(path, fmt::format("it names \"{}\", but only .vtu, .pvtu, .vti, .vtr and .vts are read", escaped(name)));
+        if (!load)
+            return broken(path, fmt::format("it names \"{}\", but only .vtu, .pvtu, .vti, .vtr and .vts are read",
+                                            escaped(name)));
         auto file = named_file(path, name, options.allow_outside);
         if (!file) return file.error();
         auto part = load(*file, of_entries, depth);

@@ -27,8 +27,10 @@ std::string reader_program(const ReadOptions& options) {
 
 Result<Descriptor> memory_file(const char* name, std::string_view content) {
     Descriptor file(::memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
-    const bool written = file && ::pwrite(file.number(), content.data(), content.size(), 0) == static_cast<ssize_t>(content.size());
-    if (!written) return Error{ErrorCode::machine, fmt::format("no memory file for a reader process: {}", std::strerror(errno))};
+    const bool written =
+        file && ::pwrite(file.number(), content.data(), content.size(), 0) == static_cast<ssize_t>(content.size());
+    if (!written)
+        return Error{ErrorCode::machine, fmt::format("no memory file for a reader process: {}", std::strerror(errno))};
     return file;
 }
 
@@ -45,15 +47,16 @@ Error failure(const Request& request, const ChildOutcome& outcome) {
     };
     if (outcome.end == ChildOutcome::End::cancelled) return {ErrorCode::cancelled, path + ": reading was cancelled"};
     if (outcome.end == ChildOutcome::End::timed_out)
-        return sentence(ErrorCode::machine, fmt::format("was stopped after {} s, its time limit", request.options.time_limit.count()));
+        return sentence(ErrorCode::machine,
+                        fmt::format("was stopped after {} s, its time limit", request.options.time_limit.count()));
     if (outcome.memory_ran_out)
         return sentence(ErrorCode::out_of_memory,
                         request.options.memory_limit != 0
                             ? fmt::format("needs more than its memory limit of {} bytes", request.options.memory_limit)
                             : std::string("needs more memory than is free"));
     if (outcome.end == ChildOutcome::End::killed)
-        return sentence(ErrorCode::invalid_data, fmt::format("was killed by signal {} ({}): the file is broken", outcome.number,
-                                                             ::strsignal(outcome.number)));
+        return sentence(ErrorCode::invalid_data, fmt::format("was killed by signal {} ({}): the file is broken",
+                                                             outcome.number, ::strsignal(outcome.number)));
     if (outcome.number != 0)
         return sentence(ErrorCode::invalid_data,
                         fmt::format("ended by itself with status {}: the file is broken", outcome.number));

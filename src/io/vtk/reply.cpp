@@ -44,7 +44,8 @@ public:
     void put(const void* data, std::uint64_t size, std::uint64_t at) {
         const char* bytes = static_cast<const char*>(data);
         while (size > 0 && error_ == 0) {
-            const ssize_t written = ::pwrite(descriptor_, bytes, std::min<std::uint64_t>(size, 1 << 26), static_cast<off_t>(at));
+            const ssize_t written =
+                ::pwrite(descriptor_, bytes, std::min<std::uint64_t>(size, 1 << 26), static_cast<off_t>(at));
             if (written < 0 && errno == EINTR) continue;
             if (written <= 0) {
                 error_ = written < 0 ? errno : ENOSPC;
@@ -146,7 +147,8 @@ public:
         const auto tuples = in_.number<std::uint64_t>();
         const auto components = in_.number<std::uint64_t>();
         const auto begin = in_.number<std::uint64_t>();
-        if (tuples == 0 || components == 0) return Array(type, nullptr, tuples, components == 0 ? 1 : components, nullptr);
+        if (tuples == 0 || components == 0)
+            return Array(type, nullptr, tuples, components == 0 ? 1 : components, nullptr);
         const std::uint64_t most = arrays_end_ / size_of(type);
         if (components > most || tuples > most / components || begin % alignment != 0 || begin < alignment ||
             begin > arrays_end_ || tuples * components * size_of(type) > arrays_end_ - begin)
@@ -261,14 +263,15 @@ Result<void> write_reply(int descriptor, Reply reply) {
 Result<Reply> map_reply(int descriptor) {
     const Error incomplete{ErrorCode::internal, "the reader process ended without a complete reply"};
     if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0)
-        return Error{ErrorCode::machine, fmt::format("the reply of the reader process cannot be sealed: {}", std::strerror(errno))};
-    struct stat status {};
+        return Error{ErrorCode::machine,
+                     fmt::format("the reply of the reader process cannot be sealed: {}", std::strerror(errno))};
+    struct stat status{};
     if (::fstat(descriptor, &status) != 0 || status.st_size < static_cast<off_t>(alignment)) return incomplete;
     const auto size = static_cast<std::uint64_t>(status.st_size);
     void* begin = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
     if (begin == MAP_FAILED)
-        return Error{ErrorCode::machine,
-                     fmt::format("the reply of the reader process, {} bytes, cannot be mapped: {}", size, std::strerror(errno))};
+        return Error{ErrorCode::machine, fmt::format("the reply of the reader process, {} bytes, cannot be mapped: {}",
+                                                     size, std::strerror(errno))};
     auto mapping = std::make_shared<const Mapping>(begin, size);
 
     Header header;

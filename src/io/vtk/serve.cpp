@@ -27,9 +27,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-void tell(unsigned char status) {
-    [[maybe_unused]] const ssize_t written = ::write(status_descriptor, &status, 1);
-}
+void tell(unsigned char status) { [[maybe_unused]] const ssize_t written = ::write(status_descriptor, &status, 1); }
 
 /// Bytes of address space in use.
 std::uint64_t address_space() {
@@ -70,8 +68,9 @@ void limit_memory(std::uint64_t limit) {
 /// Bytes of the grid's file; nothing where it is spread over several, whose sizes are not known yet.
 std::optional<std::uint64_t> size_of_grid(const Request& request) {
     for (const std::string_view format : {"vtu", "vti", "vtr", "vts", "vtk", "cgns", "vtkhdf", "ucd", ""}) {
-        struct stat status {};
-        if (request.format == format && ::stat(request.path.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.st_size);
+        struct stat status{};
+        if (request.format == format && ::stat(request.path.c_str(), &status) == 0)
+            return static_cast<std::uint64_t>(status.st_size);
     }
     return std::nullopt;
 }
@@ -89,7 +88,7 @@ void limit_processor_time(const Request& request) {
 }
 
 Result<Request> receive() {
-    struct stat status {};
+    struct stat status{};
     if (::fstat(request_descriptor, &status) != 0 || status.st_size > (1 << 26))
         return Error{ErrorCode::internal, "the reader process found no request"};
     std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
@@ -104,7 +103,9 @@ Reply do_task(const Request& request) {
         return surface ? Reply(std::move(*surface)) : Reply(surface.error());
     }
     const Load load = loader_of(request.format);
-    if (!load) return Error{ErrorCode::invalid_argument, fmt::format("VTK's readers do not read format \"{}\"", escaped(request.format))};
+    if (!load)
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("VTK's readers do not read format \"{}\"", escaped(request.format))};
     const bool inspecting = request.task == Task::inspect;
     auto loaded = load(request.path, request.options, inspecting ? Depth::description : Depth::arrays);
     if (!loaded) return loaded.error();
@@ -121,11 +122,12 @@ Reply answer(const Request& request) {
     try {
         return do_task(request);
     } catch (const std::bad_alloc&) {
-        return named(ErrorCode::out_of_memory,
-                     request.options.memory_limit != 0
-                         ? fmt::format("reading needs more than the memory limit of {} bytes, or a size in the file is wrong",
-                                       request.options.memory_limit)
-                         : std::string("reading needs more memory than is free, or a size in the file is wrong"));
+        return named(
+            ErrorCode::out_of_memory,
+            request.options.memory_limit != 0
+                ? fmt::format("reading needs more than the memory limit of {} bytes, or a size in the file is wrong",
+                              request.options.memory_limit)
+                : std::string("reading needs more memory than is free, or a size in the file is wrong"));
     } catch (const std::exception& exception) {
         return named(ErrorCode::invalid_data, "the reader failed: " + escaped(exception.what()));
     }

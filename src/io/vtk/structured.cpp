@@ -19,15 +19,17 @@ struct Size {
 template <class Index>
 Array hexahedra(const Size& points) {
     std::vector<Index> corners;
-    if (points.x > 1 && points.y > 1 && points.z > 1) corners.reserve(8 * (points.x - 1) * (points.y - 1) * (points.z - 1));
+    if (points.x > 1 && points.y > 1 && points.z > 1)
+        corners.reserve(8 * (points.x - 1) * (points.y - 1) * (points.z - 1));
     const auto row = static_cast<Index>(points.x), slice = static_cast<Index>(points.x * points.y);
     for (std::uint64_t z = 0; z + 1 < points.z; ++z)
         for (std::uint64_t y = 0; y + 1 < points.y; ++y)
             for (std::uint64_t x = 0; x + 1 < points.x; ++x) {
                 const auto p = static_cast<Index>((z * points.y + y) * points.x + x);
                 const auto top = static_cast<Index>(p + slice);
-                for (const Index corner : {p, static_cast<Index>(p + 1), static_cast<Index>(p + row + 1), static_cast<Index>(p + row),
-                                           top, static_cast<Index>(top + 1), static_cast<Index>(top + row + 1), static_cast<Index>(top + row)})
+                for (const Index corner :
+                     {p, static_cast<Index>(p + 1), static_cast<Index>(p + row + 1), static_cast<Index>(p + row), top,
+                      static_cast<Index>(top + 1), static_cast<Index>(top + row + 1), static_cast<Index>(top + row)})
                     corners.push_back(corner);
             }
     return Array::own(std::move(corners));
@@ -59,8 +61,10 @@ std::optional<Grid> hexahedra_of(vtkDataSet* data, std::vector<std::string>& not
     const Size size{static_cast<std::uint64_t>(dimensions[0]), static_cast<std::uint64_t>(dimensions[1]),
                     static_cast<std::uint64_t>(dimensions[2])};
     grid.cells.uniform_type = CellType::hexahedron;
-    grid.cells.connectivity = grid.points.tuples() < (1u << 31) ? hexahedra<std::int32_t>(size) : hexahedra<std::int64_t>(size);
-    notes.push_back(fmt::format("a structured grid of {} x {} x {} points was read as {} hexahedra", size.x, size.y, size.z, grid.cells.count()));
+    grid.cells.connectivity =
+        grid.points.tuples() < (1u << 31) ? hexahedra<std::int32_t>(size) : hexahedra<std::int64_t>(size);
+    notes.push_back(fmt::format("a structured grid of {} x {} x {} points was read as {} hexahedra", size.x, size.y,
+                                size.z, grid.cells.count()));
     return grid;
 }
 

@@ -30,14 +30,17 @@ std::vector<Attribute> attributes_of(vtkDataSetAttributes* attributes) {
 /// Calls add(corners) for each cell. Offsets were not checked by VTK.
 template <class Add>
 bool each_cell(vtkCellArray* cells, Add add) {
-    const Array connectivity = shared_array(cells->GetConnectivityArray()), offsets = shared_array(cells->GetOffsetsArray());
+    const Array connectivity = shared_array(cells->GetConnectivityArray()),
+                offsets = shared_array(cells->GetOffsetsArray());
     std::vector<std::uint64_t> corners;
     return connectivity.visit([&](auto points) {
         return offsets.visit([&](auto begins) {
             for (std::size_t cell = 0; cell + 1 < begins.size(); ++cell) {
-                const auto begin = static_cast<std::uint64_t>(begins[cell]), end = static_cast<std::uint64_t>(begins[cell + 1]);
+                const auto begin = static_cast<std::uint64_t>(begins[cell]),
+                           end = static_cast<std::uint64_t>(begins[cell + 1]);
                 if (begin > end || end > points.size()) return false;
-                corners.assign(points.begin() + static_cast<std::ptrdiff_t>(begin), points.begin() + static_cast<std::ptrdiff_t>(end));
+                corners.assign(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                               points.begin() + static_cast<std::ptrdiff_t>(end));
                 add(std::span<const std::uint64_t>(corners));
             }
             return true;
@@ -54,7 +57,8 @@ Result<SurfaceFile> load_surface(const std::string& path) {
     if (auto done = update(*reader, path, {}, 0); !done) return done.error();
     vtkPolyData* data = reader->GetOutput();
     SurfaceParts parts;
-    parts.positions = data->GetPoints() ? shared_array(data->GetPoints()->GetData()) : Array(ScalarType::float32, nullptr, 0, 3, nullptr);
+    parts.positions = data->GetPoints() ? shared_array(data->GetPoints()->GetData())
+                                        : Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     parts.cells.skip_cells(static_cast<std::uint64_t>(data->GetNumberOfVerts() + data->GetNumberOfLines()));
     const bool sound = each_cell(data->GetPolys(), [&](auto corners) { parts.cells.add_polygon(corners); }) &&
                        each_cell(data->GetStrips(), [&](auto corners) { parts.cells.add_strip(corners); });

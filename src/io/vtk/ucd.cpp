@@ -29,9 +29,14 @@ struct Element {
     std::array<int, 8> order; ///< of VTK's corners among UCD's: UCD has the apex and the upper face first
 };
 constexpr Element elements[] = {
-    {"pt", 1, 1, {0}},          {"line", 3, 2, {0, 1}},        {"tri", 5, 3, {0, 1, 2}},
-    {"quad", 9, 4, {0, 1, 2, 3}}, {"tet", 10, 4, {0, 1, 2, 3}}, {"pyr", 14, 5, {1, 2, 3, 4, 0}},
-    {"prism", 13, 6, {3, 4, 5, 0, 1, 2}}, {"hex", 12, 8, {4, 5, 6, 7, 0, 1, 2, 3}},
+    {"pt", 1, 1, {0}},
+    {"line", 3, 2, {0, 1}},
+    {"tri", 5, 3, {0, 1, 2}},
+    {"quad", 9, 4, {0, 1, 2, 3}},
+    {"tet", 10, 4, {0, 1, 2, 3}},
+    {"pyr", 14, 5, {1, 2, 3, 4, 0}},
+    {"prism", 13, 6, {3, 4, 5, 0, 1, 2}},
+    {"hex", 12, 8, {4, 5, 6, 7, 0, 1, 2, 3}},
 };
 
 struct Counts {
@@ -46,7 +51,8 @@ public:
     Result<Loaded> run() {
         loaded_.pieces.emplace_back().name = path_;
         if (!header() || !points() || !cells()) return *problem_;
-        if (counts_.point_values > 0 && !values(Association::point, counts_.points, counts_.point_values)) return *problem_;
+        if (counts_.point_values > 0 && !values(Association::point, counts_.points, counts_.point_values))
+            return *problem_;
         if (counts_.cell_values > 0 && !values(Association::cell, counts_.cells, counts_.cell_values)) return *problem_;
         if (depth_ == Depth::description) loaded_.pieces.clear();
         return std::move(loaded_);
@@ -68,7 +74,8 @@ private:
     bool header() {
         if (scanner_.rest().starts_with("\x07")) return fail("a binary UCD file, which is not read: write it as ascii");
         return next(counts_.points, "number of points") && next(counts_.cells, "number of cells") &&
-               next(counts_.point_values, "number of point values") && next(counts_.cell_values, "number of cell values") &&
+               next(counts_.point_values, "number of point values") &&
+               next(counts_.cell_values, "number of cell values") &&
                next(counts_.model_values, "number of model values") && plausible(counts_.points, "points") &&
                plausible(counts_.cells, "cells");
     }
@@ -98,7 +105,9 @@ private:
             const Element* element = nullptr;
             for (const Element& known : elements)
                 if (known.name == name) element = &known;
-            if (!element) return fail(fmt::format("cell type {} is not one of pt, line, tri, quad, tet, pyr, prism, hex", in_quotes(name)));
+            if (!element)
+                return fail(fmt::format("cell type {} is not one of pt, line, tri, quad, tet, pyr, prism, hex",
+                                        in_quotes(name)));
             if (!corners(*element, connectivity)) return false;
             offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
             types.push_back(element->type);
@@ -116,7 +125,8 @@ private:
             std::int64_t number = 0;
             if (!next(number, "number of a corner")) return false;
             const std::uint64_t point = numbers_.find(number);
-            if (point == NumberMap::none) return fail(fmt::format("a cell has point {}, which the file does not have,", number));
+            if (point == NumberMap::none)
+                return fail(fmt::format("a cell has point {}, which the file does not have,", number));
             read[static_cast<std::size_t>(c)] = static_cast<std::int64_t>(point);
         }
         for (int c = 0; c < element.corners; ++c)

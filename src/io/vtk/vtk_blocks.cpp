@@ -27,7 +27,8 @@ void announce_attributes(vtkDataSetAttributes* attributes, Association associati
         vtkDataArray* values = attributes->GetArray(i);
         if (!values || !values->GetName() || is_ghost_array(values->GetName())) continue;
         if (const auto type = scalar_type(values->GetDataType()))
-            announce(info, {values->GetName(), association, *type, static_cast<std::size_t>(std::max(1, values->GetNumberOfComponents()))});
+            announce(info, {values->GetName(), association, *type,
+                            static_cast<std::size_t>(std::max(1, values->GetNumberOfComponents()))});
     }
 }
 

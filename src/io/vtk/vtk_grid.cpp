@@ -24,14 +24,17 @@ namespace {
 constexpr int cell_is_out = 1 | 8 | 16 | 32;
 
 constexpr std::string_view point_id_names[] = {"GlobalNodeId", "GlobalNodeIds", "GlobalPointIds", "GLOBAL_IDS_POINTS"};
-constexpr std::string_view cell_id_names[] = {"GlobalElementId", "GlobalElementIds", "GlobalCellIds", "GLOBAL_IDS_CELLS"};
+constexpr std::string_view cell_id_names[] = {"GlobalElementId", "GlobalElementIds", "GlobalCellIds",
+                                              "GLOBAL_IDS_CELLS"};
 
 /// The array of global numbers: the one marked so in the file, or one of a well-known name.
 Array global_ids(vtkDataSetAttributes* attributes, std::span<const std::string_view> names) {
     vtkDataArray* ids = attributes->GetGlobalIds();
     for (const std::string_view name : names)
         if (!ids) ids = attributes->GetArray(std::string(name).c_str());
-    if (!ids || ids->GetNumberOfComponents() != 1 || ids->GetDataType() == VTK_FLOAT || ids->GetDataType() == VTK_DOUBLE) return {};
+    if (!ids || ids->GetNumberOfComponents() != 1 || ids->GetDataType() == VTK_FLOAT ||
+        ids->GetDataType() == VTK_DOUBLE)
+        return {};
     return shared_array(ids);
 }
 
@@ -129,12 +132,14 @@ Array shared_array(vtkDataArray* values) {
     if (!type) return {};
     const auto components = static_cast<std::size_t>(std::max(1, array->GetNumberOfComponents()));
     auto owner = std::make_shared<vtkSmartPointer<vtkDataArray>>(array);
-    return Array(*type, array->GetVoidPointer(0), static_cast<std::size_t>(array->GetNumberOfTuples()), components, owner);
+    return Array(*type, array->GetVoidPointer(0), static_cast<std::size_t>(array->GetNumberOfTuples()), components,
+                 owner);
 }
 
 bool is_ghost_array(std::string_view name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }
 
-Result<Piece> piece_of(vtkDataSet* data, const ReadOptions& options, std::string name, std::vector<std::string>& notes) {
+Result<Piece> piece_of(vtkDataSet* data, const ReadOptions& options, std::string name,
+                       std::vector<std::string>& notes) {
     Piece piece;
     piece.name = std::move(name);
     if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data)) {
@@ -155,7 +160,8 @@ Result<Piece> piece_of(vtkDataSet* data, const ReadOptions& options, std::string
     const std::size_t cell_count = piece.grid.cells.count();
     piece.grid.point_fields = fields_of(data->GetPointData(), options, Association::point);
     piece.grid.cell_fields = fields_of(data->GetCellData(), options, Association::cell);
-    if (cell_count == 0 && !vtkUnstructuredGrid::SafeDownCast(data)) { // a flat structured grid: its cells are not volumes
+    if (cell_count == 0 &&
+        !vtkUnstructuredGrid::SafeDownCast(data)) { // a flat structured grid: its cells are not volumes
         piece.grid.cell_fields.clear();
         piece.cell_ids = Array();
         piece.left_out.clear();

@@ -29,15 +29,15 @@ Collected& collected() {
 /// "ERROR: In /build/x.cxx, line 12\nvtkClass (0x55): sentence\n\n" becomes "sentence".
 std::string sentence_of(std::string_view text) {
     if (const auto address = text.find("): "); address != std::string_view::npos) text.remove_prefix(address + 3);
-    else if (const auto line = text.find('\n'); line != std::string_view::npos && text.substr(0, 20).find(": In ") != std::string_view::npos)
+    else if (const auto line = text.find('\n');
+             line != std::string_view::npos && text.substr(0, 20).find(": In ") != std::string_view::npos)
         text.remove_prefix(line + 1);
     return escaped(text);
 }
 
 class Listener : public vtkOutputWindow {
 public:
-    vtkTypeMacro(Listener, vtkOutputWindow)
-    static Listener* New() { VTK_STANDARD_NEW_BODY(Listener); }
+    vtkTypeMacro(Listener, vtkOutputWindow) static Listener* New() { VTK_STANDARD_NEW_BODY(Listener); }
 
     void DisplayText(const char* text) override {
         if (text) std::fprintf(stderr, "%s\n", sentence_of(text).c_str());

@@ -21,16 +21,21 @@ bool same(std::string_view a, std::string_view b) {
 
 struct Element {
     std::string_view name;
-    int code;           ///< in mixed topologies
-    std::uint8_t type;  ///< VTK's
-    unsigned corners;   ///< 0: stated before them
+    int code;          ///< in mixed topologies
+    std::uint8_t type; ///< VTK's
+    unsigned corners;  ///< 0: stated before them
 };
 constexpr Element elements[] = {
-    {"Polyvertex", 1, 2, 0},     {"Polyline", 2, 4, 0},       {"Polygon", 3, 7, 0},        {"Triangle", 4, 5, 3},
-    {"Quadrilateral", 5, 9, 4},  {"Tetrahedron", 6, 10, 4},   {"Pyramid", 7, 14, 5},       {"Wedge", 8, 13, 6},
-    {"Hexahedron", 9, 12, 8},    {"Edge_3", 34, 21, 3},       {"Quadrilateral_9", 35, 28, 9}, {"Triangle_6", 36, 22, 6},
-    {"Quadrilateral_8", 37, 23, 8}, {"Tetrahedron_10", 38, 24, 10}, {"Tet_10", 38, 24, 10}, {"Pyramid_13", 39, 27, 13},
-    {"Wedge_15", 40, 26, 15},    {"Wedge_18", 41, 32, 18},    {"Hexahedron_20", 48, 25, 20}, {"Hex_20", 48, 25, 20},
+    {"Polyvertex", 1, 2, 0},        {"Polyline", 2, 4, 0},
+    {"Polygon", 3, 7, 0},           {"Triangle", 4, 5, 3},
+    {"Quadrilateral", 5, 9, 4},     {"Tetrahedron", 6, 10, 4},
+    {"Pyramid", 7, 14, 5},          {"Wedge", 8, 13, 6},
+    {"Hexahedron", 9, 12, 8},       {"Edge_3", 34, 21, 3},
+    {"Quadrilateral_9", 35, 28, 9}, {"Triangle_6", 36, 22, 6},
+    {"Quadrilateral_8", 37, 23, 8}, {"Tetrahedron_10", 38, 24, 10},
+    {"Tet_10", 38, 24, 10},         {"Pyramid_13", 39, 27, 13},
+    {"Wedge_15", 40, 26, 15},       {"Wedge_18", 41, 32, 18},
+    {"Hexahedron_20", 48, 25, 20},  {"Hex_20", 48, 25, 20},
     {"Hexahedron_27", 50, 29, 27},
 };
 
@@ -41,13 +46,21 @@ std::string_view attribute(pugi::xml_node node, const char* name, const char* ol
 
 class GridLoader {
 public:
-    GridLoader(const std::string& path, const XdmfDocument& document, const ReadOptions& options, Depth depth, Loaded& loaded)
-        : path_(path), document_(document), data_(path, document, options.allow_outside), options_(options), depth_(depth), loaded_(loaded) {}
+    GridLoader(const std::string& path, const XdmfDocument& document, const ReadOptions& options, Depth depth,
+               Loaded& loaded)
+        : path_(path),
+          document_(document),
+          data_(path, document, options.allow_outside),
+          options_(options),
+          depth_(depth),
+          loaded_(loaded) {}
 
     Result<void> load(pugi::xml_node grid) {
         piece_.name = fmt::format("{} {}", path_, grid.attribute("Name").as_string());
-        const pugi::xml_node geometry = document_.resolve(grid.child("Geometry")), topology = document_.resolve(grid.child("Topology"));
-        if (!geometry || !topology) return broken(path_, fmt::format("grid \"{}\" lacks Geometry or Topology", name(grid)));
+        const pugi::xml_node geometry = document_.resolve(grid.child("Geometry")),
+                             topology = document_.resolve(grid.child("Topology"));
+        if (!geometry || !topology)
+            return broken(path_, fmt::format("grid \"{}\" lacks Geometry or Topology", name(grid)));
         if (auto read = read_points(geometry); !read) return read;
         if (auto read = read_cells(topology); !read) return read;
         for (const pugi::xml_node stated : grid.children("Attribute")) {
@@ -70,7 +83,8 @@ private:
         auto values = data_.read(geometry.child("DataItem"), depth_);
         if (!values) return values.error();
         const std::uint64_t axes = flat ? 2 : 3;
-        if (values->count() % axes != 0) return broken(path_, fmt::format("{} coordinates are no multiple of {}", values->count(), axes));
+        if (values->count() % axes != 0)
+            return broken(path_, fmt::format("{} coordinates are no multiple of {}", values->count(), axes));
         points_ = values->count() / axes;
         if (depth_ == Depth::description) return {};
         if (!is_floating(values->values.type()) || flat) piece_.grid.points = in_space(values->values, axes);
@@ -105,11 +119,13 @@ private:
         for (const Element& known : elements)
             if (same(known.name, type)) element = &known;
         if (!element) return broken(path_, fmt::format("topology of type \"{}\" is not read", escaped(type)));
-        const std::uint64_t corners = element->corners != 0 ? element->corners : topology.attribute("NodesPerElement").as_uint();
+        const std::uint64_t corners =
+            element->corners != 0 ? element->corners : topology.attribute("NodesPerElement").as_uint();
         if (corners == 0 || values->count() % corners != 0)
             return broken(path_, fmt::format("{} corners of cells are no multiple of {}", values->count(), corners));
         cells_ = values->count() / corners;
-        if (counted && count != cells_) return broken(path_, fmt::format("{} elements are stated, {} are there", count, cells_));
+        if (counted && count != cells_)
+            return broken(path_, fmt::format("{} elements are stated, {} are there", count, cells_));
         if (depth_ == Depth::arrays) uniform_cells(*element, corners, values->values);
         return {};
     }
@@ -132,14 +148,19 @@ private:
         values.visit([&](auto from) {
             for (std::size_t i = 0; i < from.size(); ++i) {
                 const auto value = static_cast<double>(from[i]);
-                indices[i] = value >= 0 && value < 9e15 && value == static_cast<double>(static_cast<std::int64_t>(value)) ? static_cast<std::int64_t>(value) : -1;
+                indices[i] =
+                    value >= 0 && value < 9e15 && value == static_cast<double>(static_cast<std::int64_t>(value))
+                        ? static_cast<std::int64_t>(value)
+                        : -1;
             }
         });
         return Array::own(std::move(indices));
     }
     /// Code of the cell type, for some types the number of corners, then the corners.
     Result<void> mixed_cells(const Array& values, std::uint64_t count) {
-        if (count > values.size()) return broken(path_, fmt::format("{} mixed elements are stated, but there are {} numbers", count, values.size()));
+        if (count > values.size())
+            return broken(path_,
+                          fmt::format("{} mixed elements are stated, but there are {} numbers", count, values.size()));
         const Array indices = as_indices(values);
         std::vector<std::int64_t> connectivity, offsets{0};
         std::vector<std::uint8_t> types;
@@ -149,12 +170,18 @@ private:
                 const Element* element = nullptr;
                 for (const Element& known : elements)
                     if (at < numbers.size() && static_cast<std::int64_t>(numbers[at]) == known.code) element = &known;
-                if (!element) return broken(path_, fmt::format("element {} of a mixed topology, at number {}, has no type that is known", cell, at));
+                if (!element)
+                    return broken(path_,
+                                  fmt::format("element {} of a mixed topology, at number {}, has no type that is known",
+                                              cell, at));
                 ++at;
                 std::uint64_t corners = element->corners;
                 if (corners == 0 && at < numbers.size()) corners = static_cast<std::uint64_t>(numbers[at++]);
-                if (corners > numbers.size() - at) return broken(path_, fmt::format("element {} of a mixed topology ends after its last number", cell));
-                for (std::uint64_t c = 0; c < corners; ++c) connectivity.push_back(static_cast<std::int64_t>(numbers[at++]));
+                if (corners > numbers.size() - at)
+                    return broken(path_,
+                                  fmt::format("element {} of a mixed topology ends after its last number", cell));
+                for (std::uint64_t c = 0; c < corners; ++c)
+                    connectivity.push_back(static_cast<std::int64_t>(numbers[at++]));
                 offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
                 types.push_back(element->type);
             }
@@ -178,8 +205,9 @@ private:
         if (!values) return values.error();
         if (tuples == 0 || values->count() % tuples != 0 || values->count() == 0)
             return tuples == 0 ? Result<void>()
-                               : Result<void>(broken(path_, fmt::format("attribute \"{}\" has {} values for {} {}", escaped(field_name), values->count(),
-                                                                        tuples, on_points ? "points" : "cells")));
+                               : Result<void>(broken(path_, fmt::format("attribute \"{}\" has {} values for {} {}",
+                                                                        escaped(field_name), values->count(), tuples,
+                                                                        on_points ? "points" : "cells")));
         const std::uint64_t components = values->count() / tuples;
         announce(loaded_.info, {field_name, association, values->values.type(), components});
         if (!want) return {};

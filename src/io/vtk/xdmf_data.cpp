@@ -71,7 +71,8 @@ Result<ShapedValues> XdmfData::read(pugi::xml_node stated, Depth depth) const {
     if (!item) return failed("a DataItem is missing, or refers to nothing");
     const std::string_view kind = item.attribute("ItemType").as_string("Uniform");
     if (same(kind, "HyperSlab")) return read_slab(item, depth);
-    if (!same(kind, "Uniform")) return failed(fmt::format("a DataItem of type \"{}\" is not read: Uniform and HyperSlab are", escaped(kind)));
+    if (!same(kind, "Uniform"))
+        return failed(fmt::format("a DataItem of type \"{}\" is not read: Uniform and HyperSlab are", escaped(kind)));
     return read_uniform(item, {}, depth);
 }
 
@@ -84,9 +85,10 @@ Result<ShapedValues> XdmfData::read_uniform(pugi::xml_node item, const Box& box,
     if (!type || !dimensions) return failed("a DataItem without a number type and dimensions that are known");
     ShapedValues result{*dimensions, Array(*type, nullptr, 0, 1, nullptr)};
     if (depth == Depth::description) return result;
-    auto values = same(format, "XML")      ? read_xml(item, *type, result.count())
-                  : same(format, "Binary") ? read_binary(item, *type, result.count())
-                                           : Result<Array>(failed(fmt::format("a DataItem of format \"{}\" is not read", escaped(format))));
+    auto values = same(format, "XML") ? read_xml(item, *type, result.count())
+                  : same(format, "Binary")
+                      ? read_binary(item, *type, result.count())
+                      : Result<Array>(failed(fmt::format("a DataItem of format \"{}\" is not read", escaped(format))));
     if (!values) return values.error();
     result.values = std::move(*values);
     return result;
@@ -101,15 +103,19 @@ Result<ShapedValues> XdmfData::read_slab(pugi::xml_node item, Depth depth) const
     TextScanner scanner(document_.resolve(first).text().as_string());
     for (std::uint64_t number = 0; !scanner.at_end() && numbers.size() <= 48; numbers.push_back(number))
         if (!scanner.number(number)) return failed("a HyperSlab whose start, stride and count are not whole numbers");
-    if (numbers.empty() || numbers.size() % 3 != 0) return failed("a HyperSlab without start, stride and count for each dimension");
+    if (numbers.empty() || numbers.size() % 3 != 0)
+        return failed("a HyperSlab without start, stride and count for each dimension");
     const auto third = static_cast<std::ptrdiff_t>(numbers.size() / 3);
     const auto begin = numbers.begin();
-    return read_uniform(source, {{begin, begin + third}, {begin + third, begin + 2 * third}, {begin + 2 * third, numbers.end()}}, depth);
+    return read_uniform(
+        source, {{begin, begin + third}, {begin + third, begin + 2 * third}, {begin + 2 * third, numbers.end()}},
+        depth);
 }
 
 Result<Array> XdmfData::read_xml(pugi::xml_node item, ScalarType type, std::uint64_t count) const {
     const std::string_view text = item.text().as_string();
-    if (count > text.size()) return failed(fmt::format("a DataItem of {} values has {} characters", count, text.size()));
+    if (count > text.size())
+        return failed(fmt::format("a DataItem of {} values has {} characters", count, text.size()));
     return Array(type, nullptr, 0, 1, nullptr).visit([&](auto none) -> Result<Array> {
         using T = std::remove_const_t<typename decltype(none)::value_type>;
         std::vector<T> values(count);
@@ -118,7 +124,9 @@ Result<Array> XdmfData::read_xml(pugi::xml_node item, ScalarType type, std::uint
             double real = 0;
             std::int64_t whole = 0;
             const bool read = std::is_floating_point_v<T> ? scanner.number(real) : scanner.number(whole);
-            if (!read) return failed(fmt::format("a DataItem of {} values has no number at place {}, {}", count, i, scanner.where()));
+            if (!read)
+                return failed(
+                    fmt::format("a DataItem of {} values has no number at place {}, {}", count, i, scanner.where()));
             values[i] = std::is_floating_point_v<T> ? static_cast<T>(real) : static_cast<T>(whole);
         }
         if (!scanner.at_end()) return failed(fmt::format("a DataItem has more than the {} values it states", count));
@@ -133,9 +141,11 @@ Result<Array> XdmfData::read_binary(pugi::xml_node item, ScalarType type, std::u
     if (!file) return file.error();
     const std::uint64_t seek = item.attribute("Seek").as_ullong(), size = file->text().size();
     if (seek > size || count > (size - seek) / size_of(type))
-        return broken(*path, fmt::format("{} values from byte {} are wanted, but the file has {} bytes", count, seek, size));
+        return broken(*path,
+                      fmt::format("{} values from byte {} are wanted, but the file has {} bytes", count, seek, size));
     const std::string_view endian = item.attribute("Endian").as_string("Native");
-    const bool swap = same(endian, "Big") ? std::endian::native != std::endian::big : same(endian, "Little") && std::endian::native != std::endian::little;
+    const bool swap = same(endian, "Big") ? std::endian::native != std::endian::big
+                                          : same(endian, "Little") && std::endian::native != std::endian::little;
     return Array(type, nullptr, 0, 1, nullptr).visit([&](auto none) -> Result<Array> {
         std::vector<std::remove_const_t<typename decltype(none)::value_type>> values(count);
         std::memcpy(values.data(), file->text().data() + seek, count * sizeof values[0]);
@@ -157,7 +167,8 @@ Result<ShapedValues> XdmfData::read_hdf5(pugi::xml_node item, const Box& box, De
     if (const auto stated = stated_dimensions(item); stated && box.count.empty()) {
         const ShapedValues expected{*stated, Array()};
         if (expected.count() != values->count())
-            return failed(fmt::format("\"{}\" has {} values, but {} are stated", escaped(text), values->count(), expected.count()));
+            return failed(fmt::format("\"{}\" has {} values, but {} are stated", escaped(text), values->count(),
+                                      expected.count()));
     }
     return values;
 }

@@ -45,7 +45,9 @@ std::string without_entities(std::string_view text) {
         result += text.substr(at, mark - at);
         if (mark == text.size()) break;
         const auto end = text.find(';', mark);
-        const auto entity = end == std::string_view::npos || end - mark > 256 ? known.end() : known.find(text.substr(mark + 1, end - mark - 1));
+        const auto entity = end == std::string_view::npos || end - mark > 256
+                                ? known.end()
+                                : known.find(text.substr(mark + 1, end - mark - 1));
         if (entity != known.end()) {
             result += entity->second;
             at = end + 1;
@@ -122,7 +124,9 @@ Result<void> XdmfDocument::gather(pugi::xml_node parent, int depth) {
     if (++visited_ > most_visited) return broken(path_, "its grids refer to each other without end");
     for (const pugi::xml_node stated : parent.children("Grid")) {
         const pugi::xml_node grid = resolve(stated);
-        if (!grid) return broken(path_, fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
+        if (!grid)
+            return broken(path_,
+                          fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
         const std::string_view type = grid.attribute("GridType").as_string("Uniform");
         const std::string_view collection = grid.attribute("CollectionType").as_string("Spatial");
         if (same(type, "Collection") && same(collection, "Temporal")) {
@@ -137,7 +141,8 @@ Result<void> XdmfDocument::gather(pugi::xml_node parent, int depth) {
             }
             steps_.back().grids.push_back(grid);
         } else {
-            return broken(path_, fmt::format("grid type \"{}\" is not one of Uniform, Collection, Tree", escaped(type)));
+            return broken(path_,
+                          fmt::format("grid type \"{}\" is not one of Uniform, Collection, Tree", escaped(type)));
         }
     }
     return {};
@@ -146,11 +151,14 @@ Result<void> XdmfDocument::gather(pugi::xml_node parent, int depth) {
 /// Each child is a step of its own.
 Result<void> XdmfDocument::gather_temporal(pugi::xml_node collection, int depth) {
     const auto children = collection.children("Grid");
-    const auto times = listed_times(collection, static_cast<std::size_t>(std::distance(children.begin(), children.end())));
+    const auto times =
+        listed_times(collection, static_cast<std::size_t>(std::distance(children.begin(), children.end())));
     std::size_t index = 0;
     for (const pugi::xml_node stated : children) {
         const pugi::xml_node grid = resolve(stated);
-        if (!grid) return broken(path_, fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
+        if (!grid)
+            return broken(path_,
+                          fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
         XdmfStep& step = steps_.emplace_back();
         const auto own = time_of(grid);
         step.has_time = true;

@@ -20,7 +20,8 @@
 namespace isotet::io::vtk {
 namespace {
 
-void announce_header(vtkInformation* output, vtkInformationInformationVectorKey* key, Association association, FileInfo& info) {
+void announce_header(vtkInformation* output, vtkInformationInformationVectorKey* key, Association association,
+                     FileInfo& info) {
     vtkInformationVector* fields = output->Get(key);
     for (int i = 0; fields && i < fields->GetNumberOfInformationObjects(); ++i) {
         vtkInformation* field = fields->GetInformationObject(i);

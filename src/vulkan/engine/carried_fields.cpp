@@ -18,13 +18,15 @@ constexpr std::size_t chunk_values = std::size_t{1} << 22;
 constexpr std::size_t grain = 1 << 14;
 
 /// Stores the values of packed points [begin, end).
-void store(const Array& values, const core::Packed& packed, const core::Storage& storage, std::size_t begin, std::size_t end, float* out) {
+void store(const Array& values, const core::Packed& packed, const core::Storage& storage, std::size_t begin,
+           std::size_t end, float* out) {
     const std::size_t components = values.components();
     values.visit([&](auto typed) {
         core::parallel_each(end - begin, grain, [&](std::size_t i) {
             const std::size_t user = packed.user_point(begin + i);
             for (std::size_t k = 0; k < components; ++k)
-                out[i * components + k] = core::store_value<float>(static_cast<double>(typed[user * components + k]), storage);
+                out[i * components + k] =
+                    core::store_value<float>(static_cast<double>(typed[user * components + k]), storage);
         });
     });
 }
@@ -50,15 +52,18 @@ Result<CarriedField> upload(Context& context, const core::Packed& packed, const 
 
 } // namespace
 
-Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context, const core::Packed* packed, const Field& field) {
+Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context, const core::Packed* packed,
+                                                               const Field& field) {
     const Array& values = field.values;
     std::erase_if(entries_, [](const Entry& entry) { return entry.array.expired(); });
     for (const Entry& entry : entries_)
         if (entry.array.is(values)) return entry.field;
     if (!packed)
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("point field '{}' is not on the device, and the packed grid, which numbers its points, was given up",
-                                 field.name)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format(
+                "point field '{}' is not on the device, and the packed grid, which numbers its points, was given up",
+                field.name)};
     auto uploaded = upload(context, *packed, values);
     if (!uploaded) return std::move(uploaded).error();
     auto shared = std::make_shared<const CarriedField>(*std::move(uploaded));

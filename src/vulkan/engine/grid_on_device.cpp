@@ -32,17 +32,19 @@ Result<void> check(const core::Packed& packed) {
     if (!packed.single())
         return wrong("the grid was packed in double precision, but the vulkan engine takes single precision only");
     if (packed.points() >= limit_32)
-        return wrong(fmt::format("the packed grid has {} points, but the vulkan engine can number {}", packed.points(), limit_32 - 1));
-    if (packed.tets.size() >= limit_32)
-        return wrong(fmt::format("the packed grid has room for {} tets, but the vulkan engine can number {}", packed.tets.size(),
+        return wrong(fmt::format("the packed grid has {} points, but the vulkan engine can number {}", packed.points(),
                                  limit_32 - 1));
+    if (packed.tets.size() >= limit_32)
+        return wrong(fmt::format("the packed grid has room for {} tets, but the vulkan engine can number {}",
+                                 packed.tets.size(), limit_32 - 1));
     return {};
 }
 
 std::uint64_t wide(std::uint32_t low, std::uint32_t high) { return std::uint64_t{high} << 32 | low; }
 
 void add(Timings& sum, Timings&& more) {
-    sum.passes.insert(sum.passes.end(), std::make_move_iterator(more.passes.begin()), std::make_move_iterator(more.passes.end()));
+    sum.passes.insert(sum.passes.end(), std::make_move_iterator(more.passes.begin()),
+                      std::make_move_iterator(more.passes.end()));
     sum.device_seconds += more.device_seconds;
     sum.waited_seconds += more.waited_seconds;
 }
@@ -60,10 +62,12 @@ Result<std::unique_ptr<GridOnDevice>> GridOnDevice::upload(std::shared_ptr<Conte
     const GridNeeds needs = needs_of(packed, plan);
     const std::uint64_t least = needs.resident + needs.largest_page, free = context->memory().free();
     if (least > free)
-        return Error{ErrorCode::out_of_memory,
-                     fmt::format("the packed grid needs {} of device memory at least, but {} are free: {} for all clusters, and its "
-                                 "largest page",
-                                 core::format_bytes(least), core::format_bytes(free), core::format_bytes(needs.resident))};
+        return Error{
+            ErrorCode::out_of_memory,
+            fmt::format(
+                "the packed grid needs {} of device memory at least, but {} are free: {} for all clusters, and its "
+                "largest page",
+                core::format_bytes(least), core::format_bytes(free), core::format_bytes(needs.resident))};
     std::unique_ptr<GridOnDevice> grid(new GridOnDevice(std::move(context), packed));
     auto resident = Resident::upload(*grid->context_, packed, plan);
     if (!resident) return std::move(resident).error();
@@ -90,7 +94,8 @@ Result<void> GridOnDevice::run_and_read_heads(Recorder& recorder, std::span<Task
     }
     for (std::size_t i = 0; i < tasks.size(); ++i) recorder.copy(tasks[i].surface.head, 0, results_, i * size, size);
     if (auto ok = run(recorder, done); !ok) return ok;
-    for (std::size_t i = 0; i < tasks.size(); ++i) std::memcpy(&tasks[i].surface.result, results_.mapped().data() + i * size, size);
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+        std::memcpy(&tasks[i].surface.result, results_.mapped().data() + i * size, size);
     done.downloaded += tasks.size() * size;
     return {};
 }
@@ -101,15 +106,16 @@ Result<void> GridOnDevice::make_room(SurfaceBuffers& surface) {
     const std::uint64_t triangles = wide(surface.result.triangles_low, surface.result.triangles_high);
     const std::uint64_t most = context_->settings().most_items;
     if (std::max(vertices, triangles) > most)
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("the surface has {} vertices and {} triangles, but the vulkan engine can number {} of each", vertices,
-                                 triangles, most)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("the surface has {} vertices and {} triangles, but the vulkan engine can number {} of each",
+                        vertices, triangles, most)};
     if (surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::spare)) return {};
     for (;;) {
         auto grown = surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::exact);
         if (grown || grown.error().code != ErrorCode::out_of_memory) return grown;
         if (!surface.parts().fields.empty()) return grown; // fields give way before pages do
-        if (!packed_) return grown; // a page that went could not come back
+        if (!packed_) return grown;                        // a page that went could not come back
         auto released = cache_->release_one();
         if (!released) return released.error();
         if (!*released) return grown;
@@ -158,8 +164,9 @@ Result<bool> GridOnDevice::extract_together(std::span<Task> tasks, Passes& passe
 }
 
 /// Runs a pass over pages that are not all there at once.
-Result<void> GridOnDevice::sweep(const Task& task, std::span<const std::uint32_t> pages, const Progress& progress, WorkDone& done,
-                                 void (Passes::*pass)(Recorder&, const Task&, std::uint32_t) const, const Passes& passes) {
+Result<void> GridOnDevice::sweep(const Task& task, std::span<const std::uint32_t> pages, const Progress& progress,
+                                 WorkDone& done, void (Passes::*pass)(Recorder&, const Task&, std::uint32_t) const,
+                                 const Passes& passes) {
     std::vector<std::uint32_t> left(pages.begin(), pages.end());
     while (!left.empty()) {
         auto loaded = cache_->load(left, progress);
@@ -200,8 +207,9 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
 Result<void> GridOnDevice::give_up_packed() {
     if (auto ok = check_current(); !ok) return ok;
     if (!complete())
-        return Error{ErrorCode::invalid_argument,
-                     "not all of the packed grid is on the device: parts of it are yet to be loaded, so it cannot be given up"};
+        return Error{
+            ErrorCode::invalid_argument,
+            "not all of the packed grid is on the device: parts of it are yet to be loaded, so it cannot be given up"};
     packed_ = nullptr;
     cache_->give_up_packed();
     return {};
@@ -209,9 +217,10 @@ Result<void> GridOnDevice::give_up_packed() {
 
 Result<void> GridOnDevice::check_current() const {
     if (!packed_ || packed_->changes == changes_) return {};
-    return Error{ErrorCode::invalid_argument,
-                 "the packed grid has got another field or other points, but not through the grid on the device: it must be "
-                 "uploaded again"};
+    return Error{
+        ErrorCode::invalid_argument,
+        "the packed grid has got another field or other points, but not through the grid on the device: it must be "
+        "uploaded again"};
 }
 
 Result<WorkDone> GridOnDevice::extract(std::span<Task> tasks, const Progress& progress) {

@@ -67,7 +67,8 @@ Result<void> PageCache::load_page(std::uint32_t number) {
     place_clusters(*packed_, page, number, clusters.data());
     core::Buffer<std::uint32_t> words(page.words);
     fill_page(*packed_, page, clusters.data(), words.data());
-    if (auto ok = context_.staging().upload(*buffer, 0, std::as_bytes(std::span(words.data(), words.size()))); !ok) return ok;
+    if (auto ok = context_.staging().upload(*buffer, 0, std::as_bytes(std::span(words.data(), words.size()))); !ok)
+        return ok;
     pages_[number].buffer = *std::move(buffer);
     entries_[number].data = address_of(pages_[number].buffer);
     ++loads_;
@@ -78,7 +79,9 @@ Result<void> PageCache::load_page(std::uint32_t number) {
 std::uint32_t PageCache::oldest(std::uint64_t before) const {
     std::uint32_t found = none;
     for (std::uint32_t i = 0; i < pages_.size(); ++i)
-        if (pages_[i].buffer && pages_[i].last_use < before && (found == none || pages_[i].last_use < pages_[found].last_use)) found = i;
+        if (pages_[i].buffer && pages_[i].last_use < before &&
+            (found == none || pages_[i].last_use < pages_[found].last_use))
+            found = i;
     return found;
 }
 
@@ -147,7 +150,7 @@ Result<bool> PageCache::release_one() {
 }
 
 /// `from`   `components` words for each packed point
-Result<void> PageCache::upload_points(const void* from, std::size_t components, std::uint32_t layout::Page::*place,
+Result<void> PageCache::upload_points(const void* from, std::size_t components, std::uint32_t layout::Page::* place,
                                       const Progress& progress) {
     for (std::uint32_t i = 0; i < plan_.size(); ++i) {
         if (!is_loaded(i)) continue;

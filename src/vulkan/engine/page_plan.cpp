@@ -18,8 +18,8 @@ std::uint32_t groups_of(const ClusterHeader& h) {
 }
 
 std::uint64_t own_bytes(const Packed& packed, const ClusterHeader& h) {
-    const std::uint64_t words = h.own_points * (packed.gradients.empty() ? 4u : 5u) +
-                                groups_of(h) * core::group_size + ClusterLinks::words(h) + h.neighbours;
+    const std::uint64_t words = h.own_points * (packed.gradients.empty() ? 4u : 5u) + groups_of(h) * core::group_size +
+                                ClusterLinks::words(h) + h.neighbours;
     return 4 * words + 2 * groups_of(h);
 }
 
@@ -56,7 +56,8 @@ void for_outside(const Packed& packed, const PlannedPage& page, F&& f) {
         const ClusterLinks links = packed.cluster_links(c);
         std::size_t local = 0;
         for (const core::Neighbour& neighbour : links.neighbours) {
-            if (neighbour.cluster < page.first_cluster) f(neighbour, links.foreign_points.subspan(local, neighbour.foreign_points));
+            if (neighbour.cluster < page.first_cluster)
+                f(neighbour, links.foreign_points.subspan(local, neighbour.foreign_points));
             local += neighbour.foreign_points;
         }
     }
@@ -93,7 +94,9 @@ void place_arrays(const Packed& packed, PlannedPage& page) {
 }
 
 /// The words of floats, to be copied.
-const std::uint32_t* words_of(const core::Buffer<float>& floats) { return reinterpret_cast<const std::uint32_t*>(floats.data()); }
+const std::uint32_t* words_of(const core::Buffer<float>& floats) {
+    return reinterpret_cast<const std::uint32_t*>(floats.data());
+}
 
 /// A cluster's links, as the device wants them.
 class LinkWriter {
@@ -107,7 +110,8 @@ public:
         std::copy(links.foreign_points.begin(), links.foreign_points.end(), places);
         std::uint32_t point = 0, seam = 0;
         for (const core::Neighbour& neighbour : links.neighbours) {
-            const layout::Neighbour entry{neighbour.cluster, first_point(neighbour, places + point), point + (seam << 16)};
+            const layout::Neighbour entry{neighbour.cluster, first_point(neighbour, places + point),
+                                          point + (seam << 16)};
             std::memcpy(out, &entry, sizeof entry);
             out += sizeof entry / 4;
             point += neighbour.foreign_points;
@@ -124,7 +128,8 @@ private:
     /// Page-local; turns places among the neighbour's own points into places in its part of the halo where it is elsewhere.
     std::uint32_t first_point(const core::Neighbour& neighbour, std::uint8_t* places) const {
         const std::uint64_t first = packed_.headers[neighbour.cluster].first_point;
-        if (neighbour.cluster >= page_.first_cluster) return static_cast<std::uint32_t>(first - page_.layout.first_point);
+        if (neighbour.cluster >= page_.first_cluster)
+            return static_cast<std::uint32_t>(first - page_.layout.first_point);
         const auto begin = std::lower_bound(page_.halo.begin(), page_.halo.end(), first);
         for (std::size_t k = 0; k < neighbour.foreign_points; ++k)
             places[k] = static_cast<std::uint8_t>(std::lower_bound(begin, page_.halo.end(), first + places[k]) - begin);
@@ -170,7 +175,8 @@ void fill_page(const Packed& packed, const PlannedPage& page, const layout::Clus
     std::copy(page.halo.begin(), page.halo.end(), out + at.halo);
     std::memcpy(out + at.tets, packed.tets.data() + core::group_size * std::size_t{at.first_group},
                 sizeof(core::StoredTet) * core::group_size * page.groups);
-    std::memcpy(out + at.group_ranges, packed.group_ranges.data() + at.first_group, sizeof(core::GroupRange) * page.groups);
+    std::memcpy(out + at.group_ranges, packed.group_ranges.data() + at.first_group,
+                sizeof(core::GroupRange) * page.groups);
     const LinkWriter links(packed, page);
     core::parallel_each(page.clusters, 64, [&](std::size_t i) {
         links.write(page.first_cluster + static_cast<std::uint32_t>(i), out + at.links + clusters[i].first_link);

@@ -13,7 +13,8 @@ using layout::Lists;
 using layout::Output;
 
 layout::ExtractPush push_of(const Resident& resident, const Task& task, std::uint32_t batch) {
-    return {address_of(resident.tables), address_of(task.surface.head), task.isovalue, task.ties == Ties::merge ? 1u : 0u, batch};
+    return {address_of(resident.tables), address_of(task.surface.head), task.isovalue,
+            task.ties == Ties::merge ? 1u : 0u, batch};
 }
 
 constexpr std::uint64_t arguments_in(std::size_t list) { return list + offsetof(layout::ListHead, groups_x); }
@@ -69,8 +70,8 @@ void Passes::begin_again(Recorder& recorder, const Task& task) const {
 void Passes::select(Recorder& recorder, const Task& task) const {
     const Resident& r = resident_;
     recorder.dispatch(*select_, push_of(r, task, 0), r.sizes().segments,
-                      {reads(r.tables), reads(r.clusters), reads(r.ranges), writes(r.masks), writes(r.counts), writes(r.sums),
-                       writes(r.selected), writes(r.lists), writes(task.surface.head)});
+                      {reads(r.tables), reads(r.clusters), reads(r.ranges), writes(r.masks), writes(r.counts),
+                       writes(r.sums), writes(r.selected), writes(r.lists), writes(task.surface.head)});
 }
 
 void Passes::count(Recorder& recorder, const Task& task, std::uint32_t batch) const {
@@ -84,15 +85,15 @@ void Passes::count(Recorder& recorder, const Task& task, std::uint32_t batch) co
 void Passes::scan(Recorder& recorder, const Task& task) const {
     const Resident& r = resident_;
     recorder.dispatch(*scan_, push_of(r, task, 0), r.sizes().segments,
-                      {reads(r.tables), reads(r.counts), reads(r.sums), writes(r.starts), writes(r.emitted), writes(r.lists),
-                       writes(task.surface.head)});
+                      {reads(r.tables), reads(r.counts), reads(r.sums), writes(r.starts), writes(r.emitted),
+                       writes(r.lists), writes(task.surface.head)});
 }
 
 void Passes::emit(Recorder& recorder, const Task& task, std::uint32_t batch) const {
     const Resident& r = resident_;
     const SurfaceBuffers& s = task.surface;
-    std::vector<Use> uses{reads(r.tables), reads(r.pages), reads(r.clusters), reads(r.ranges), reads(r.masks), reads(r.starts),
-                          reads(r.emitted), reads(r.lists), writes(s.head)};
+    std::vector<Use> uses{reads(r.tables), reads(r.pages),   reads(r.clusters), reads(r.ranges), reads(r.masks),
+                          reads(r.starts), reads(r.emitted), reads(r.lists),    writes(s.head)};
     for (const Buffer* array : {&s.positions, &s.triangles, &s.normals, &s.lowest, &s.ends, &s.weights, &s.sources})
         if (*array) uses.push_back(writes(*array));
     const layout::ExtractPush push = push_of(r, task, batch);
@@ -107,24 +108,28 @@ void Passes::normals(Recorder& recorder, const Task& task) const {
     const SurfaceBuffers& s = task.surface;
     if (!s.normals) return;
     const layout::SurfacePush push{address_of(s.head)};
-    const std::uint64_t of_vertices = offsetof(Output, vertex_groups_x), of_triangles = offsetof(Output, triangle_groups_x);
+    const std::uint64_t of_vertices = offsetof(Output, vertex_groups_x),
+                        of_triangles = offsetof(Output, triangle_groups_x);
     if (face_normals_)
         recorder.dispatch_indirect(*face_normals_, push, s.head, of_triangles,
                                    {reads(s.head), reads(s.positions), reads(s.triangles), writes(s.normals)});
     if (!missing_normals_) return;
     recorder.dispatch_indirect(*lowest_triangles_, push, s.head, of_triangles,
                                {reads(s.head), reads(s.triangles), reads(s.normals), writes(s.lowest)});
-    recorder.dispatch_indirect(*missing_normals_, push, s.head, of_vertices,
-                               {reads(s.head), reads(s.positions), reads(s.triangles), reads(s.lowest), writes(s.normals)});
+    recorder.dispatch_indirect(
+        *missing_normals_, push, s.head, of_vertices,
+        {reads(s.head), reads(s.positions), reads(s.triangles), reads(s.lowest), writes(s.normals)});
 }
 
 void Passes::fields(Recorder& recorder, const Task& task) const {
     const SurfaceBuffers& s = task.surface;
     for (std::size_t i = 0; i < s.fields.size() && s.fields[i]; ++i) {
         const CarriedField& from = *task.fields[i];
-        const layout::FieldPush push{address_of(s.head), address_of(from.values), address_of(s.fields[i]), from.components};
-        recorder.dispatch_indirect(*fields_, push, s.head, offsetof(Output, vertex_groups_x),
-                                   {reads(s.head), reads(s.ends), reads(s.weights), reads(from.values), writes(s.fields[i])});
+        const layout::FieldPush push{address_of(s.head), address_of(from.values), address_of(s.fields[i]),
+                                     from.components};
+        recorder.dispatch_indirect(
+            *fields_, push, s.head, offsetof(Output, vertex_groups_x),
+            {reads(s.head), reads(s.ends), reads(s.weights), reads(from.values), writes(s.fields[i])});
     }
 }
 

@@ -18,7 +18,7 @@ std::uint64_t mask_words_of(const core::ClusterHeader& h) { return layout::tied_
 
 /// A resident array: where it is kept, and how large it is.
 struct Array {
-    Buffer Resident::*buffer;
+    Buffer Resident::* buffer;
     const char* name;
     std::uint64_t bytes;
 };
@@ -47,8 +47,10 @@ std::span<const std::byte> bytes_of(const T& array) {
 } // namespace
 
 ResidentSizes::ResidentSizes(const core::Packed& packed, std::size_t page_count)
-    : clusters(packed.clusters()), segments(pieces(clusters, layout::segment_clusters)),
-      blocks(pieces(segments, layout::block_segments)), pages(page_count) {
+    : clusters(packed.clusters()),
+      segments(pieces(clusters, layout::segment_clusters)),
+      blocks(pieces(segments, layout::block_segments)),
+      pages(page_count) {
     for (const core::ClusterHeader& h : packed.headers) mask_words += mask_words_of(h);
 }
 
@@ -67,7 +69,8 @@ Result<void> Resident::take(Context& context) {
     return {};
 }
 
-Result<void> Resident::upload_clusters(Context& context, const core::Packed& packed, const std::vector<PlannedPage>& plan) {
+Result<void> Resident::upload_clusters(Context& context, const core::Packed& packed,
+                                       const std::vector<PlannedPage>& plan) {
     std::vector<layout::Cluster> records(packed.clusters());
     core::parallel_each(plan.size(), 1, [&](std::size_t i) {
         place_clusters(packed, plan[i], static_cast<std::uint32_t>(i), records.data() + plan[i].first_cluster);
@@ -111,7 +114,8 @@ Result<void> Resident::upload_ranges(Context& context, const core::Packed& packe
 
 Result<void> Resident::download_ranges(Context& context, core::Packed& packed) const {
     core::Buffer<core::Range<float>>& to = packed.as<float>().ranges;
-    if (auto ok = context.staging().download(ranges, 0, std::as_writable_bytes(std::span(to.data(), to.size()))); !ok) return ok;
+    if (auto ok = context.staging().download(ranges, 0, std::as_writable_bytes(std::span(to.data(), to.size()))); !ok)
+        return ok;
     std::vector<std::uint32_t> bits(pieces(packed.clusters(), 32));
     if (auto ok = context.staging().download(no_data, 0, std::as_writable_bytes(std::span(bits))); !ok) return ok;
     for (std::size_t c = 0; c < packed.clusters(); ++c) packed.has_no_data[c] = bits[c / 32] >> c % 32 & 1;
@@ -128,9 +132,11 @@ Result<Resident> Resident::upload(Context& context, const core::Packed& packed, 
     // Kernels take the numbers of words and clusters as signed.
     constexpr std::uint64_t limit = std::numeric_limits<std::int32_t>::max();
     if (resident.sizes_.mask_words > limit)
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("the packed grid has {} clusters with masks of {} words, but the vulkan engine can number {} words",
-                                 resident.sizes_.clusters, resident.sizes_.mask_words, limit)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format(
+                "the packed grid has {} clusters with masks of {} words, but the vulkan engine can number {} words",
+                resident.sizes_.clusters, resident.sizes_.mask_words, limit)};
     if (auto ok = resident.take(context); !ok) return ok.error();
     if (auto ok = resident.upload_clusters(context, packed, plan); !ok) return ok.error();
     if (auto ok = resident.upload_ranges(context, packed); !ok) return ok.error();

@@ -18,18 +18,20 @@ template <class T>
 Result<core::Buffer<T>> download_array(Context& context, const Buffer& from, std::uint64_t count) {
     core::Buffer<T> out(count);
     if (count > 0)
-        if (auto ok = context.staging().download(from, 0, std::as_writable_bytes(std::span(out.data(), count))); !ok) return ok.error();
+        if (auto ok = context.staging().download(from, 0, std::as_writable_bytes(std::span(out.data(), count))); !ok)
+            return ok.error();
     return out;
 }
 
 /// Downloads numbers and replaces each by the user's.
 template <class Number>
-Result<void> fetch_numbers(Context& context, Array& to, const Buffer& from, std::uint64_t tuples, std::size_t components,
-                           const Number& number) {
+Result<void> fetch_numbers(Context& context, Array& to, const Buffer& from, std::uint64_t tuples,
+                           std::size_t components, const Number& number) {
     auto packed = download_array<std::uint32_t>(context, from, tuples * components);
     if (!packed) return packed.error();
     core::Buffer<std::int64_t> out(packed->size());
-    core::parallel_each(out.size(), grain, [&](std::size_t i) { out[i] = static_cast<std::int64_t>(number((*packed)[i])); });
+    core::parallel_each(out.size(), grain,
+                        [&](std::size_t i) { out[i] = static_cast<std::int64_t>(number((*packed)[i])); });
     to = std::move(out).to_array(components);
     return {};
 }
@@ -51,13 +53,15 @@ std::vector<SurfaceBuffers::Part> SurfaceBuffers::arrays() {
                           {weights, "edge weights", word_bytes, 0, parts_.ends},
                           {sources, "source cells", 0, word_bytes, parts_.sources}};
     fields.resize(parts_.fields.size());
-    for (std::size_t i = 0; i < fields.size(); ++i) all.push_back({fields[i], "field", word_bytes * parts_.fields[i], 0, true});
+    for (std::size_t i = 0; i < fields.size(); ++i)
+        all.push_back({fields[i], "field", word_bytes * parts_.fields[i], 0, true});
     return all;
 }
 
 std::uint64_t SurfaceBuffers::bytes() const {
     std::uint64_t bytes = 0;
-    for (const Buffer* buffer : {&head, &positions, &triangles, &normals, &lowest, &ends, &weights, &sources}) bytes += buffer->size();
+    for (const Buffer* buffer : {&head, &positions, &triangles, &normals, &lowest, &ends, &weights, &sources})
+        bytes += buffer->size();
     for (const Buffer& field : fields) bytes += field.size();
     return bytes;
 }
@@ -96,7 +100,8 @@ Result<void> SurfaceBuffers::prepare(Context& context, const SurfaceParts& parts
 
 Result<void> SurfaceBuffers::grow(Context& context, std::uint64_t vertices, std::uint64_t triangle_count, Room room) {
     const std::uint32_t v = room == Room::spare ? with_spare(vertices) : static_cast<std::uint32_t>(vertices);
-    const std::uint32_t t = room == Room::spare ? with_spare(triangle_count) : static_cast<std::uint32_t>(triangle_count);
+    const std::uint32_t t =
+        room == Room::spare ? with_spare(triangle_count) : static_cast<std::uint32_t>(triangle_count);
     drop_arrays();
     for (const Part& part : arrays()) {
         if (!part.wanted) continue;
@@ -117,7 +122,8 @@ Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::P
     ops::RawSurface out;
     out.selected_clusters = result.selected_clusters;
     out.tied_points = result.tied_points;
-    const auto fetch = [&]<class T>(Array& to, const Buffer& from, std::uint64_t tuples, std::size_t components, T) -> Result<void> {
+    const auto fetch = [&]<class T>(Array& to, const Buffer& from, std::uint64_t tuples, std::size_t components,
+                                    T) -> Result<void> {
         auto array = download_array<T>(context, from, tuples * components);
         if (!array) return array.error();
         to = std::move(*array).to_array(components);
@@ -127,7 +133,8 @@ Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::P
     const auto user_cell = [&](std::uint32_t tet) { return packed->user_cell(tet); };
     Result<void> ok = fetch(out.positions, positions, v, 3, float{});
     if (ok) ok = fetch(out.triangles, triangles, t, 3, std::uint32_t{});
-    if (ok && parts_.normals != Normals::none) ok = fetch(out.normals, normals, parts_.normals == Normals::face ? t : v, 3, float{});
+    if (ok && parts_.normals != Normals::none)
+        ok = fetch(out.normals, normals, parts_.normals == Normals::face ? t : v, 3, float{});
     if (ok && with_ends) ok = fetch(out.weights, weights, v, 1, float{});
     if (ok && with_ends) ok = fetch_numbers(context, out.ends, ends, v, 2, user_point);
     if (ok && parts_.sources) ok = fetch_numbers(context, out.source_cells, sources, t, 1, user_cell);
