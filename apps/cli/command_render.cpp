@@ -50,6 +50,13 @@ Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, con
         if (!room) console.note(fmt::format("the picture, {} x {}, is too small for text", whole.width, whole.height));
     }
     if (room) {
+        for (const std::string& text : {annotation.title, annotation.caption}) {
+            const Result<bool> writable = can_be_written(text);
+            if (!writable) return writable.error();
+            if (*writable) continue;
+            console.note(fmt::format("the font of isotet lacks letters of '{}': they are boxes in the picture", text));
+            break; // the caption has the title's as a rule
+        }
         options.width = room->width;
         options.height = room->height;
     }

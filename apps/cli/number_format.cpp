@@ -1,7 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "number_format.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +13,27 @@ namespace isotet::cli {
 std::string shortest(double value) { return fmt::format("{}", value); }
 
 std::string rounded(double value) { return fmt::format("{:.6g}", value); }
+
+std::string rounded(double value, double difference) {
+    if (value == 0 || !(difference > 0) || !std::isfinite(value) || !std::isfinite(difference)) return rounded(value);
+    const auto place = [](double number) { return static_cast<int>(std::floor(std::log10(std::abs(number)))); };
+    return fmt::format("{:.{}g}", value, std::clamp(place(value) - place(difference) + 1, 6, 17));
+}
+
+std::vector<std::string> told_apart(const std::vector<double>& values) {
+    std::vector<double> sorted = values;
+    std::ranges::sort(sorted);
+    double smallest = INFINITY; // difference
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        if (sorted[i - 1] < sorted[i]) smallest = std::min(smallest, sorted[i] - sorted[i - 1]);
+    std::vector<std::string> texts;
+    for (const double value : values) texts.push_back(rounded(value, smallest));
+    return texts;
+}
+
+std::string counted(std::uint64_t count, std::string_view one) {
+    return fmt::format("{} {}{}", grouped(count), one, count == 1 ? "" : "s");
+}
 
 std::string grouped(std::uint64_t count) {
     std::string digits = fmt::format("{}", count);

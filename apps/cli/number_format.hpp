@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace isotet::cli {
 
@@ -14,6 +15,16 @@ std::string shortest(double value);
 
 /// Six significant digits: "3.14159".
 std::string rounded(double value);
+
+/// Six significant digits, or as many as tell the value from one that is `difference` away: "101325.42" of 0.01. Without a
+/// difference above 0 six.
+std::string rounded(double value, double difference);
+
+/// The same of each value, so that different values have different texts.
+std::vector<std::string> told_apart(const std::vector<double>& values);
+
+/// "1 triangle", "12,345 triangles".
+std::string counted(std::uint64_t count, std::string_view one);
 
 /// "12,345,678".
 std::string grouped(std::uint64_t count);

@@ -17,7 +17,7 @@ Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::mov
 /// The range of what has a colour: finite values, on a logarithmic scale positive ones.
 struct Seen {
     double lower = INFINITY, upper = -INFINITY;
-    bool no_data = false;
+    bool no_data = false, not_positive = false; ///< some values
 };
 Seen look_at(const Array& values, bool positive) {
     Seen seen;
@@ -25,6 +25,7 @@ Seen look_at(const Array& values, bool positive) {
         for (const auto scalar : scalars) {
             const auto value = static_cast<double>(scalar);
             seen.no_data = seen.no_data || std::isnan(value);
+            seen.not_positive = seen.not_positive || value <= 0;
             if (!std::isfinite(value) || (positive && value <= 0)) continue;
             seen.lower = std::min(seen.lower, value);
             seen.upper = std::max(seen.upper, value);
@@ -50,6 +51,11 @@ Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Co
     field.scale = command.scale;
     const Seen seen = look_at(field.values, command.scale.logarithmic);
     field.has_no_data = seen.no_data;
+    if (command.scale.logarithmic && seen.not_positive)
+        console.note(
+            fmt::format("'{}' has values that are not positive: on the logarithmic scale they have the colour of its "
+                        "lower end",
+                        field.name));
     if (command.range.empty()) {
         if (!(seen.lower <= seen.upper))
             console.note(fmt::format("'{}' has no value that could have a colour", field.name));

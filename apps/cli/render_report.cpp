@@ -55,12 +55,13 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
     if (!command.sweep.empty())
         table.row({"isovalues", fmt::format("{}, {} to {}", picture.pictures, shortest(command.sweep[0]),
                                             shortest(command.sweep[1]))});
-    for (const SurfaceCounts& surface : scene.surfaces()) {
-        if (!command.sweep.empty()) break;
-        const std::string what = surface.isovalue ? "isovalue " + rounded(*surface.isovalue) : "surface";
-        table.row({what, scene.tets() ? fmt::format("{} tets drawn, {} sent", grouped(surface.tets),
+    const std::vector<std::string> isovalues = scene.isovalue_texts();
+    for (std::size_t i = 0; i < isovalues.size() && command.sweep.empty(); ++i) {
+        const SurfaceCounts& surface = scene.surfaces()[i];
+        const std::string what = surface.isovalue ? "isovalue " + isovalues[i] : "surface";
+        table.row({what, scene.tets() ? fmt::format("{} drawn, {} sent", counted(surface.tets, "tet"),
                                                     bytes_text(surface.sent_bytes))
-                                      : grouped(surface.triangles) + " triangles"});
+                                      : counted(surface.triangles, "triangle")});
     }
     if (input.colors)
         table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower),

@@ -90,10 +90,12 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         counts_[i].isovalue = isovalues[i];
         if (!is_empty(i)) continue;
-        const std::string values = input_.lower <= input_.upper
-                                       ? fmt::format("the values of '{}' go from {} to {}", input_.field,
-                                                     shortest(input_.lower), shortest(input_.upper))
-                                       : fmt::format("'{}' has no finite value", input_.field);
+        const std::string values = !(input_.lower <= input_.upper)
+                                       ? fmt::format("'{}' has no finite value", input_.field)
+                                   : input_.lower == input_.upper
+                                       ? fmt::format("all values of '{}' are {}", input_.field, shortest(input_.lower))
+                                       : fmt::format("the values of '{}' go from {} to {}", input_.field,
+                                                     shortest(input_.lower), shortest(input_.upper));
         console_.note(fmt::format("there is no surface at {}: {}", shortest(isovalues[i]), values));
     }
     dress();
@@ -207,19 +209,26 @@ void RenderScene::fit(Camera& camera, double aspect) const {
     else camera.fit(input_.bounds, aspect);
 }
 
+std::vector<std::string> RenderScene::isovalue_texts() const {
+    std::vector<double> isovalues;
+    for (const SurfaceCounts& surface : counts_) isovalues.push_back(surface.isovalue.value_or(0));
+    return told_apart(isovalues);
+}
+
 Annotation RenderScene::annotation() const {
     Annotation annotation;
     if (command_.plain) return annotation;
     std::uint64_t all = 0;
     for (const SurfaceCounts& surface : counts_) all += surface.size();
-    const std::string drawn = fmt::format("{} {}", grouped(all), tets_ ? "tets drawn" : "triangles");
+    const std::string drawn = tets_ ? counted(all, "tet") + " drawn" : counted(all, "triangle");
     const std::string name = std::filesystem::path(command_.grid.file).filename().string();
     if (input_.surface) annotation.caption = fmt::format("{}  ·  {}", name, drawn);
     else if (counts_.size() == 1)
-        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} = {}  ·  {}", name, grouped(input_.cells),
-                                         input_.field, rounded(*counts_.front().isovalue), drawn);
+        annotation.caption =
+            fmt::format("{}  ·  {}  ·  {} = {}  ·  {}", name, counted(input_.cells, "cell"), input_.field,
+                        rounded(*counts_.front().isovalue, (input_.upper - input_.lower) / 1000), drawn);
     else
-        annotation.caption = fmt::format("{}  ·  {} cells  ·  {} at {} isovalues  ·  {}", name, grouped(input_.cells),
+        annotation.caption = fmt::format("{}  ·  {}  ·  {} at {} isovalues  ·  {}", name, counted(input_.cells, "cell"),
                                          input_.field, counts_.size(), drawn);
     if (input_.colors) {
         annotation.title = input_.colors->name;
@@ -231,8 +240,8 @@ Annotation RenderScene::annotation() const {
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::ranges::sort(order, std::greater(),
                           [&](std::size_t i) { return counts_[i].isovalue; }); // large values above
-        for (const std::size_t i : order)
-            annotation.legend.push_back({scene_.surfaces[i].color, rounded(*counts_[i].isovalue)});
+        const std::vector<std::string> values = isovalue_texts();
+        for (const std::size_t i : order) annotation.legend.push_back({scene_.surfaces[i].color, values[i]});
     }
     return annotation;
 }

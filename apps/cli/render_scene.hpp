@@ -44,6 +44,7 @@ public:
     const Scene& scene() const noexcept { return scene_; }
     const std::vector<SurfaceCounts>& surfaces() const noexcept { return counts_; }
     Annotation annotation() const;
+    std::vector<std::string> isovalue_texts() const; ///< of surfaces(), each different
 
     /// "vulkan", "cpu", or "none" where nothing is extracted: of a surface file, or by a method that draws tets.
     const char* engine() const { return input_.surface || tets_ ? "none" : grid_ ? "vulkan" : "cpu"; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/picture.hpp>
@@ -29,6 +30,10 @@ struct Annotation {
 
     bool empty() const noexcept { return !scale && legend.empty() && caption.empty(); }
 };
+
+/// Whether the font has all letters of a text.
+/// Errors   internal when the font cannot be opened
+Result<bool> can_be_written(std::string_view text);
 
 struct PictureSize {
     std::uint32_t width = 0, height = 0;

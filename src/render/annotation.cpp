@@ -171,6 +171,14 @@ void Layout::paint(Picture& picture, const Color& ink) const {
 
 } // namespace
 
+Result<bool> can_be_written(std::string_view text) {
+    return core::guarded("looking for letters", [&]() -> Result<bool> {
+        const auto painter = TextPainter::open(12);
+        if (!painter) return painter.error();
+        return (*painter)->has_all(text);
+    });
+}
+
 Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole) {
     return core::guarded("laying out a picture", [&]() -> Result<std::optional<PictureSize>> {
         const auto layout = Layout::make(annotation, whole);

@@ -101,6 +101,14 @@ double TextPainter::width(std::string_view text) const {
     return data_->each_glyph(text, [](FT_GlyphSlot, double) {});
 }
 
+bool TextPainter::has_all(std::string_view text) const {
+    while (!text.empty()) {
+        const std::uint32_t character = next_character(text);
+        if (character == replacement || FT_Get_Char_Index(data_->face, character) == 0) return false;
+    }
+    return true;
+}
+
 double TextPainter::ascent() const noexcept {
     if (FT_Load_Char(data_->face, '0', FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) return 0;
     return static_cast<double>(data_->face->glyph->metrics.horiBearingY) / fixed;

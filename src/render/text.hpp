@@ -23,6 +23,7 @@ public:
     TextPainter& operator=(const TextPainter&) = delete;
 
     double width(std::string_view text) const; ///< pixels
+    bool has_all(std::string_view text) const; ///< its letters: no box
     double ascent() const noexcept;            ///< of capitals and digits above the baseline
 
     /// Paints text over a picture, its baseline beginning at (x, y); what does not fit is cut off.

@@ -55,8 +55,10 @@ std::vector<Tick> linear_ticks(double lower, double upper, std::size_t most) {
     }
     const double largest = std::max(std::abs(lower), std::abs(upper));
     if (!(step > largest * 1e-12)) return {}; // too narrow to tell its numbers apart
-    const int exponent = is_long(largest) ? exponent_of(largest) : 0;
-    const int digits = std::clamp(exponent - exponent_of(step), 0, 12);
+    const int highest = exponent_of(largest), lowest = exponent_of(step);
+    // A power of ten that needs every digit before the point, and more, saves nothing: 101325.2.
+    const int exponent = is_long(largest) && !(highest > 0 && lowest <= 0) ? highest : 0;
+    const int digits = std::clamp(exponent - lowest, 0, 12);
     std::vector<Tick> ticks;
     for (double k = std::ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * step; ++k) {
         const double value = k == 0 ? 0 : k * step;

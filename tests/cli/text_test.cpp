@@ -37,6 +37,30 @@ TEST(Wrapped, BreaksAtSpacesOnly) {
     EXPECT_EQ(wrapped("toolongword a", 4), "toolongword\na");
 }
 
+TEST(Rounded, HasAsManyDigitsAsTellADifference) {
+    EXPECT_EQ(rounded(13.0 / 60, 0.001), "0.216667");
+    EXPECT_EQ(rounded(101325.42, 1e-3), "101325.42");
+    EXPECT_EQ(rounded(-101325.42, 1000), "-101325");
+    EXPECT_EQ(rounded(0, 1e-9), "0");
+    EXPECT_EQ(rounded(1.5, 0), "1.5");
+    EXPECT_EQ(rounded(1.5, NAN), "1.5");
+}
+
+TEST(ToldApart, GivesDifferentValuesDifferentTexts) {
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(told_apart({101325.6, 101325.4, 101325.41}), (Texts{"101325.6", "101325.4", "101325.41"}));
+    EXPECT_EQ(told_apart({0.25, 0.5, 0.25}), (Texts{"0.25", "0.5", "0.25"}));
+    const double next = std::nextafter(1e300, INFINITY);
+    EXPECT_NE(told_apart({1e300, next})[0], told_apart({1e300, next})[1]);
+    EXPECT_TRUE(told_apart({}).empty());
+}
+
+TEST(Counted, KnowsOneFromMany) {
+    EXPECT_EQ(counted(0, "triangle"), "0 triangles");
+    EXPECT_EQ(counted(1, "triangle"), "1 triangle");
+    EXPECT_EQ(counted(12345, "cell"), "12,345 cells");
+}
+
 TEST(Shortest, ReadsBackAsTheSameDouble) {
     for (const double value : {0.1, 0.30000000000000004, 1e22, 5e-324, -1.7976931348623157e308, 101325.0}) {
         EXPECT_EQ(parse_number(shortest(value)), value);

@@ -30,7 +30,9 @@ TEST(Ticks, AreRoundNumbersWithinTheRange) {
     EXPECT_EQ(labels(0, 1), (Labels{"0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
     EXPECT_EQ(labels(-5.4, 369), (Labels{"0", "100", "200", "300"}));
     EXPECT_EQ(labels(-1, 1, 5), (Labels{"−1.0", "−0.5", "0", "0.5", "1.0"}));
-    EXPECT_EQ(labels(101324, 101326, 3), (Labels{"1.01324×10⁵", "1.01325×10⁵", "1.01326×10⁵"}));
+    EXPECT_EQ(labels(101324, 101326, 3), (Labels{"101324", "101325", "101326"}));
+    EXPECT_EQ(labels(101325, 101325.7, 5), (Labels{"101325.0", "101325.2", "101325.4", "101325.6"}));
+    EXPECT_EQ(labels(0, 2e5, 3), (Labels{"0", "1×10⁵", "2×10⁵"}));
     EXPECT_EQ(labels(0, 3e-7, 4), (Labels{"0", "1×10⁻⁷", "2×10⁻⁷", "3×10⁻⁷"}));
 }
 
@@ -128,6 +130,13 @@ TEST(Annotations, TakeAnyText) {
         ASSERT_TRUE(room);
         EXPECT_TRUE(annotate(scene_of(*room, {}), annotation, whole, {0, 0, 0, 1}));
     }
+}
+
+TEST(Annotations, TellWhatTheFontLacks) {
+    EXPECT_TRUE(can_be_written("").value());
+    EXPECT_TRUE(can_be_written("größe µm²·s⁻¹ Δρ (m/s) …").value());
+    EXPECT_FALSE(can_be_written("speed 速度").value());
+    EXPECT_FALSE(can_be_written("caf\xe9").value()) << "not UTF-8";
 }
 
 TEST(Annotations, OfATransparentPictureLeaveItTransparent) {

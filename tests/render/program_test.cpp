@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "cli/program.hpp"
+#include "cli/small_grid.hpp"
 
 namespace isotet::test {
 namespace {
@@ -58,6 +59,32 @@ TEST_F(Render, ColoursAndSaysWhatTheColoursMean) {
     const RunResult run = isotet(words);
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "--range begins with -0.5, but --log takes positive numbers only"));
+}
+
+TEST_F(Render, SaysWhatItCannotShow) {
+    put_content(path("g.msh"), small_grid({{.name = "f", .values = {1, 0, 0, 0, 0}},
+                                           {.name = "signed", .values = {-1, 0, 1, 2, 3}},
+                                           {.name = "same", .values = {3, 3, 3, 3, 3}},
+                                           {.name = "速度", .values = {1, 0, 0, 0, 0}}}));
+    const auto notes = [&](std::vector<std::string> more) {
+        const RunResult run = isotet(command(path("g.msh"), "a.png", std::move(more)));
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.err;
+    };
+    EXPECT_NE(notes({"-f", "f", "-i", "0.5", "--color-by", "signed", "--log"})
+                  .find("'signed' has values that are not positive: on the logarithmic scale they have the colour of "
+                        "its lower end"),
+              std::string::npos);
+    EXPECT_EQ(notes({"-f", "f", "-i", "0.5", "--color-by", "signed"}).find("not positive"), std::string::npos);
+    EXPECT_NE(notes({"-f", "same", "-i", "3"}).find("there is no surface at 3: all values of 'same' are 3"),
+              std::string::npos);
+    const auto large = [&](const char* field) {
+        return isotet({"render", path("g.msh"), "-o", path("a.png"), "--size", "400x300", "--device", "software", "-f",
+                       field, "-i", "0.5"})
+            .err;
+    };
+    EXPECT_EQ(large("f").find("the font"), std::string::npos);
+    EXPECT_NE(large("速度").find("the font of isotet lacks letters of 'g.msh"), std::string::npos);
 }
 
 TEST_F(Render, ExtractsOnEitherEngineTheSamePicture) {
