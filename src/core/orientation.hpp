@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -10,6 +11,7 @@
 
 #include "core/cells.hpp"
 #include "core/exact.hpp"
+#include "core/prefetch.hpp"
 
 namespace isotet::core {
 
@@ -26,6 +28,10 @@ public:
         }
         const double* p = static_cast<const double*>(data_) + 3 * i;
         return {p[0], p[1], p[2]};
+    }
+    /// Asks for a point that will be wanted soon.
+    void prefetch(std::uint64_t i) const {
+        core::prefetch(static_cast<const std::byte*>(data_) + 3 * i * (single_ ? sizeof(float) : sizeof(double)));
     }
     int orientation(const Tet& t) const {
         return orientation_sign((*this)[t[0]], (*this)[t[1]], (*this)[t[2]], (*this)[t[3]]);

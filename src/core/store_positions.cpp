@@ -75,8 +75,10 @@ void store_positions(const Array& array, Packed& packed) {
     if (positions.empty()) positions = Buffer<Real>(3 * packed.points());
     std::atomic<std::uint64_t> flushed{0}, coarse{0};
     parallel_ranges(packed.points(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+        constexpr std::size_t ahead = 16;
         std::uint64_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
+            points.prefetch(packed.user_point(std::min(i + ahead, end - 1)));
             const Point p = points[packed.user_point(i)];
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const Real stored = store_coordinate<Real>(p[axis], packed.origin[axis]);

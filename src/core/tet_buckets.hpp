@@ -24,10 +24,7 @@
 namespace isotet::core {
 
 class TetBuckets {
-    struct Stream {
-        std::size_t next = 0, page_end = 0; ///< positions
-        std::vector<std::uint32_t> pages;
-    };
+    using Pages = std::vector<std::uint32_t>;
 
 public:
     TetBuckets() = default;
@@ -44,32 +41,39 @@ public:
     /// Deals out tets; for one thread at a time.
     class Writer {
     public:
-        Writer(TetBuckets& all, std::size_t writer) : all_(all), streams_(all.streams_.data() + writer * all.buckets()) {}
+        Writer(TetBuckets& all, std::size_t writer)
+            : all_(all),
+              next_(all.next_.data() + writer * all.buckets()),
+              pages_(all.stream_pages_.data() + writer * all.buckets()) {}
 
         /// `lowest`   of the tet's ranks
         void put(const RankedTet& tet, std::uint32_t lowest, TetOrigin origin) {
-            Stream& stream = streams_[lowest >> all_.shift_];
-            if (stream.next == stream.page_end) all_.add_page(stream);
-            all_.tets_[stream.next] = tet;
-            if (all_.has_origins()) all_.origins_[stream.next] = origin;
-            ++stream.next;
+            const std::size_t bucket = lowest >> all_.shift_;
+            std::size_t next = next_[bucket];
+            if (next % all_.page_size() == 0) next = all_.add_page(pages_[bucket]);
+            constexpr std::size_t line = 64 / sizeof(RankedTet);
+            prefetch(all_.tets_.data() + next + line); // there by the time this line is full
+            all_.tets_[next] = tet;
+            if (all_.has_origins()) all_.origins_[next] = origin;
+            next_[bucket] = next + 1;
         }
 
     private:
         TetBuckets& all_;
-        Stream* streams_;
+        std::size_t* next_;
+        Pages* pages_;
     };
 
     /// Calls f(tet, origin) for what was dealt out to a bucket: by writer, then in the order in which it was put there.
     template <class F>
     void for_dealt(std::size_t bucket, const F& f) const {
-        for (std::size_t at = bucket; at < streams_.size(); at += buckets()) {
-            const Stream& stream = streams_[at];
-            for (std::size_t p = 0; p < stream.pages.size(); ++p) {
-                const bool last = p + 1 == stream.pages.size();
-                const std::size_t begin = stream.pages[p] * page_size_;
-                const std::size_t end = last ? stream.next : begin + page_size_;
-                const RankedTet* const soon = tets_.data() + (last ? begin : stream.pages[p + 1] * page_size_);
+        for (std::size_t at = bucket; at < next_.size(); at += buckets()) {
+            const Pages& pages = stream_pages_[at];
+            for (std::size_t p = 0; p < pages.size(); ++p) {
+                const bool last = p + 1 == pages.size();
+                const std::size_t begin = pages[p] * page_size();
+                const std::size_t end = last ? next_[at] : begin + page_size();
+                const RankedTet* const soon = tets_.data() + (last ? begin : pages[p + 1] * page_size());
                 for (std::size_t i = begin; i < end; ++i) {
                     prefetch(soon + (i - begin));
                     f(tets_[i], has_origins() ? origins_[i] : TetOrigin{});
@@ -87,7 +91,7 @@ public:
 
     std::uint64_t size() const { return size_; }
     RankedTet& sorted(std::size_t bucket, std::size_t i) {
-        return tets_[buckets_[bucket].pages[i / page_size_] * page_size_ + i % page_size_];
+        return tets_[buckets_[bucket].pages[i / page_size()] * page_size() + i % page_size()];
     }
     void copy_tets(std::uint64_t first, std::span<RankedTet> out) const {
         for_pieces(first, out.size(), [&](std::size_t position, std::size_t at, std::size_t count) {
@@ -112,10 +116,12 @@ private:
     struct Bucket {
         std::uint64_t first = 0; ///< number of its first tet
         std::size_t size = 0;
-        std::vector<std::uint32_t> pages;
+        Pages pages;
     };
 
-    void add_page(Stream& stream);
+    std::size_t page_size() const { return std::size_t{1} << page_bits_; }
+    /// Returns where it begins.
+    std::size_t add_page(Pages& pages);
 
     /// Calls f(position, at, count) for the tets [first, first + size), wherever they lie: `at` counts from 0.
     template <class F>
@@ -128,19 +134,21 @@ private:
                 ++bucket;
                 continue;
             }
-            const std::size_t in_page = inside % page_size_;
-            const std::size_t count = std::min({page_size_ - in_page, bucket->size - inside, size - at});
-            f(bucket->pages[inside / page_size_] * page_size_ + in_page, at, count);
+            const std::size_t in_page = inside % page_size();
+            const std::size_t count = std::min({page_size() - in_page, bucket->size - inside, size - at});
+            f(bucket->pages[inside / page_size()] * page_size() + in_page, at, count);
             at += count;
         }
     }
 
-    unsigned shift_ = 0; ///< from a rank to its bucket
-    std::size_t page_size_ = 1;
+    unsigned shift_ = 0;     ///< from a rank to its bucket
+    unsigned page_bits_ = 0; ///< a page has 2^page_bits_ tets
     Buffer<RankedTet> tets_;    ///< page by page
     Buffer<TetOrigin> origins_; ///< beside them, or empty
     std::size_t pages_ = 0;     ///< taken so far, by all writers
-    std::vector<Stream> streams_; ///< by writer, then bucket
+    // Streams, by writer, then bucket. What every tet needs stands close together, in a processor's first cache.
+    std::vector<std::size_t> next_;   ///< position of its next tet; at the beginning of a page: in a page still to be added
+    std::vector<Pages> stream_pages_;
     std::vector<Bucket> buckets_;
     std::uint64_t size_ = 0;
 };

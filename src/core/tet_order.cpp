@@ -67,33 +67,32 @@ std::size_t writers_for(std::size_t cells) {
     return std::min(std::max(threads, std::min<std::size_t>(8 * threads, 128)), 1 + (cells >> 16));
 }
 
-/// Deals out the tets of the cells [begin, end). Some at a time: while one batch is gathered, the ranks of its points are on
-/// their way from memory.
+/// Deals out the tets of the cells [begin, end). Each waits for a while behind others, as the ranks of its points are on their
+/// way from memory.
 void deal_out(const PointReader& points, const CellReader& cells, std::size_t begin, std::size_t end,
               const Buffer<std::uint32_t>& rank_of, TetBuckets::Writer& writer) {
     struct Waiting {
         Tet corners;
         TetOrigin origin;
     };
-    std::array<Waiting, 32> batch;
-    std::size_t size = 0;
-    const auto flush = [&] {
-        for (const Waiting& waiting : std::span(batch.data(), size)) {
-            RankedTet tet;
-            for (std::size_t k = 0; k < 4; ++k) tet[k] = rank_of[waiting.corners[k]];
-            writer.put(tet, lowest_rank(tet), waiting.origin);
-        }
-        size = 0;
+    constexpr std::size_t most = 32;
+    std::array<Waiting, most> queue;
+    std::size_t arrived = 0;
+    const auto deal = [&](const Waiting& waiting) {
+        RankedTet tet;
+        for (std::size_t k = 0; k < 4; ++k) tet[k] = rank_of[waiting.corners[k]];
+        writer.put(tet, lowest_rank(tet), waiting.origin);
     };
     cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
         const bool cell_negative = !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(points, pieces) < 0;
         for (const Tet& corners : pieces) {
             for (const std::uint64_t corner : corners) __builtin_prefetch(&rank_of[corner]);
-            batch[size++] = {corners, TetOrigin::make(cell, cell_negative)};
-            if (size == batch.size()) flush();
+            Waiting& place = queue[arrived % most];
+            if (arrived++ >= most) deal(place);
+            place = {corners, TetOrigin::make(cell, cell_negative)};
         }
     });
-    flush();
+    for (std::size_t i = arrived - std::min(arrived, most); i < arrived; ++i) deal(queue[i % most]);
 }
 
 Error cancelled() { return Error{ErrorCode::cancelled, "packing was cancelled"}; }
