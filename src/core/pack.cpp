@@ -31,12 +31,13 @@ Result<void> check_field(const PointField& field, std::uint64_t points) {
 namespace {
 
 /// At the peak, while clusters are grown: the sorted tets (16 B, some pages half empty) and what is grown so far; before, as
-/// points are sorted, or later, as seams are found, about as much. And what each thread needs for the block at hand.
+/// points are sorted, or later, as seams are found, about as much. And what each thread needs for the bucket and the block
+/// at hand.
 std::uint64_t packing_memory(std::uint64_t tets, const Grid& grid, bool origins) {
-    constexpr std::uint64_t a_thread = 3'000'000;
+    constexpr std::uint64_t a_thread = 500'000, a_block = 3'000'000;
     const std::uint64_t a_point = grid.points.type() == ScalarType::float32 ? 38 : 50;
     return (origins ? 30 : 22) * tets + a_point * grid.points.tuples() +
-           a_thread * static_cast<std::uint64_t>(threads_here());
+           a_thread * static_cast<std::uint64_t>(threads_here()) + a_block * blocks_at_once(tets);
 }
 
 void measure(Packed& packed) {

@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <mutex>
@@ -28,23 +29,32 @@ BlockClusters grow_block(TetBuckets& tets, std::uint64_t first, std::size_t size
     return block;
 }
 
+std::size_t blocks_for(std::uint64_t tets) { return (tets + tets_a_block - 1) / tets_a_block; }
+
 std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / group_size; }
 
 } // namespace
 
+std::size_t blocks_at_once(std::uint64_t tets) {
+    const std::size_t most = std::max<std::size_t>(4, blocks_for(tets) / 5);
+    return std::min(static_cast<std::size_t>(threads_here()), most);
+}
+
 Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, const Progress& progress) {
     const bool source_cells = order.tets.has_origins();
     const std::size_t count = order.tets.size();
-    const std::size_t block_count = (count + tets_a_block - 1) / tets_a_block;
+    const std::size_t block_count = blocks_for(count);
     std::vector<BlockClusters> blocks(block_count);
-    std::atomic<std::size_t> finished{0};
+    std::atomic<std::size_t> next_block{0}, finished{0};
     std::mutex reporting;
-    parallel_each(block_count, 1, [&](std::size_t b) {
-        if (progress.cancelled()) return;
-        blocks[b] = grow_block(order.tets, b * tets_a_block, std::min(tets_a_block, count - b * tets_a_block));
-        const std::size_t done = ++finished;
-        if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
-            progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
+    parallel_each(blocks_at_once(count), 1, [&](std::size_t) {
+        for (std::size_t b = next_block++; b < block_count; b = next_block++) {
+            if (progress.cancelled()) return;
+            blocks[b] = grow_block(order.tets, b * tets_a_block, std::min(tets_a_block, count - b * tets_a_block));
+            const std::size_t done = ++finished;
+            if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
+                progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
+        }
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};
     order.tets.drop_tets();

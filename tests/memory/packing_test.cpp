@@ -27,5 +27,11 @@ TEST(PackingMemory, StaysBelowFortyBytesATet) {
     }
 }
 
+TEST(PackingMemory, StaysBelowFortyBytesATetWithManyThreads) {
+    PackOptions options;
+    options.threads = 64;
+    EXPECT_LE(bytes_a_tet(made_grid("kuhn", 72, {"gyroid"}), options), 40); // 34 blocks, over two million tets
+}
+
 } // namespace
 } // namespace isotet::test
