@@ -203,10 +203,13 @@ void RenderScene::dress() {
 }
 
 void RenderScene::fit(Camera& camera, double aspect) const {
-    if (command_.orbit > 0) camera.fit_ball(input_.bounds, aspect);
-    else if (input_.surface) camera.fit(*input_.surface, aspect);
-    else if (input_.boundary && !command_.outline) camera.fit(*input_.boundary, aspect);
-    else camera.fit(input_.bounds, aspect);
+    const auto fit_to = [&](const auto& all) {
+        if (command_.orbit > 0) camera.fit_orbit(all, aspect);
+        else camera.fit(all, aspect);
+    };
+    if (input_.surface && !command_.outline) fit_to(*input_.surface);
+    else if (input_.boundary && !command_.outline) fit_to(*input_.boundary);
+    else fit_to(input_.bounds);
 }
 
 std::vector<std::string> RenderScene::isovalue_texts() const {

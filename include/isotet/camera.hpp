@@ -61,11 +61,15 @@ struct Camera {
     /// Cost   one pass
     void fit(const Surface& surface, double aspect, double margin = 0.04);
 
-    /// Sees the ball around a box, which is as large from all sides: for going around.
-    void fit_ball(const Box& box, double aspect, double margin = 0.04);
+    /// The same for all cameras that orbit(azimuth, 0) leads to: at one distance, as small as lets each of them see all. A
+    /// camera that has gone around and fits again keeps its distance, as long as it looks up or down by less than 45 degrees;
+    /// the axis that it goes around is in the middle of the picture.
+    /// Cost   as fit()
+    void fit_orbit(const Box& box, double aspect, double margin = 0.04);
+    void fit_orbit(const Surface& surface, double aspect, double margin = 0.04);
 
-    /// Goes around the target: `azimuth` degrees to the right about `up`, then `elevation` degrees upwards, as far as just below
-    /// the pole.
+    /// Goes around the target: `azimuth` degrees to the right about the axis of the world that is nearest to `up`, then
+    /// `elevation` degrees upwards, as far as just below the pole.
     void orbit(double azimuth, double elevation);
 
     /// Shows things `factor` times as large.

@@ -46,15 +46,67 @@ std::array<double, 3> middle_of(const Box& box) {
     return middle;
 }
 
-/// Largest and smallest sums that decide how far away a camera must be for an axis of the picture.
-struct Extent {
+/// The axis of the world that is up the most: a picture whose horizon is level keeps it when the camera goes about this one.
+std::array<double, 3> pole_of(const std::array<double, 3>& up) {
+    const auto steepest =
+        std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    std::array<double, 3> pole{};
+    pole[static_cast<std::size_t>(steepest - up.begin())] = std::copysign(1.0, *steepest);
+    return pole;
+}
+
+/// How far something reaches along an axis of the picture, to its two ends, where lines of sight spread by a slope: the place
+/// along the axis, plus slope times the way towards the eye.
+struct Reach {
     double right = -INFINITY, left = -INFINITY;
-    void add(double place, double towards_eye, double slope) {
-        right = std::max(right, place + towards_eye * slope);
-        left = std::max(left, -place + towards_eye * slope);
+
+    void add(const Reach& other) {
+        right = std::max(right, other.right);
+        left = std::max(left, other.left);
     }
-    double distance(double slope) const { return (right + left) / (2 * slope); }
+    double distance(double slope) const { return (right + left) / (2 * slope); } ///< that the eye must keep
     double middle() const { return (right - left) / 2; }
+};
+
+/// Points as one camera sees them.
+struct FromOneSide {
+    std::array<double, 3> right, up, direction;
+
+    explicit FromOneSide(const Camera& camera)
+        : right(cross(camera.up, camera.direction)), up(camera.up), direction(camera.direction) {}
+    Reach across(const std::array<double, 3>& p, double slope) const { return reach(dot(p, right), p, slope); }
+    Reach upwards(const std::array<double, 3>& p, double slope) const { return reach(dot(p, up), p, slope); }
+
+private:
+    Reach reach(double place, const std::array<double, 3>& p, double slope) const {
+        const double nearer = dot(p, direction) * slope;
+        return {place + nearer, -place + nearer};
+    }
+};
+
+/// Points as a camera sees them that goes all around the pole: each is a circle about it, and reaches as far as the farthest
+/// point of the circle. On a circle of radius r, a cos(t) + b sin(t) is at most r times the length of (a, b).
+struct FromAllSides {
+    std::array<double, 3> pole;
+    double sine, cosine; ///< of the angle between direction and horizon
+
+    explicit FromAllSides(const Camera& camera)
+        : pole(pole_of(camera.up)), sine(dot(camera.direction, pole)), cosine(dot(camera.up, pole)) {}
+    Reach across(const std::array<double, 3>& p, double slope) const {
+        const double reach = radius(p) * std::hypot(1, slope * cosine) + dot(p, pole) * slope * sine;
+        return {reach, reach};
+    }
+    Reach upwards(const std::array<double, 3>& p, double slope) const {
+        const double r = radius(p), height = dot(p, pole);
+        return {height * (slope * sine + cosine) + r * std::abs(slope * cosine - sine),
+                height * (slope * sine - cosine) + r * std::abs(slope * cosine + sine)};
+    }
+
+private:
+    double radius(const std::array<double, 3>& p) const {
+        const std::array<double, 3> away = plus(p, pole, -dot(p, pole));
+        return std::sqrt(dot(away, away));
+    }
 };
 
 } // namespace
@@ -79,21 +131,20 @@ Camera camera_of(View view, Projection projection) {
 namespace {
 
 /// Fits a camera to points, which `each` hands out one by one, relative to the middle of their box.
-template <class EachPoint>
+template <class Sight, class EachPoint>
 void fit_to(Camera& camera, const Box& around, const EachPoint& each, double aspect, double margin) {
-    const std::array<double, 3> right = cross(camera.up, camera.direction);
+    const Sight sight(camera);
     double widest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) widest = std::max(widest, around.upper[axis] - around.lower[axis]);
     if (!(widest > 0)) widest = 1; // a single point still has a picture
     const double part = 1 - 2 * margin;
     const double slope = std::tan(radians(camera.angle) / 2) * part;
-    Extent across, upwards, flat_across, flat_upwards;
+    Reach across, upwards, flat_across, flat_upwards;
     each([&](const std::array<double, 3>& p) {
-        const double x = dot(p, right), y = dot(p, camera.up), z = dot(p, camera.direction);
-        across.add(x, z, slope * aspect);
-        upwards.add(y, z, slope);
-        flat_across.add(x, z, 0);
-        flat_upwards.add(y, z, 0);
+        across.add(sight.across(p, slope * aspect));
+        upwards.add(sight.upwards(p, slope));
+        flat_across.add(sight.across(p, 0));
+        flat_upwards.add(sight.upwards(p, 0));
     });
     const bool flat = camera.projection == Projection::parallel;
     const double extent = std::max(
@@ -101,13 +152,13 @@ void fit_to(Camera& camera, const Box& around, const EachPoint& each, double asp
     camera.height = extent / part;
     camera.distance =
         flat ? 2 * widest : std::max({across.distance(slope * aspect), upwards.distance(slope), widest * 1e-3});
-    camera.target = plus(plus(middle_of(around), right, (flat ? flat_across : across).middle()), camera.up,
-                         (flat ? flat_upwards : upwards).middle());
+    camera.target =
+        plus(plus(middle_of(around), cross(camera.up, camera.direction), (flat ? flat_across : across).middle()),
+             camera.up, (flat ? flat_upwards : upwards).middle());
 }
 
-} // namespace
-
-void Camera::fit(const Box& box, double aspect, double margin) {
+template <class Sight>
+void fit_to(Camera& camera, const Box& box, double aspect, double margin) {
     const Box around = box.empty() ? Box{{0, 0, 0}, {0, 0, 0}} : box;
     const std::array<double, 3> middle = middle_of(around);
     const auto corners = [&](const auto& add) {
@@ -118,12 +169,13 @@ void Camera::fit(const Box& box, double aspect, double margin) {
             add(p);
         }
     };
-    fit_to(*this, around, corners, aspect, margin);
+    fit_to<Sight>(camera, around, corners, aspect, margin);
 }
 
-void Camera::fit(const Surface& surface, double aspect, double margin) {
+template <class Sight>
+void fit_to(Camera& camera, const Surface& surface, double aspect, double margin) {
     const Box around = bounds_of(surface);
-    if (around.empty()) return fit(around, aspect, margin);
+    if (around.empty()) return fit_to<Sight>(camera, around, aspect, margin);
     const std::array<double, 3> middle = middle_of(around);
     const auto vertices = [&](const auto& add) {
         surface.positions.visit([&](auto positions) {
@@ -135,27 +187,27 @@ void Camera::fit(const Surface& surface, double aspect, double margin) {
             }
         });
     };
-    fit_to(*this, around, vertices, aspect, margin);
+    fit_to<Sight>(camera, around, vertices, aspect, margin);
 }
 
-void Camera::fit_ball(const Box& box, double aspect, double margin) {
-    const Box around = box.empty() ? Box{{0, 0, 0}, {0, 0, 0}} : box;
-    target = middle_of(around);
-    double radius = std::hypot(around.upper[0] - target[0], around.upper[1] - target[1], around.upper[2] - target[2]);
-    if (!(radius > 0)) radius = 0.5; // a single point still has a picture
-    const double part = 1 - 2 * margin, narrow = std::min(aspect, 1.0);
-    height = 2 * radius / (part * narrow);
-    distance = projection == Projection::parallel
-                   ? 4 * radius
-                   : radius / std::sin(std::atan(std::tan(radians(angle) / 2) * part * narrow));
+} // namespace
+
+void Camera::fit(const Box& box, double aspect, double margin) { fit_to<FromOneSide>(*this, box, aspect, margin); }
+
+void Camera::fit(const Surface& surface, double aspect, double margin) {
+    fit_to<FromOneSide>(*this, surface, aspect, margin);
+}
+
+void Camera::fit_orbit(const Box& box, double aspect, double margin) {
+    fit_to<FromAllSides>(*this, box, aspect, margin);
+}
+
+void Camera::fit_orbit(const Surface& surface, double aspect, double margin) {
+    fit_to<FromAllSides>(*this, surface, aspect, margin);
 }
 
 void Camera::orbit(double azimuth, double elevation) {
-    // About the axis of the world that is up the most: a picture whose horizon is level keeps it.
-    const auto steepest =
-        std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    std::array<double, 3> pole{};
-    pole[static_cast<std::size_t>(steepest - up.begin())] = std::copysign(1.0, *steepest);
+    const std::array<double, 3> pole = pole_of(up);
     direction = turned(direction, pole, radians(azimuth));
     up = turned(up, pole, radians(azimuth));
     constexpr double nearly_90 = 89.9;

@@ -119,25 +119,47 @@ TEST(Views, HaveNamesThatLeadBack) {
     EXPECT_FALSE(parse_view("x"));
 }
 
-TEST(Camera, SeeABallAsLargeFromAllSides) {
-    const Box box{{-3, 1, 0}, {5, 2, 0.5}};
-    for (const Projection projection : {Projection::perspective, Projection::parallel})
-        for (const double aspect : {0.5, 1.0, 2.0}) {
-            Camera first = camera_of(View::iso, projection);
-            first.fit_ball(box, aspect);
-            for (double azimuth = 0; azimuth < 360; azimuth += 30) {
-                Camera camera = camera_of(View::iso, projection);
-                camera.orbit(azimuth, 0);
-                camera.fit_ball(box, aspect);
-                EXPECT_EQ(camera.distance, first.distance);
-                EXPECT_EQ(camera.height, first.height);
-                const Places places = places_of(camera, aspect, box);
-                EXPECT_GE(std::min(places.left, places.lower), -0.93);
-                EXPECT_LE(std::max(places.right, places.upper), 0.93);
+/// A needle at a slant and something beside it, far from the middle of their box.
+Surface slanting_surface() {
+    Surface surface;
+    surface.positions = Array::own(std::vector<float>{-3, 1, 0, 5, 2, 0.5F, 4.5F, 1, -2, 4, 1.5F, 0.25F}, 3);
+    surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2, 1, 2, 3}, 3);
+    return surface;
+}
+
+TEST(Camera, GoesAroundAtTheLeastDistanceThatShowsAllFromEverySide) {
+    const Box box{{-3, 1, -2}, {5, 2, 0.5}};
+    const Surface surface = slanting_surface();
+    for (const Projection projection : {Projection::perspective, Projection::parallel}) {
+        for (const View view : all_views) {
+            for (const double aspect : {0.5, 1.0, 2.0}) {
+                for (const double elevation : {-40.0, 0.0, 15.0}) {
+                    Camera first = camera_of(view, projection);
+                    first.orbit(0, elevation);
+                    first.fit_orbit(box, aspect, 0.05);
+                    double farthest = 0;
+                    for (int azimuth = 0; azimuth < 360; ++azimuth) {
+                        Camera camera = camera_of(view, projection);
+                        camera.orbit(azimuth, elevation);
+                        camera.fit_orbit(box, aspect, 0.05);
+                        EXPECT_NEAR(camera.distance, first.distance, 1e-9 * first.distance);
+                        EXPECT_NEAR(camera.height, first.height, 1e-9 * first.height);
+                        const Places places = places_of(camera, aspect, box);
+                        farthest = std::max({farthest, -places.left, places.right, -places.lower, places.upper});
+                    }
+                    EXPECT_LE(farthest, 0.9 + 1e-9) << name_of(view) << elevation;
+                    EXPECT_GE(farthest, 0.899) << name_of(view) << elevation;
+                    Camera closer = camera_of(view, projection);
+                    closer.orbit(0, elevation);
+                    closer.fit_orbit(surface, aspect, 0.05);
+                    EXPECT_LE(closer.distance, first.distance * (1 + 1e-9)) << "a surface may be smaller than its box";
+                    EXPECT_LE(closer.height, first.height * (1 + 1e-9));
+                }
             }
         }
+    }
     Camera camera;
-    camera.fit_ball({}, 1);
+    camera.fit_orbit(Box{}, 1);
     EXPECT_GT(camera.distance, 0);
 }
 
