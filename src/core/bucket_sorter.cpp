@@ -73,22 +73,19 @@ struct Ascending {
     bool odd; ///< whether the corners had the other orientation before
 
     Ascending(const RankedTet& tet, const std::uint64_t* user_points) {
-        // A sorting network without branches: of what they depend nobody can predict. The lowest bits say which corner it was.
-        std::array<std::uint64_t, 4> keys;
-        for (std::size_t k = 0; k < 4; ++k) keys[k] = user_points[tet[k]] << 2 | k;
+        // Each corner stands behind those that are lower. Without branches: on what they depend nobody can predict.
+        std::array<std::uint64_t, 4> users;
+        for (std::size_t k = 0; k < 4; ++k) users[k] = user_points[tet[k]];
+        std::array<std::uint32_t, 4> places{};
         odd = false;
-        const auto order = [&](std::size_t a, std::size_t b) {
-            const std::uint64_t x = keys[a], y = keys[b];
-            odd ^= y < x;
-            keys[a] = std::min(x, y);
-            keys[b] = std::max(x, y);
-        };
-        order(0, 1);
-        order(2, 3);
-        order(0, 2);
-        order(1, 3);
-        order(1, 2);
-        for (std::size_t k = 0; k < 4; ++k) ranks[k] = tet[keys[k] & 3];
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = a + 1; b < 4; ++b) {
+                const bool exchanged = users[b] < users[a];
+                odd ^= exchanged;
+                places[a] += exchanged;
+                places[b] += !exchanged;
+            }
+        for (std::size_t k = 0; k < 4; ++k) ranks[places[k]] = tet[k];
     }
     RankedTet stored(bool exchange) const {
         return {ranks[0], ranks[1], ranks[exchange ? 3 : 2], ranks[exchange ? 2 : 3]};

@@ -58,28 +58,31 @@ void number_points(std::uint64_t user_points, Draft& draft) {
 
     // Local points in packed order, and the tets' corners with them.
     parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
-        struct Local {
-            PointRef ref;
-            std::uint8_t before;
-        };
-        Local locals[max_cluster_points];
+        std::uint64_t foreign[max_cluster_points]; // by PointRef; the lowest byte is the place so far
+        std::uint8_t after[max_cluster_points];
+        std::size_t foreign_count = 0;
         const std::size_t count = draft.local_count(c);
         std::uint64_t* const list = draft.locals.data() + draft.first_local[c];
         ClusterHeader& header = packed.headers[c];
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint64_t rank = list[k];
-            locals[k] = {PointRef::make(owners[rank], place[rank]), static_cast<std::uint8_t>(k)};
-            if (owners[rank] != c) continue;
-            const std::uint64_t point = header.first_point + place[rank], user = draft.point_of[rank];
+            const PointRef ref = PointRef::make(owners[rank], place[rank]);
+            if (ref.owner() != c) {
+                foreign[foreign_count++] = ref.value << 8 | k;
+                continue;
+            }
+            after[k] = static_cast<std::uint8_t>(header.foreign_points + ref.index());
+            const std::uint64_t point = header.first_point + ref.index(), user = draft.point_of[rank];
             if (wide) packed.wide_point_ids[point] = user;
             else packed.point_ids[point] = static_cast<std::uint32_t>(user);
         }
-        std::sort(locals, locals + count, [](const Local& a, const Local& b) { return a.ref.value < b.ref.value; });
-        std::uint8_t after[max_cluster_points];
-        for (std::size_t k = 0; k < count; ++k) {
-            after[locals[k].before] = static_cast<std::uint8_t>(k);
-            list[k] = locals[k].ref.value;
+        std::sort(foreign, foreign + foreign_count);
+        for (std::size_t k = 0; k < foreign_count; ++k) {
+            after[foreign[k] & 0xff] = static_cast<std::uint8_t>(k);
+            list[k] = foreign[k] >> 8;
         }
+        for (std::size_t k = 0; k < header.own_points; ++k) // own ones last: no owner is a later cluster
+            list[foreign_count + k] = PointRef::make(static_cast<std::uint32_t>(c), static_cast<std::uint8_t>(k)).value;
         StoredTet* tets = packed.tets.data() + group_size * std::size_t{header.first_group};
         const std::size_t padded = (header.tets + group_size - 1) / group_size * group_size;
         for (std::size_t i = 0; i < padded; ++i)

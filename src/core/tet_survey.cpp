@@ -78,7 +78,7 @@ TetCounts count_tets(const CellReader& cells) {
         cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
             tets += static_cast<std::uint64_t>(pieces.count);
             collapsed += static_cast<std::uint64_t>(pieces.collapsed);
-            left_out += !is_contoured(cells.type(cell));
+            left_out += !cells.only_tets() && !is_contoured(cells.type(cell));
             for (const Tet& tet : pieces)
                 for (const std::uint64_t corner : tet)
                     std::atomic_ref<std::uint8_t>(counts.used[corner]).store(1, std::memory_order_relaxed);
