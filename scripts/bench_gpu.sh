@@ -33,6 +33,22 @@ libraries_to_carry() {
     echo "$loader"
 }
 
+# Takes options with their values into device, seconds and tets; the first that is none of them, and all behind it, are
+# left_over. run.sh has it, too.
+read_options() {
+    device='' seconds='' tets=1000000000
+    while (($# > 1)); do
+        case $1 in
+        --device) device=$2 ;;
+        --seconds) seconds=$2 ;;
+        --max-tets) tets=$2 ;;
+        *) break ;;
+        esac
+        shift 2
+    done
+    left_over=("$@")
+}
+
 carry() {
     local folder=$1 libraries
     libraries=$(libraries_to_carry) || return
@@ -40,53 +56,38 @@ carry() {
     # shellcheck disable=SC2086 # one word a library
     cp -L $libraries "$folder/lib" || return
     install "$program" "$folder" || return
-    cat >"$folder/run.sh" <<'RUN' || return
+    {
+        cat <<'RUN'
 #!/usr/bin/env bash
 # run.sh [--device DEVICE] [--seconds N] [--max-tets N]: as bench_gpu.sh, with what lies beside it.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-device='' seconds=400 tets=1000000000
-while (($# > 1)); do
-    case $1 in
-    --device) device=$2 ;;
-    --seconds) seconds=$2 ;;
-    --max-tets) tets=$2 ;;
-    *) break ;;
-    esac
-    shift 2
-done
-if (($# > 0)); then
-    echo "run.sh: '$1' is no option, or lacks its value" >&2
+RUN
+        declare -f read_options
+        cat <<'RUN'
+read_options "$@"
+if ((${#left_over[@]} > 0)); then
+    echo "run.sh: '${left_over[0]}' is no option, or lacks its value" >&2
     exit 2
 fi
 # The machine's own loader, where there is one, comes last: it would do as well.
 export LD_LIBRARY_PATH=$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-exec timeout 480 "$here/isotet_gpu_bench" "$device" "$seconds" "$tets"
+exec timeout 480 "$here/isotet_gpu_bench" "$device" "${seconds:-400}" "$tets"
 RUN
+    } >"$folder/run.sh" || return
     chmod +x "$folder/run.sh"
     say "gpu_bench: lies in $folder, $(du -sh "$folder" | cut -f 1)"
 }
 
-device='' seconds='' tets=1000000000 folder=''
-while (($# > 0)); do
-    case $1 in
-    -h | --help) usage && exit 0 ;;
-    --device | --seconds | --max-tets | --carry)
-        if (($# < 2)); then
-            usage >&2
-            exit 2
-        fi
-        case $1 in
-        --device) device=$2 ;;
-        --seconds) seconds=$2 ;;
-        --max-tets) tets=$2 ;;
-        *) folder=$2 ;;
-        esac
-        shift 2
-        ;;
+folder=''
+read_options "$@"
+if ((${#left_over[@]} > 0)); then
+    case ${#left_over[@]}${left_over[0]} in
+    1-h | 1--help) usage && exit 0 ;;
+    2--carry) folder=${left_over[1]} ;;
     *) usage >&2 && exit 2 ;;
     esac
-done
+fi
 
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
