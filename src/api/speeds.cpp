@@ -58,9 +58,10 @@ Result<double> best_of(int runs, const Progress& progress, const std::function<R
     return best;
 }
 
-/// The three parts of what a surface costs: c + tets t + triangles f.
+/// The three parts of what a surface costs: c + tets t + triangles f; and what one that cuts much of the large grid costs.
 struct Parts {
     double call = 0, tet = 0, triangle = 0;
+    double large_surface = 0;
 };
 
 /// `seconds(sample, isovalue)` takes the time of a surface, and sets `triangles`.
@@ -75,7 +76,7 @@ measure_parts(const Sample& small, const Sample& large,
     const Result<double> full = seconds(large, cuts_much, triangles);
     if (!full) return full.error();
     return Parts{*call, std::max(0.0, *empty - *call) / large.tets,
-                 std::max(0.0, *full - *empty) / std::max(1.0, triangles)};
+                 std::max(0.0, *full - *empty) / std::max(1.0, triangles), *full};
 }
 
 } // namespace
@@ -122,18 +123,12 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
         return made ? Result<void>() : made.error();
     });
     if (!packing_gradients) return packing_gradients.error();
-    const auto once_with = [&](Normals normals) {
-        return best_of(2, progress, [&]() -> Result<void> {
-            OnceOptions once_options;
-            once_options.extract.threads = threads;
-            once_options.extract.normals = normals;
-            const auto once = extract_once(large->grid, large->field, std::span(&cuts_much, 1), once_options, progress);
-            return once ? Result<void>() : once.error();
-        });
-    };
-    const Result<double> brute_plain = once_with(Normals::none);
-    if (!brute_plain) return brute_plain.error();
-    const Result<double> brute_gradients = once_with(Normals::gradient);
+    const Result<double> brute_gradients = best_of(2, progress, [&]() -> Result<void> {
+        OnceOptions with_gradients{options, Precision::single};
+        with_gradients.extract.normals = Normals::gradient;
+        const auto once = extract_once(large->grid, large->field, std::span(&cuts_much, 1), with_gradients, progress);
+        return once ? Result<void>() : once.error();
+    });
     if (!brute_gradients) return brute_gradients.error();
     const Result<Parts> brute =
         measure_parts(*small, *large, [&](const Sample& sample, double isovalue, double& triangles) {
@@ -164,7 +159,7 @@ Result<Speeds> measure_speeds(std::uint64_t side, int threads, const Progress& p
                   .brute_call = brute->call,
                   .brute_tet = brute->tet,
                   .brute_triangle = brute->triangle,
-                  .brute_gradient_tet = std::max(0.0, *brute_gradients - *brute_plain) / large->tets,
+                  .brute_gradient_tet = std::max(0.0, *brute_gradients - brute->large_surface) / large->tets,
                   .clusters_call = clusters->call,
                   .clusters_tet = clusters->tet,
                   .clusters_triangle = clusters->triangle};

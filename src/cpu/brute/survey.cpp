@@ -2,11 +2,11 @@
 // survey_points(): ranges, magnitudes and bounds, in lanes that the compiler can turn into vectors.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include "core/bounds.hpp"
 #include "core/orientation.hpp"
 #include "core/value_summary.hpp"
 #include "cpu/brute/points.hpp"
@@ -16,8 +16,6 @@ namespace isotet::cpu::brute {
 namespace {
 
 constexpr std::size_t grain = 1 << 15;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of all values of the points [begin, end) that count.
 template <class T>
@@ -86,25 +84,11 @@ StoredField survey_field(const Array& values, const Sides* seen, Precision preci
 }
 
 /// Bounds of sound points, and whether there are others.
-struct Bounds {
-    core::Point lower, upper;
+struct Bounds : core::Bounds {
     bool has_unsound = false;
 
-    Bounds() {
-        lower.fill(infinity);
-        upper.fill(-infinity);
-    }
-    void add(const core::Point& p) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            lower[axis] = std::min(lower[axis], p[axis]);
-            upper[axis] = std::max(upper[axis], p[axis]);
-        }
-    }
     void combine(const Bounds& other) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            lower[axis] = std::min(lower[axis], other.lower[axis]);
-            upper[axis] = std::max(upper[axis], other.upper[axis]);
-        }
+        core::Bounds::combine(other);
         has_unsound |= other.has_unsound;
     }
 };
