@@ -2,7 +2,6 @@
 // `isotet bench`: methods and filters against each other, on a grid of the user or on those of the paper's Figure 4.
 #include <algorithm>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +17,7 @@
 #include "json_output.hpp"
 #include "output_paths.hpp"
 #include "read_field.hpp"
+#include "thread_count.hpp"
 #include "text_file.hpp"
 #include "varied_field.hpp"
 
@@ -184,8 +184,7 @@ Result<void> BenchRun::run() {
         !paths)
         return paths;
     numbers_.command = &command_;
-    numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads)
-                                                   : std::max(1U, std::thread::hardware_concurrency());
+    numbers_.threads = thread_count(command_.common.threads);
     if (Result<void> opened = open_device(); !opened) return opened;
     if (Result<void> chosen = choose_pairs(); !chosen) return chosen;
     return command_.paper ? run_paper() : run_file();

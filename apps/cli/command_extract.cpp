@@ -2,7 +2,6 @@
 // `isotet extract`: from a grid file to surface files.
 #include <algorithm>
 #include <span>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -22,14 +21,12 @@
 #include "output_paths.hpp"
 #include "packed_series.hpp"
 #include "stopwatch.hpp"
+#include "thread_count.hpp"
 #include "way_choice.hpp"
 
 namespace isotet::cli {
 
 namespace {
-
-/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written.
-constexpr std::size_t isovalues_a_pass = 8;
 
 /// One run of the command: what its steps share.
 class ExtractRun {
@@ -44,6 +41,10 @@ private:
     Result<void> open();
     Result<void> load(std::size_t step);
     Result<void> choose(const Grid& grid);
+    bool goes_into_one_file() const {
+        return !plan_.names.none() && !plan_.names.by_value();
+    } ///< of a step, all surfaces
+    std::size_t isovalues_together(std::size_t isovalues) const;
     Result<void> pack(const Grid& grid);
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
@@ -92,8 +93,7 @@ Result<void> ExtractRun::open() {
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.precision = command_.precision;
-    numbers_.threads = command_.common.threads > 0 ? static_cast<unsigned>(command_.common.threads)
-                                                   : std::max(1U, std::thread::hardware_concurrency());
+    numbers_.threads = thread_count(command_.common.threads);
     numbers_.read_seconds = reading.seconds();
     return {};
 }
@@ -122,14 +122,29 @@ Result<void> ExtractRun::load(std::size_t step) {
     if (numbers_.surfaces.empty())
         if (Result<void> chosen = choose(*grid); !chosen) return chosen;
     if (!numbers_.choice.brute()) {
-        if (Result<void> packed = pack(*grid); !packed) return packed;
-    } else {
+        const Result<void> packed = pack(*grid);
+        const bool first = numbers_.surfaces.empty();
+        if (!packed && !(first && numbers_.choice.takes_brute_instead(packed.error()))) return packed;
+        if (!packed) {
+            console_.note(packed.error().message + ": --method brute was taken instead");
+            extractor_.close();
+            series_.emplace(plan_.pack, plan_.steps.size());
+        }
+    }
+    if (numbers_.choice.brute()) {
         grid_ = *std::move(grid);
         coarse_tets_ = 0;
         if (command_.isovalues.empty())
             if (Result<void> looked = look_at_field(); !looked) return looked;
     }
     return choose_values(step);
+}
+
+/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written. What goes into one
+/// file is in memory together anyway.
+std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
+    constexpr std::size_t a_pass = 8;
+    return goes_into_one_file() ? isovalues : a_pass;
 }
 
 /// How all steps are done, from a look at the first.
@@ -139,8 +154,7 @@ Result<void> ExtractRun::choose(const Grid& grid) {
     const std::vector<double> levels =
         levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
     const std::vector<double>& isovalues = command_.isovalues.empty() ? levels : command_.isovalues;
-    const bool one_file = !plan_.names.none() && !plan_.names.by_value();
-    const std::size_t together = one_file ? isovalues.size() : isovalues_a_pass;
+    const std::size_t together = isovalues_together(isovalues.size());
     double all = 0, most = 0;
     for (std::size_t i = 0; i < isovalues.size(); i += together) {
         double pass = 0;
@@ -311,9 +325,8 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
 
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const std::optional<double> time = time_of(source_->info(), step);
-    const bool one_file = !plan_.names.none() && !plan_.names.by_value();
-    // What goes into one file is in memory together anyway.
-    std::size_t at_once = !extractor_.in_one_pass() ? 1 : one_file ? isovalues_.size() : isovalues_a_pass;
+    const bool one_file = goes_into_one_file();
+    std::size_t at_once = extractor_.in_one_pass() ? isovalues_together(isovalues_.size()) : 1;
     std::vector<Surface> joined;
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));

@@ -2,11 +2,12 @@
 #include "kept_speeds.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -18,12 +19,29 @@
 #include "core/cache_folder.hpp"
 #include "json_output.hpp"
 #include "text_file.hpp"
+#include "thread_count.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
 constexpr std::size_t most_bytes = 1 << 20;
+/// Systems, clocks and neighbours change: after that long figures are measured again.
+constexpr std::chrono::hours oldest = std::chrono::days(90);
+constexpr const char* when = "measured"; ///< seconds since 1970
+
+std::int64_t seconds_since_1970() {
+    return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
+
+/// A time that is still to come tells nothing either: the clock was set.
+bool is_fresh(const Json& entry) {
+    if (!entry.is_object() || !entry.contains(when) || !entry[when].is_number_integer()) return false;
+    const auto measured = entry[when].get<std::int64_t>();
+    const std::int64_t now = seconds_since_1970();
+    return measured <= now && measured >= now - std::chrono::seconds(oldest).count();
+}
 
 std::filesystem::path file_of_speeds() {
     const std::filesystem::path folder = core::cache_folder();
@@ -71,10 +89,10 @@ Numbers numbers_of(DeviceSpeeds& speeds) {
 template <class AnySpeeds>
 std::optional<AnySpeeds> find(const std::string& key) {
     const Json kept = read_file()["speeds"];
-    if (!kept.contains(key)) return {};
+    if (!kept.contains(key) || !is_fresh(kept[key])) return {};
     AnySpeeds speeds;
     for (const auto& [name, number] : numbers_of(speeds)) {
-        if (!kept[key].is_object() || !kept[key].contains(name) || !kept[key][name].is_number()) return {};
+        if (!kept[key].contains(name) || !kept[key][name].is_number()) return {};
         *number = kept[key][name].template get<double>();
         if (!std::isfinite(*number) || *number < 0) return {};
     }
@@ -87,26 +105,12 @@ void add(const std::string& key, AnySpeeds speeds) {
     const std::filesystem::path path = file_of_speeds();
     if (path.empty()) return;
     Json kept = read_file();
-    Json entry = Json::object();
+    Json entry = {{when, seconds_since_1970()}};
     for (const auto& [name, number] : numbers_of(speeds)) entry[name] = *number;
     kept["speeds"][key] = std::move(entry);
     std::error_code failed;
     std::filesystem::create_directories(path.parent_path(), failed);
     (void)write_text_file(path.string(), kept.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", {});
-}
-
-/// As the system calls it; empty where it does not.
-std::string name_of_processor() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        const std::size_t colon = line.find(": ");
-        if (line.starts_with("model name") && colon != line.npos) return line.substr(colon + 2);
-    }
-    return "a processor";
-}
-
-int threads_of(int threads) {
-    return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 } // namespace
@@ -117,12 +121,35 @@ std::optional<DeviceSpeeds> kept_device_speeds(const std::string& key) { return 
 void keep(const std::string& key, const Speeds& speeds) { add(key, speeds); }
 void keep(const std::string& key, const DeviceSpeeds& speeds) { add(key, speeds); }
 
+std::string processor_name(std::istream& cpuinfo) {
+    const auto trimmed = [](std::string_view text) {
+        const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+        return begin == text.npos ? std::string() : std::string(text.substr(begin, end - begin + 1));
+    };
+    std::vector<std::string> kinds; // each once: some machines have fast processors and slow ones
+    std::string implementer;
+    for (std::string line; std::getline(cpuinfo, line);) {
+        const std::size_t colon = line.find(':');
+        if (colon == line.npos) continue;
+        const std::string key = trimmed(std::string_view(line).substr(0, colon)),
+                          value = trimmed(std::string_view(line).substr(colon + 1));
+        if (key == "CPU implementer") implementer = value;
+        std::string kind;
+        if (key == "model name" || key == "cpu" || key == "uarch") kind = value; // of x86, POWER, RISC-V
+        else if (key == "CPU part") kind = fmt::format("ARM {}/{}", implementer, value);
+        if (!kind.empty() && std::ranges::find(kinds, kind) == kinds.end()) kinds.push_back(kind);
+    }
+    if (kinds.empty()) return "a processor";
+    return fmt::format("{}", fmt::join(kinds, " and "));
+}
+
 std::string processor_key(int threads) {
-    return json_text(fmt::format("{}, {} threads", name_of_processor(), threads_of(threads))).get<std::string>();
+    std::ifstream cpuinfo("/proc/cpuinfo");
+    return json_text(fmt::format("{}, {} threads", processor_name(cpuinfo), thread_count(threads))).get<std::string>();
 }
 
 std::string device_key(const DeviceInfo& info, int threads) {
-    return json_text(fmt::format("{}, {}, beside {} threads", info.name, info.driver, threads_of(threads)))
+    return json_text(fmt::format("{}, {}, beside {} threads", info.name, info.driver, thread_count(threads)))
         .get<std::string>();
 }
 

@@ -79,11 +79,6 @@ std::string why_of(const ChosenWay& choice, const Task& task) {
 
 } // namespace
 
-const Forecast* ChosenWay::forecast() const noexcept {
-    const auto found = std::ranges::find(forecasts, way, &Forecast::way);
-    return found == forecasts.end() ? nullptr : &*found;
-}
-
 Result<void> check_method(const ExtractCommand& command, const Extractor& extractor) {
     if (command.method != MethodChoice::brute || !extractor.wants_device()) return {};
     return Error{ErrorCode::invalid_argument,

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Measured speeds are kept between runs, and no state of their file does any harm.
 #include <cstdlib>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -75,6 +76,23 @@ TEST_F(KeptSpeeds, OfABrokenFileAreMeasuredAgain) {
     EXPECT_TRUE(kept_speeds("a"));
 }
 
+TEST_F(KeptSpeeds, AreMeasuredAgainAfterThreeMonths) {
+    constexpr long long day = 24 * 3600;
+    keep("a", speeds);
+    const std::string whole = test::content_of(folder.file("isotet/speeds.json"));
+    const std::string before_time = "\"measured\": ";
+    const std::size_t place = whole.find(before_time) + before_time.size(), end = whole.find_first_of(",\n", place);
+    const long long now = std::stoll(whole.substr(place, end - place));
+    const auto measured_at = [&](const std::string& time) {
+        put(whole.substr(0, place).append(time).append(whole, end));
+        return kept_speeds("a").has_value();
+    };
+    EXPECT_TRUE(measured_at(std::to_string(now - 89 * day)));
+    EXPECT_FALSE(measured_at(std::to_string(now - 91 * day)));
+    EXPECT_FALSE(measured_at(std::to_string(now + day))) << "the clock was set back";
+    for (const char* wrong : {"\"today\"", "null", "-1", "1e300"}) EXPECT_FALSE(measured_at(wrong)) << wrong;
+}
+
 TEST_F(KeptSpeeds, AreLostWhereNothingCanBeWritten) {
     folder.write("isotet", "a file where the folder should be");
     keep("a", speeds);
@@ -86,6 +104,22 @@ TEST_F(KeptSpeeds, AreLostWhereNothingCanBeWritten) {
     keep("a", speeds);
     EXPECT_FALSE(kept_speeds("a"));
     if (home) setenv("HOME", kept.c_str(), 1);
+}
+
+TEST(NameOfProcessor, IsWhatTheKernelTells) {
+    const auto name = [](const char* cpuinfo) {
+        std::istringstream text(cpuinfo);
+        return processor_name(text);
+    };
+    EXPECT_EQ(name("processor\t: 0\nmodel name\t: A 9000 @ 2 GHz\n\nprocessor\t: 1\nmodel name\t: A 9000 @ 2 GHz\n"),
+              "A 9000 @ 2 GHz");
+    const char* const fast_and_slow =
+        "processor\t: 0\nCPU implementer\t: 0x41\nCPU architecture: 8\nCPU part\t: 0xd05\n"
+        "\nprocessor\t: 1\nCPU implementer\t: 0x41\nCPU part\t: 0xd0c\n";
+    EXPECT_EQ(name(fast_and_slow), "ARM 0x41/0xd05 and ARM 0x41/0xd0c");
+    EXPECT_EQ(name("uarch\t\t: sifive,u74-mc\n"), "sifive,u74-mc");
+    EXPECT_EQ(name("no colon\nmodel name\t:\n"), "a processor");
+    EXPECT_EQ(name(""), "a processor");
 }
 
 TEST(KeyOfSpeeds, HasProcessorDeviceAndThreads) {
