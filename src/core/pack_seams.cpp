@@ -128,7 +128,6 @@ public:
         first_.clear();
     }
     std::span<const Neighbour> table() const { return table_; }
-    std::size_t seam_count() const { return seams_.size(); }
     std::span<const ForeignSeam> seams() const { return sorted_; } ///< once finished
 
 private:
@@ -166,14 +165,30 @@ public:
         exchange();
     }
     void write_links() {
-        for_neighbourhoods([&](std::size_t c, Neighbourhood& neighbourhood) { count_links(c, neighbourhood); });
+        number_own_seams();
+        const std::size_t n = draft_.clusters(), tasks = (n + clusters_a_task - 1) / clusters_a_task;
+        std::vector<std::vector<std::uint32_t>> lists(tasks);
+        parallel_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
+            Neighbourhood neighbourhood;
+            std::vector<std::uint32_t> list;
+            for (std::size_t task = from; task < to; ++task) {
+                list.clear();
+                for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c)
+                    add_links(c, neighbourhood, list);
+                lists[task].assign(list.begin(), list.end()); // no longer than it need be
+            }
+        });
         std::uint64_t words = 0;
         for (ClusterHeader& header : packed_.headers) {
             header.first_link = words;
             words += ClusterLinks::words(header);
         }
         packed_.links = Buffer<std::uint32_t>(words);
-        for_neighbourhoods([&](std::size_t c, Neighbourhood& neighbourhood) { write_links_of(c, neighbourhood); });
+        parallel_each(tasks, 1, [&](std::size_t task) {
+            std::copy(lists[task].begin(), lists[task].end(),
+                      packed_.links.begin() + packed_.headers[task * clusters_a_task].first_link);
+            lists[task] = {};
+        });
     }
 
 private:
@@ -327,36 +342,22 @@ private:
         }
     }
 
-    /// Calls f(cluster, an empty neighbourhood) for all clusters.
-    template <class F>
-    void for_neighbourhoods(const F& f) {
-        parallel_ranges(draft_.clusters(), clusters_a_task, [&](std::size_t begin, std::size_t end) {
-            Neighbourhood neighbourhood;
-            for (std::size_t c = begin; c < end; ++c) {
-                neighbourhood.clear();
-                for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k)
-                    neighbourhood.add_point(ref(c, k).owner());
-                f(c, neighbourhood);
-            }
+    /// Afterwards the answers to the clusters' own seams hold their numbers among these.
+    void number_own_seams() {
+        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) {
+            const auto self = static_cast<std::uint32_t>(c);
+            std::uint16_t own = 0;
+            for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k)
+                if (answers_[k].owner == self) answers_.set(k, {self, own++});
+            packed_.headers[c].own_seams = own;
         });
     }
 
-    /// Afterwards the answers to the cluster's own seams hold their numbers among these.
-    void count_links(std::size_t c, Neighbourhood& neighbourhood) {
-        std::uint16_t own = 0;
-        for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k) {
-            const Answer answer = answers_[k];
-            if (answer.owner == c) answers_.set(k, {answer.owner, own++});
-            else if (answer.owner != nobody) neighbourhood.add_seam(answer.owner, {});
-        }
+    /// Adds the links of one cluster to the list, and their numbers to its header.
+    void add_links(std::size_t c, Neighbourhood& neighbourhood, std::vector<std::uint32_t>& list) {
         ClusterHeader& header = packed_.headers[c];
-        header.neighbours = static_cast<std::uint16_t>(neighbourhood.table().size());
-        header.own_seams = own;
-        header.foreign_seams = static_cast<std::uint16_t>(neighbourhood.seam_count());
-    }
-
-    void write_links_of(std::size_t c, Neighbourhood& neighbourhood) {
-        const ClusterHeader& header = packed_.headers[c];
+        neighbourhood.clear();
+        for (std::size_t k = 0; k < header.foreign_points; ++k) neighbourhood.add_point(ref(c, k).owner());
         std::vector<SeamEdge> own_seams;
         own_seams.reserve(header.own_seams);
         for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k) {
@@ -367,14 +368,17 @@ private:
                                        {candidates_[k], answers_[first_candidate_[answer.owner] + answer.place].place});
         }
         neighbourhood.finish();
+        header.neighbours = static_cast<std::uint16_t>(neighbourhood.table().size());
+        header.foreign_seams = static_cast<std::uint16_t>(neighbourhood.seams().size());
         std::uint8_t points[max_cluster_points];
         for (std::size_t k = 0; k < header.foreign_points; ++k) points[k] = ref(c, k).index();
 
-        std::uint32_t* out = packed_.links.data() + header.first_link;
+        const std::size_t before = list.size();
+        list.resize(before + ClusterLinks::words(header));
+        std::uint32_t* out = list.data() + before;
         const auto put = [&out](const void* data, std::size_t bytes) {
             if (!bytes) return;
-            out[words_for(bytes) - 1] = 0; // what fills up the last word
-            std::memcpy(out, data, bytes);
+            std::memcpy(out, data, bytes); // what fills up the last word stays 0
             out += words_for(bytes);
         };
         put(neighbourhood.table().data(), neighbourhood.table().size_bytes());
