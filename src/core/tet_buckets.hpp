@@ -146,8 +146,9 @@ private:
     Buffer<RankedTet> tets_;    ///< page by page
     Buffer<TetOrigin> origins_; ///< beside them, or empty
     std::size_t pages_ = 0;     ///< taken so far, by all writers
-    // Streams, by writer, then bucket. What every tet needs stands close together, in a processor's first cache.
-    std::vector<std::size_t> next_;   ///< position of its next tet; at the beginning of a page: in a page still to be added
+    // Streams, by writer, then bucket. What every tet needs stands close together, in a processor's first cache. Where a
+    // stream's next position is the beginning of a page, that page is still to be added.
+    std::vector<std::size_t> next_;
     std::vector<Pages> stream_pages_;
     std::vector<Bucket> buckets_;
     std::uint64_t size_ = 0;
