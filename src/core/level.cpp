@@ -14,7 +14,7 @@ Level best_level() {
     static const Level best = [] {
         if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
             __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi") &&
-            __builtin_cpu_supports("bmi2"))
+            __builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("bmi2"))
             return Level::avx512;
         if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return Level::avx2;
         return Level::portable;

@@ -98,7 +98,7 @@ private:
             keys[k] = s_.special[above] == is_tied ? point_key(above)
                                                    : edge_key({std::min(above, below), std::max(above, below)});
         }
-        for (std::size_t k = 0; k < 4; ++k) s_.use(keys[k]);
+        for (std::size_t k = 0; k < 4; ++k) s_.used.use(keys[k]);
         for_triangles(keys, c, [&](std::size_t) { ++triangles_; });
         s_.cut.cases[s_.cut.count] = static_cast<std::uint8_t>(index);
         s_.cut.places[s_.cut.count++] = static_cast<std::uint16_t>(tet);
@@ -119,7 +119,7 @@ private:
     /// Tied points may be used by tets that their owner does not look at: every user tells it.
     void share_tied_points() {
         const auto share = [&](std::size_t local, std::size_t owner, std::uint32_t own_point) {
-            if (!s_.is_used(point_key(local))) return;
+            if (!s_.used.has(point_key(local))) return;
             cutting_.masks.set_tied(owner, own_point);
             s_.share(point_key(local), {static_cast<std::uint32_t>(owner), SharedVertex::tied + own_point});
         };
@@ -138,7 +138,7 @@ private:
     void share_own_seams() {
         for (std::size_t k = 0; k < links_.own_seams.size(); ++k) {
             const VertexKey key = edge_key(links_.own_seams[k]);
-            if (!s_.is_used(key)) continue;
+            if (!s_.used.has(key)) continue;
             cutting_.masks.set_seam(place_, k);
             s_.share(key, {static_cast<std::uint32_t>(place_), static_cast<std::uint32_t>(k)});
         }
@@ -149,7 +149,7 @@ private:
         for (const core::Neighbour& neighbour : links_.neighbours) {
             for (const std::size_t end = k + neighbour.foreign_seams; k < end; ++k) {
                 const core::ForeignSeam seam = links_.foreign_seams[k];
-                if (!s_.is_used(edge_key(seam.edge))) continue;
+                if (!s_.used.has(edge_key(seam.edge))) continue;
                 const std::size_t owner = place_of(neighbour.cluster);
                 if (packed_.has_no_data[neighbour.cluster]) cutting_.masks.set_seam(owner, seam.index);
                 s_.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
@@ -157,26 +157,29 @@ private:
         }
     }
 
-    void list_inner_edges() {
-        core::for_bits(s_.used.data(), s_.used.size(),
-                       [&](std::size_t key) { s_.listed.push_back(static_cast<VertexKey>(key)); });
-        s_.used.fill(0);
-    }
+    void list_inner_edges() { s_.listed.grow(Portable::list_keys(s_.used, s_.listed.end())); }
 
     const Record<Real>* write_record() {
-        number_vertices(s_);
-        Record<Real>& record = begin_record(isovalue_, triangles_, cutting_.wanted.source_cells, s_);
+        Record<Real>& record = begin_record(cutting_.wanted, triangles_, s_);
         record.lists_seams = false;
-        std::uint16_t* corner = record.corners();
-        std::uint16_t* tet = record.tets();
+        Portable::cross(s_.listed.data(), record.listed, s_.above.data(), s_.values.data(), isovalue_, s_.ends.data(),
+                        s_.weights.data());
+        write_vertices<Portable>(packed_, s_, record);
+        with_numbers(s_, record, [&](const auto* numbers, auto* corners) {
+            write_triangles(numbers, corners, record.has_tets ? record.tets() : nullptr);
+        });
+        return &record;
+    }
+
+    template <class Number>
+    void write_triangles(const Number* numbers, Number* corner, std::uint16_t* tet) const {
         for (std::size_t i = 0; i < s_.cut.count; ++i) {
             const VertexKey* const keys = s_.keys.data() + 4 * i;
             for_triangles(keys, core::case_table[s_.cut.cases[i]], [&](std::size_t t) {
-                for (const std::uint8_t k : core::triangle_corners[t]) *corner++ = s_.numbers[keys[k]];
-                if (record.has_tets) *tet++ = s_.cut.places[i];
+                for (const std::uint8_t k : core::triangle_corners[t]) *corner++ = numbers[keys[k]];
+                if (tet) *tet++ = s_.cut.places[i];
             });
         }
-        return &record;
     }
 
     const Cutting<Real>& cutting_;

@@ -2,13 +2,14 @@
 // Cutting one cluster at one isovalue: what plain_cluster.cpp (fast, for most) and any_cluster.cpp (for all) have in common.
 //
 // A vertex of a cluster has a *key*: lower local index * 128 + higher for one on an edge, local index * 129 for one at a tied
-// point. Keys are bits of a matrix while vertices are gathered, and places in a table once they have numbers.
+// point. Keys are marked in a table while vertices are gathered, and are places in another once they have numbers.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "core/arithmetic.hpp"
@@ -19,8 +20,29 @@
 
 namespace isotet::cpu {
 
-constexpr VertexKey edge_key(core::SeamEdge edge) { return static_cast<VertexKey>(edge.lower * core::max_cluster_points + edge.higher); }
+constexpr std::size_t max_cluster_edges = core::max_cluster_points * (core::max_cluster_points - 1) / 2;
+
 constexpr VertexKey point_key(std::size_t local) { return static_cast<VertexKey>(local * (core::max_cluster_points + 1)); }
+
+/// A list with room for `most`: adding to it checks nothing.
+template <class T, std::size_t most>
+class ShortList {
+public:
+    void clear() { size_ = 0; }
+    void push_back(const T& element) { elements_[size_++] = element; }
+    T* end() { return elements_.data() + size_; } ///< more may be written there, and then
+    void grow(std::size_t n) { size_ += n; }      ///< counted
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    const T* data() const { return elements_.data(); }
+    const T* begin() const { return data(); }
+    const T* end() const { return data() + size_; }
+    const T& operator[](std::size_t i) const { return elements_[i]; }
+
+private:
+    std::array<T, most> elements_{};
+    std::size_t size_ = 0;
+};
 
 /// What all threads share while they count.
 template <class Real>
@@ -35,6 +57,7 @@ struct Cutting {
 template <class Real>
 struct CutScratch {
     static constexpr std::size_t points = core::max_cluster_points;
+    static constexpr std::size_t most_vertices = max_cluster_edges + points, padded = most_vertices + 128;
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
     std::size_t cluster = none, next_cluster = none;
@@ -46,50 +69,68 @@ struct CutScratch {
     std::array<std::uint8_t, points> special;             ///< tied or without data; for any_cluster.cpp
     CutTets cut;
     std::array<VertexKey, 4 * core::max_cluster_tets> keys;  ///< of the polygons of cut tets, four each
-    std::array<std::uint64_t, points * points / 64> used{}; ///< bits of keys; all 0 between places
-    std::array<std::uint64_t, points * points / 128> crossed_seams;
-    std::vector<VertexKey> listed;
-    std::vector<SharedVertex> shared;
-    std::vector<VertexKey> shared_keys;
-    std::array<std::uint16_t, points * points> numbers; ///< local, by key; only where one was written
+    KeyTable used; ///< empty between places
+    std::array<core::ForeignSeam, padded> crossed_seams;
+    std::array<std::uint16_t, padded> crossed_places; ///< of these, in the list
+    ShortList<VertexKey, padded> listed;
+    std::array<EndPair, padded> ends; ///< of listed vertices
+    std::array<Real, padded> weights;
+    ShortList<SharedVertex, most_vertices> shared;
+    ShortList<VertexKey, most_vertices> shared_keys;
+    std::array<std::uint8_t, points * points> numbers; ///< local, by key; only where one was written
+    std::array<std::uint16_t, points * points> wide_numbers;
     Arena arena;
     std::size_t record_bytes = 0; ///< of all records made
 
-    void use(VertexKey key) { used[key / 64] |= std::uint64_t{1} << key % 64; }
-    bool is_used(VertexKey key) const { return used[key / 64] >> key % 64 & 1; }
-    void take_out(VertexKey key) { used[key / 64] &= ~(std::uint64_t{1} << key % 64); }
     void share(VertexKey key, SharedVertex vertex) {
-        take_out(key);
+        used.take_out(key);
         shared.push_back(vertex);
         shared_keys.push_back(key);
     }
 };
 
-inline void number_vertices(auto& s) {
-    std::uint16_t number = 0;
-    for (const VertexKey key : s.listed) s.numbers[key] = number++;
-    for (const VertexKey key : s.shared_keys) s.numbers[key] = number++;
+/// Calls f(numbers, corners) with a table of local vertex numbers by key, and where the record has such numbers for the
+/// corners of triangles: bytes where they suffice.
+template <class Real, class F>
+void with_numbers(CutScratch<Real>& s, const Record<Real>& record, F&& f) {
+    const auto call = [&](auto* numbers) {
+        using Number = std::remove_pointer_t<decltype(numbers)>;
+        std::size_t number = 0;
+        for (const VertexKey key : s.listed) numbers[key] = static_cast<Number>(number++);
+        for (const VertexKey key : s.shared_keys) numbers[key] = static_cast<Number>(number++);
+        f(static_cast<const Number*>(numbers), static_cast<Number*>(record.corners()));
+    };
+    if (record.wide()) call(s.wide_numbers.data());
+    else call(s.numbers.data());
 }
 
-/// A record with everything but its triangles.
+/// A record that holds what was shared; its triangles and listed vertices are yet to come.
 template <class Real>
-Record<Real>& begin_record(Real isovalue, std::size_t triangles, bool has_tets, CutScratch<Real>& s) {
+Record<Real>& begin_record(const Wanted<Real>& wanted, std::size_t triangles, CutScratch<Real>& s) {
     using Made = Record<Real>;
-    Made& record = *new (s.arena.take(Made::bytes(s.listed.size(), s.shared.size(), triangles, has_tets))) Made;
+    // Positions are what emit will want; but triangles that share few vertices have too many of them to keep.
+    const bool has_ends = wanted.ends || s.listed.size() > 2 * triangles;
+    const std::size_t bytes = Made::bytes(s.listed.size(), s.shared.size(), triangles, has_ends, wanted.source_cells);
+    Made& record = *new (s.arena.take(bytes)) Made;
     record.listed = static_cast<std::uint16_t>(s.listed.size());
     record.shared = static_cast<std::uint16_t>(s.shared.size());
     record.triangles = static_cast<std::uint16_t>(triangles);
-    record.has_tets = has_tets;
-    Real* const weights = record.weights();
-    EndPair* const ends = record.ends();
-    for (std::size_t i = 0; i < s.listed.size(); ++i) {
-        const std::size_t lower = s.listed[i] / CutScratch<Real>::points, higher = s.listed[i] % CutScratch<Real>::points;
-        const std::size_t below = s.above[lower] ? higher : lower, above = lower ^ higher ^ below;
-        weights[i] = core::edge_weight(isovalue, s.values[below], s.values[above]);
-        ends[i] = {static_cast<std::uint8_t>(below), static_cast<std::uint8_t>(above)};
-    }
-    std::copy(s.shared.begin(), s.shared.end(), record.shared_vertices());
+    record.has_ends = has_ends;
+    record.has_tets = wanted.source_cells;
+    std::copy_n(s.shared.data(), s.shared.size(), record.shared_vertices());
     return record;
+}
+
+/// Listed vertices, from scratch.ends and scratch.weights.
+template <class Simd, class Real>
+void write_vertices(const Packed& packed, const CutScratch<Real>& s, Record<Real>& record) {
+    if (record.has_ends) {
+        std::copy_n(s.ends.data(), record.listed, record.ends());
+        std::copy_n(s.weights.data(), record.listed, record.weights());
+    } else {
+        Simd::place(s.ends.data(), s.weights.data(), record.listed, *s.local, packed.as<Real>().positions.data(),
+                    record.positions());
+    }
 }
 
 /// Counts a place and leaves a record of it; null when its cluster is not plain: nothing has been changed then.

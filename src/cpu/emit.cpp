@@ -12,6 +12,8 @@
 #include "cpu/field_writer.hpp"
 #include "cpu/level.hpp"
 #include "cpu/prefetch.hpp"
+#include "cpu/simd_avx2.hpp"
+#include "cpu/simd_avx512.hpp"
 #include "cpu/steps.hpp"
 #include "cpu/vertex_normals.hpp"
 
@@ -19,8 +21,8 @@ namespace isotet::cpu {
 
 namespace {
 
-constexpr std::size_t max_points = core::max_cluster_points;
-constexpr std::size_t max_edges = max_points * (max_points - 1) / 2;
+constexpr std::size_t max_vertices =
+    core::max_cluster_points * (core::max_cluster_points + 1) / 2; ///< edges and points
 
 /// The local points of a cluster, found once.
 struct FoundPoints {
@@ -34,23 +36,24 @@ struct FoundPoints {
     }
 };
 
-/// One thread's memory.
-template <class Real>
-struct Scratch {
-    std::array<FoundPoints, 2> found;
-    FoundPoints* points = &found[0];                  ///< of the cluster at hand
-    FoundPoints* next = &found[1];                    ///< of the one after it
-    std::array<EndPair, max_points + max_edges> ends; ///< of vertices that only masks know
-    std::array<Real, max_points + max_edges> weights;
-    std::array<std::uint64_t, max_points + max_edges> numbers; ///< of vertices by local number
-};
-
 /// Own vertices of a cluster, in order: their edges, and where on them they lie.
 template <class Real>
 struct OwnVertices {
     const EndPair* ends;
     const Real* weights;
     std::size_t count;
+};
+
+/// One thread's memory.
+template <class Real>
+struct Scratch {
+    std::array<FoundPoints, 2> found;
+    FoundPoints* points = &found[0];        ///< of the cluster at hand, where its ends are looked at
+    FoundPoints* next = &found[1];          ///< of the one after it
+    std::array<EndPair, max_vertices> ends; ///< of vertices that only masks know
+    std::array<Real, max_vertices> weights;
+    std::array<std::uint32_t, max_vertices> numbers; ///< of vertices, by local number
+    std::array<std::uint64_t, max_vertices> wide_numbers;
 };
 
 template <class Real>
@@ -66,64 +69,70 @@ public:
           counted_(counted),
           targets_(targets) {}
 
+    template <class Simd>
     void emit_places(std::size_t begin, std::size_t end, Scratch<Real>& s) const {
         for (std::size_t place = begin; place < end; ++place) {
-            const std::size_t cluster = selection_.clusters[place];
-            if (s.points->cluster != cluster) {
-                std::swap(s.points, s.next);
-                s.points->find(packed_, cluster);
-                ask_ahead(place, s);
-            }
-            emit_place(place, s);
+            ask_ahead(place, s);
+            emit_place<Simd>(place, s);
         }
     }
 
 private:
-    /// Asks for what the clusters to come will read, while this one is worked on.
+    /// Asks for what the places to come will read, while this one is worked on.
     void ask_ahead(std::size_t place, Scratch<Real>& s) const {
-        const PlacesAhead ahead(selection_, place);
-        if (ahead.has(2)) {
-            prefetch(&packed_.headers[selection_.clusters[ahead[2]]]);
-            prefetch(counted_.records[ahead[2]]);
-        }
-        if (ahead.has(1)) {
-            const core::ClusterHeader& h = packed_.headers[selection_.clusters[ahead[1]]];
-            const std::size_t words = 2u * h.neighbours + core::words_for(h.foreign_points);
-            prefetch_bytes(packed_.links.data() + h.first_link, 4 * words);
-            const Record<Real>* const record = counted_.records[ahead[1]];
+        const std::size_t left = selection_.size() - place;
+        if (left > 3 && wanted_.ends) prefetch(&packed_.headers[selection_.clusters[place + 3]]);
+        if (left > 3) prefetch(counted_.records[place + 3]);
+        if (left > 2) {
+            const Record<Real>* const record = counted_.records[place + 2];
             prefetch_bytes(record, record->bytes());
+            if (record->has_ends) ask_for_links(selection_.clusters[place + 2]);
         }
-        if (!ahead.has(0)) return;
-        const std::uint32_t cluster = selection_.clusters[ahead[0]];
-        s.next->find(packed_, cluster);
-        for (std::size_t next = ahead[0]; next < selection_.size() && selection_.clusters[next] == cluster; ++next) {
-            const Record<Real>& record = *counted_.records[next];
-            for (std::size_t i = 0; i < record.listed; ++i) {
-                prefetch(&reals_.positions[3 * s.next->packed[record.ends()[i].below]]);
-                prefetch(&reals_.positions[3 * s.next->packed[record.ends()[i].above]]);
-            }
+        if (left > 1 && counted_.records[place + 1]->has_ends) ask_for_positions(place + 1, s);
+    }
+
+    void ask_for_links(std::uint32_t cluster) const {
+        const core::ClusterHeader& h = packed_.headers[cluster];
+        prefetch_bytes(packed_.links.data() + h.first_link,
+                       4 * (2u * h.neighbours + core::words_for(h.foreign_points)));
+    }
+
+    void ask_for_positions(std::size_t place, Scratch<Real>& s) const {
+        const std::uint32_t cluster = selection_.clusters[place];
+        if (s.points->cluster != cluster) s.next->find(packed_, cluster);
+        const core::LocalPoints& points = s.points->cluster == cluster ? s.points->packed : s.next->packed;
+        const Record<Real>& record = *counted_.records[place];
+        for (std::size_t i = 0; i < record.listed; ++i) {
+            prefetch(&reals_.positions[3 * points[record.ends()[i].below]]);
+            prefetch(&reals_.positions[3 * points[record.ends()[i].above]]);
         }
     }
 
+    void find_points(std::uint32_t cluster, Scratch<Real>& s) const {
+        if (s.points->cluster == cluster) return;
+        std::swap(s.points, s.next);
+        s.points->find(packed_, cluster);
+    }
+
+    template <class Simd>
     void emit_place(std::size_t place, Scratch<Real>& s) const {
         const Record<Real>& record = *counted_.records[place];
         const Target<Real>& target = targets_[selection_.isovalues[place]];
         const Start start = counted_.starts[place];
         std::uint64_t vertex = start.vertex;
+        if (!record.lists_seams || record.has_ends) find_points(selection_.clusters[place], s);
         if (!record.lists_seams) {
             const OwnVertices<Real> masked = find_masked(place, s);
             write_vertices(masked, vertex, target, s);
             vertex += masked.count;
         }
-        write_vertices({record.ends(), record.weights(), record.listed}, vertex, target, s);
+        if (record.has_ends) write_vertices({record.ends(), record.weights(), record.listed}, vertex, target, s);
+        else std::copy_n(record.positions(), 3u * record.listed, target.positions + 3 * vertex);
 
-        for (std::size_t i = 0; i < record.listed; ++i) s.numbers[i] = vertex + i;
-        const SharedVertex* const shared = record.shared_vertices();
-        for (std::size_t i = 0; i < record.shared; ++i)
-            s.numbers[record.listed + i] = counted_.starts[shared[i].owner].vertex + masks_.rank(shared[i]);
-        if (target.triangles) write_triangles(record, target.triangles + 3 * start.triangle, s);
-        else write_triangles(record, target.wide_triangles + 3 * start.triangle, s);
-        if (record.has_tets) write_sources(record, s.points->cluster, target.source_cells + start.triangle);
+        if (target.triangles)
+            write_triangles<Simd>(record, vertex, s.numbers.data(), target.triangles + 3 * start.triangle);
+        else write_triangles<Simd>(record, vertex, s.wide_numbers.data(), target.wide_triangles + 3 * start.triangle);
+        if (record.has_tets) write_sources(record, selection_.clusters[place], target.source_cells + start.triangle);
     }
 
     /// Vertices of a cluster that is not plain: at tied points and on seam edges. Others may be who uses them.
@@ -204,11 +213,18 @@ private:
         }
     }
 
-    template <class Index>
-    static void write_triangles(const Record<Real>& record, Index* out, const Scratch<Real>& s) {
-        const std::uint16_t* const corners = record.corners();
-        for (std::size_t i = 0; i < 3 * std::size_t{record.triangles}; ++i)
-            out[i] = static_cast<Index>(s.numbers[corners[i]]);
+    /// `numbers`  room for those of shared vertices
+    template <class Simd, class Index>
+    void write_triangles(const Record<Real>& record, std::uint64_t first_vertex, Index* numbers, Index* out) const {
+        const SharedVertex* const shared = record.shared_vertices();
+        for (std::size_t i = 0; i < record.shared; ++i)
+            numbers[record.listed + i] =
+                static_cast<Index>(counted_.starts[shared[i].owner].vertex + masks_.rank(shared[i]));
+        const auto number = [&]<class Local>(const Local* local) {
+            Simd::number(local, 3u * record.triangles, record.listed, first_vertex, numbers, out);
+        };
+        if (record.wide()) number(static_cast<const std::uint16_t*>(record.corners()));
+        else number(static_cast<const std::uint8_t*>(record.corners()));
     }
 
     void write_sources(const Record<Real>& record, std::size_t cluster, std::int64_t* out) const {
@@ -229,14 +245,14 @@ private:
 #if defined(__x86_64__)
 // Everything is inlined into these, and so compiled for their instruction set.
 template <class Real>
-[[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2,popcnt"), gnu::flatten]] void
+[[gnu::target("avx512f,avx512bw,avx512vl,avx512vbmi,avx512vbmi2,bmi,bmi2,popcnt"), gnu::flatten]] void
 emit_avx512(const Emitter<Real>& emitter, std::size_t begin, std::size_t end, Scratch<Real>& s) {
-    emitter.emit_places(begin, end, s);
+    emitter.template emit_places<Avx512>(begin, end, s);
 }
 template <class Real>
 [[gnu::target("avx2,bmi,bmi2,popcnt"), gnu::flatten]] void emit_avx2(const Emitter<Real>& emitter, std::size_t begin,
                                                                      std::size_t end, Scratch<Real>& s) {
-    emitter.emit_places(begin, end, s);
+    emitter.template emit_places<Avx2>(begin, end, s);
 }
 #endif
 
@@ -247,7 +263,7 @@ void emit_places(const Emitter<Real>& emitter, std::size_t begin, std::size_t en
     case Level::avx512: return emit_avx512(emitter, begin, end, s);
     case Level::avx2: return emit_avx2(emitter, begin, end, s);
 #endif
-    default: return emitter.emit_places(begin, end, s);
+    default: return emitter.template emit_places<Portable>(begin, end, s);
     }
 }
 

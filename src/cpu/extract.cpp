@@ -27,8 +27,8 @@ public:
         Total most;
         most.vertices = 4 * selection.tets;
         most.triangles = 2 * selection.tets;
-        const std::size_t records =
-            places * sizeof(Record<Real>) + Record<Real>::bytes(most.vertices, most.vertices, most.triangles, true);
+        const std::size_t records = places * sizeof(Record<Real>) +
+                                    Record<Real>::bytes(most.vertices, most.vertices, most.triangles, true, true);
         at_most_ = of({most}, records);
     }
 
@@ -67,7 +67,10 @@ Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<
               [&](std::size_t a, std::size_t b) { return request.isovalues[a] < request.isovalues[b]; });
     std::vector<Real> isovalues;
     for (const std::size_t i : order) isovalues.push_back(request.isovalues[i]);
-    const Wanted<Real> wanted{isovalues, request.ties, request.source_cells, request.fields};
+    // Where only positions are wanted, they are kept at once: more memory than ends and weights, but nothing is found twice.
+    // In double precision that would be too much.
+    const bool ends = sizeof(Real) > sizeof(float) || request.ends || request.normals || !request.fields.empty();
+    const Wanted<Real> wanted{isovalues, request.ties, ends, request.source_cells, request.fields};
 
     const auto selected = select(packed, wanted.isovalues);
     if (!selected) return selected.error();

@@ -5,6 +5,7 @@
 
 #include "cpu/cutting.hpp"
 #include "cpu/level.hpp"
+#include "cpu/prefetch.hpp"
 #include "cpu/simd_avx2.hpp"
 #include "cpu/simd_avx512.hpp"
 
@@ -31,55 +32,53 @@ void cut_tets(const Packed& packed, std::size_t cluster, float isovalue, Scratch
 /// Own seams into `listed` and the mask, foreign ones into `shared`; what remains are inner edges.
 template <class Simd>
 void sort_out_seams(const Cutting<float>& cutting, const core::ClusterLinks& links, std::size_t place, Scratch& s) {
-    std::uint64_t* const mask = cutting.masks.seams(place);
-    Simd::template crossed<2>(s.above.data(), reinterpret_cast<const std::uint8_t*>(links.own_seams.data()),
-                              links.own_seams.size(), mask);
-    core::for_bits(mask, core::words_of_bits(links.own_seams.size()), [&](std::size_t k) {
-        const VertexKey key = edge_key(links.own_seams[k]);
-        s.take_out(key);
-        s.listed.push_back(key);
-    });
-    Simd::template crossed<4>(s.above.data(), reinterpret_cast<const std::uint8_t*>(links.foreign_seams.data()),
-                              links.foreign_seams.size(), s.crossed_seams.data());
+    s.listed.grow(Simd::cross_own_seams(s.above.data(), links.own_seams, cutting.masks.seams(place), s.listed.end()));
+    for (const VertexKey key : s.listed) s.used.take_out(key);
+
+    const std::size_t crossed =
+        Simd::cross_foreign_seams(s.above.data(), links.foreign_seams, s.crossed_seams.data(), s.crossed_places.data());
     // Crossed foreign seams ascend, and so do the neighbours' parts of the list.
     const std::uint32_t isovalue = cutting.selection.isovalues[place];
-    std::size_t neighbour = 0, end = links.neighbours.empty() ? 0 : links.neighbours[0].foreign_seams;
-    core::for_bits(s.crossed_seams.data(), core::words_of_bits(links.foreign_seams.size()), [&](std::size_t k) {
-        while (k >= end) end += links.neighbours[++neighbour].foreign_seams;
-        const std::uint32_t cluster = links.neighbours[neighbour].cluster;
-        const core::ForeignSeam seam = links.foreign_seams[k];
-        const std::size_t owner = cutting.selection.place(cluster, isovalue);
+    const core::Neighbour* neighbour = links.neighbours.data();
+    std::size_t end = crossed ? neighbour->foreign_seams : 0;
+    for (std::size_t i = 0; i < crossed; ++i) {
+        while (s.crossed_places[i] >= end) end += (++neighbour)->foreign_seams;
+        const core::ForeignSeam seam = s.crossed_seams[i];
+        const std::size_t owner = cutting.selection.place(neighbour->cluster, isovalue);
         s.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
-        if (cutting.packed.has_no_data[cluster]) cutting.masks.set_seam(owner, seam.index);
-    });
+        if (cutting.packed.has_no_data[neighbour->cluster]) cutting.masks.set_seam(owner, seam.index);
+    }
 }
 
-/// Appends the inner edges, ascending, and empties the matrix.
-template <class Simd>
-void take_inner_edges(Scratch& s) {
-    std::array<std::uint64_t, Scratch::points * Scratch::points / 4096> words;
-    Simd::nonzero(s.used.data(), s.used.size(), words.data());
-    core::for_bits(words.data(), words.size(), [&](std::size_t word) {
-        for (std::uint64_t bits = s.used[word]; bits; bits &= bits - 1)
-            s.listed.push_back(static_cast<VertexKey>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
-        s.used[word] = 0;
-    });
-}
-
-void write_triangles(const Scratch& s, Record<float>& record) {
-    std::uint16_t* out = record.corners();
-    std::uint16_t* tet = record.has_tets ? record.tets() : nullptr;
+template <class Number>
+void write_triangles(const Scratch& s, const Number* numbers, Number* out, std::uint16_t* tet) {
     const VertexKey* key = s.keys.data();
-    for (std::size_t i = 0; i < s.cut.count; ++i, key += 4) {
-        const std::uint16_t a = s.numbers[key[0]], b = s.numbers[key[1]], c = s.numbers[key[2]], d = s.numbers[key[3]];
-        const std::uint16_t corners[6] = {a, b, c, a, c, d};
-        std::memcpy(out, corners, sizeof corners);
+    for (std::size_t i = 0, n = s.cut.count; i < n; ++i, key += 4) {
+        const std::uint64_t a = numbers[key[0]], b = numbers[key[1]], c = numbers[key[2]], d = numbers[key[3]];
+        if constexpr (sizeof(Number) == 1) {
+            const std::uint64_t corners = a | b << 8 | c << 16 | a << 24 | c << 32 | d << 40;
+            std::memcpy(out, &corners, sizeof corners);
+        } else {
+            const std::uint64_t first = a | b << 16 | c << 32 | a << 48;
+            const auto rest = static_cast<std::uint32_t>(c | d << 16);
+            std::memcpy(out, &first, sizeof first);
+            std::memcpy(out + 4, &rest, sizeof rest);
+        }
         const std::size_t triangles = core::case_table[s.cut.cases[i]].triangles;
         out += 3 * triangles;
         if (tet) {
             tet[0] = tet[1] = s.cut.places[i];
             tet += triangles;
         }
+    }
+}
+
+/// So that they are there once triangles have been written.
+void ask_for_positions(const Packed& packed, const Scratch& s) {
+    const float* const positions = packed.as<float>().positions.data();
+    for (std::size_t i = 0; i < s.listed.size(); ++i) {
+        prefetch(positions + 3 * (*s.local)[s.ends[i].below]);
+        prefetch(positions + 3 * (*s.local)[s.ends[i].above]);
     }
 }
 
@@ -92,7 +91,7 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, isovalue, s.above.data()))
         return nullptr;
     cut_tets<Simd>(cutting.packed, cluster, isovalue, s);
-    for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.use(s.keys[i]);
+    for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.used.use(s.keys[i]);
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < s.cut.count; ++i) triangles += core::case_table[s.cut.cases[i]].triangles;
 
@@ -101,19 +100,24 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     s.shared_keys.clear();
     sort_out_seams<Simd>(cutting, cutting.packed.cluster_links(cluster), place, s);
     const std::size_t seams = s.listed.size();
-    take_inner_edges<Simd>(s);
+    s.listed.grow(Simd::list_keys(s.used, s.listed.end()));
     count = {s.listed.size() - seams, triangles};
     if (s.listed.empty() && triangles == 0) return &nothing;
 
-    number_vertices(s);
-    Record<float>& record = begin_record(isovalue, triangles, cutting.wanted.source_cells, s);
-    write_triangles(s, record);
+    Record<float>& record = begin_record(cutting.wanted, triangles, s);
+    Simd::cross(s.listed.data(), record.listed, s.above.data(), s.values.data(), isovalue, s.ends.data(),
+                s.weights.data());
+    if (!record.has_ends) ask_for_positions(cutting.packed, s);
+    with_numbers(s, record, [&](const auto* numbers, auto* corners) {
+        write_triangles(s, numbers, corners, record.has_tets ? record.tets() : nullptr);
+    });
+    write_vertices<Simd>(cutting.packed, s, record);
     return &record;
 }
 
 #if defined(__x86_64__)
 // Everything is inlined into these, and so compiled for their instruction set.
-[[gnu::target("avx512f,avx512bw,avx512vl,avx512vbmi,bmi,bmi2,popcnt"), gnu::flatten]] const Record<float>*
+[[gnu::target("avx512f,avx512bw,avx512vl,avx512vbmi,avx512vbmi2,bmi,bmi2,popcnt"), gnu::flatten]] const Record<float>*
 cut_plain_avx512(const Cutting<float>& cutting, std::size_t place, Scratch& s, Start& count) {
     return cut_plain<Avx512>(cutting, place, s, count);
 }

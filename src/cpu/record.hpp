@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What counting a cluster at an isovalue leaves behind, so that its tets need not be looked at again: the edges of vertices
-// that are its own, the vertices that masks know, and its triangles with local vertex numbers.
+// What counting a cluster at an isovalue leaves behind, so that its tets need not be looked at again: the vertices that
+// are its own, those that masks know, and its triangles with local vertex numbers.
 #pragma once
 
 #include <algorithm>
@@ -24,28 +24,39 @@ struct SharedVertex {
     std::uint32_t index; ///< among the owner's own seam edges; or `tied` + among its own points
 };
 
-/// Lies in an Arena with its arrays behind it: about 6 bytes a listed vertex, 8 a shared one, 6 a triangle.
+/// Lies in an Arena with its arrays behind it: 12 bytes a listed vertex (6 with ends, 10 in double precision), 8 a shared
+/// one, 3 a triangle (6 where there are more than 256 vertices).
 ///
 /// Local vertex numbers: listed vertices in their final order, then shared ones. A plain cluster lists all of its own
 /// vertices, for it knows them alone; any other lists those on inner edges, which come last among its own.
 template <class Real>
 struct Record {
     std::uint16_t listed = 0, shared = 0, triangles = 0;
-    bool lists_seams = true; ///< a plain cluster
-    bool has_tets = false;
+    bool lists_seams : 1 = true; ///< a plain cluster
+    bool has_ends : 1 = false;   ///< ends and weights of listed vertices; else it has positions
+    bool has_tets : 1 = false;
 
-    static std::size_t bytes(std::size_t listed, std::size_t shared, std::size_t triangles, bool has_tets) {
-        // Triangles are written two at a time: room for one too many.
-        return sizeof(Record) + (sizeof(Real) + sizeof(EndPair)) * listed + sizeof(SharedVertex) * shared +
-               sizeof(std::uint16_t) * (has_tets ? 4 : 3) * (triangles + 1);
+    static std::size_t bytes(std::size_t listed, std::size_t shared, std::size_t triangles, bool has_ends, bool has_tets) {
+        // Positions are written four numbers at a time, corners of triangles eight: room for more than there are.
+        return sizeof(Record) + (has_ends ? (sizeof(Real) + sizeof(EndPair)) * listed : sizeof(Real) * (3 * listed + 1)) +
+               sizeof(SharedVertex) * shared + (has_tets ? sizeof(std::uint16_t) * (triangles + 1) : 0) +
+               (is_wide(listed, shared) ? sizeof(std::uint16_t) : 1) * (3 * triangles + 5);
     }
+    std::size_t bytes() const { return bytes(listed, shared, triangles, has_ends, has_tets); }
 
-    std::size_t bytes() const { return bytes(listed, shared, triangles, has_tets); }
     Real* weights() const { return reinterpret_cast<Real*>(const_cast<Record*>(this) + 1); }
-    SharedVertex* shared_vertices() const { return reinterpret_cast<SharedVertex*>(weights() + listed); }
+    Real* positions() const { return weights(); } ///< 3 a listed vertex
+    SharedVertex* shared_vertices() const {
+        return reinterpret_cast<SharedVertex*>(weights() + (has_ends ? listed : 3 * listed + 1));
+    }
     EndPair* ends() const { return reinterpret_cast<EndPair*>(shared_vertices() + shared); }
-    std::uint16_t* corners() const { return reinterpret_cast<std::uint16_t*>(ends() + listed); }
-    std::uint16_t* tets() const { return corners() + 3 * (triangles + std::size_t{1}); } ///< in the cluster, one a triangle
+    std::uint16_t* tets() const { return reinterpret_cast<std::uint16_t*>(ends() + (has_ends ? listed : 0)); } ///< in the cluster
+    /// Three a triangle: 8 bits each, or 16 where local vertex numbers need them.
+    void* corners() const { return tets() + (has_tets ? triangles + 1 : 0); }
+    bool wide() const { return is_wide(listed, shared); }
+
+private:
+    static bool is_wide(std::size_t listed, std::size_t shared) { return listed + shared > 256; }
 };
 static_assert(sizeof(Record<float>) == 8 && sizeof(Record<double>) == 8);
 

@@ -16,16 +16,26 @@ namespace isotet::cpu {
 
 struct Avx2 {
     ISOTET_AVX2 static bool classify(const float* values, std::size_t n, float isovalue, std::uint8_t* above) {
-        return Portable::classify(values, n, isovalue, above);
+        const __m256 level = _mm256_set1_ps(isovalue);
+        bool special = false;
+        std::size_t k = 0;
+        for (; k + 8 <= n; k += 8) {
+            const __m256 x = _mm256_loadu_ps(values + k);
+            const __m128i is_above = halves(_mm256_castps_si256(_mm256_cmp_ps(x, level, _CMP_GE_OQ)));
+            special |= _mm256_movemask_ps(_mm256_cmp_ps(x, level, _CMP_EQ_UQ)) != 0; // equal, or not a number
+            _mm_storel_epi64(reinterpret_cast<__m128i*>(above + k),
+                             _mm_and_si128(_mm_packs_epi16(is_above, is_above), _mm_set1_epi8(1)));
+        }
+        return special | Portable::classify(values + k, n - k, isovalue, above + k);
     }
 
-    ISOTET_AVX2 static void cut(const std::uint8_t* above, const core::StoredTet* tets, std::size_t n, std::size_t first,
-                                CutTets& out) {
+    ISOTET_AVX2 static void cut(const std::uint8_t* above, const core::StoredTet* tets, std::size_t n,
+                                std::size_t first, CutTets& out) {
         const __m256i table = table_of(above);
         const __m256i weights = _mm256_set1_epi32(0x08040201);
         for (std::size_t i = 0; i < n; i += 8) {
             const __m256i corners = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(tets + i)); // groups are padded
-            const __m256i sides = _mm256_and_si256(look_up(table, corners), _mm256_set1_epi8(1));
+            const __m256i sides = look_up(table, corners);
             const __m256i index = _mm256_madd_epi16(_mm256_maddubs_epi16(sides, weights), _mm256_set1_epi16(1));
             // 1 to 14 are cut: neither 0 nor 15.
             const __m256i uncut = _mm256_or_si256(_mm256_cmpeq_epi32(index, _mm256_setzero_si256()),
@@ -33,55 +43,149 @@ struct Avx2 {
             unsigned is_cut = ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(uncut))) & 0xff;
             if (n - i < 8) is_cut &= (1u << (n - i)) - 1;
             if (!is_cut) continue;
-            alignas(32) std::uint32_t indices[8];
-            _mm256_store_si256(reinterpret_cast<__m256i*>(indices), index);
-            for (; is_cut; is_cut &= is_cut - 1) {
-                const auto k = static_cast<std::size_t>(std::countr_zero(is_cut));
-                std::memcpy(&out.corners[out.count], tets + i + k, 4);
-                out.cases[out.count] = static_cast<std::uint8_t>(indices[k]);
-                out.places[out.count++] = static_cast<std::uint16_t>(first + i + k);
-            }
+            const __m128i lanes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of[is_cut].data()));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.corners.data() + out.count),
+                                _mm256_permutevar8x32_epi32(corners, _mm256_cvtepu8_epi32(lanes)));
+            const __m128i indices = _mm_packus_epi16(halves(index), halves(index));
+            _mm_storel_epi64(reinterpret_cast<__m128i*>(out.cases.data() + out.count),
+                             _mm_shuffle_epi8(indices, lanes));
+            const __m128i place =
+                _mm_add_epi16(_mm_cvtepu8_epi16(lanes), _mm_set1_epi16(static_cast<short>(first + i)));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(out.places.data() + out.count), place);
+            out.count += static_cast<std::size_t>(_mm_popcnt_u32(is_cut));
         }
     }
 
-    template <std::size_t stride>
-    ISOTET_AVX2 static void crossed(const std::uint8_t* above, const std::uint8_t* edges, std::size_t n, std::uint64_t* bits) {
-        constexpr std::size_t at_once = 32 / stride;
+    ISOTET_AVX2 static std::size_t cross_own_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
+                                                   std::uint64_t* mask, VertexKey* out) {
         const __m256i table = table_of(above);
-        std::fill_n(bits, core::words_of_bits(n), std::uint64_t{0});
+        std::fill_n(mask, core::words_of_bits(seams.size()), std::uint64_t{0});
+        const auto* const edges = reinterpret_cast<const std::uint8_t*>(seams.data());
         std::size_t k = 0;
-        for (; k + at_once <= n; k += at_once) {
-            const __m256i e = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(edges + stride * k));
-            const __m256i sides = _mm256_and_si256(look_up(table, e), _mm256_set1_epi8(1));
-            std::uint64_t mask;
-            if constexpr (stride == 2) {
-                // Bit 0 of each 16-bit lane to the lane's top, then one bit a lane.
-                const __m256i differ = _mm256_slli_epi16(_mm256_xor_si256(sides, _mm256_srli_epi16(sides, 8)), 15);
-                mask = _pext_u32(static_cast<unsigned>(_mm256_movemask_epi8(differ)), 0xaaaaaaaau);
-            } else {
-                const __m256i differ = _mm256_slli_epi32(_mm256_xor_si256(sides, _mm256_srli_epi32(sides, 8)), 31);
-                mask = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(differ)));
-            }
-            bits[k / 64] |= mask << k % 64;
+        for (; k + 16 <= seams.size(); k += 16) {
+            const __m256i sides = look_up(table, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(edges + 2 * k)));
+            const __m256i differ =
+                _mm256_and_si256(_mm256_xor_si256(sides, _mm256_srli_epi16(sides, 8)), _mm256_set1_epi16(1));
+            const __m128i bytes = _mm_packus_epi16(_mm256_castsi256_si128(differ), _mm256_extracti128_si256(differ, 1));
+            const auto bits = static_cast<std::uint64_t>(_mm_movemask_epi8(_mm_slli_epi16(bytes, 7)));
+            mask[k / 64] |= bits << k % 64;
         }
-        for (; k < n; ++k) bits[k / 64] |= std::uint64_t(above[edges[stride * k]] ^ above[edges[stride * k + 1]]) << k % 64;
+        for (; k < seams.size(); ++k)
+            mask[k / 64] |= std::uint64_t(above[seams[k].lower] ^ above[seams[k].higher]) << k % 64;
+        std::size_t count = 0;
+        core::for_bits(mask, core::words_of_bits(seams.size()),
+                       [&](std::size_t i) { out[count++] = edge_key(seams[i]); });
+        return count;
     }
 
-    ISOTET_AVX2 static void nonzero(const std::uint64_t* words, std::size_t n, std::uint64_t* out) {
-        for (std::size_t k = 0; k < n; k += 64) {
-            std::uint64_t bits = 0;
-            for (std::size_t i = 0; i < 64; i += 4) {
-                const __m256i x = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words + k + i));
-                const __m256i is_zero = _mm256_cmpeq_epi64(x, _mm256_setzero_si256());
-                bits |= std::uint64_t(~static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(is_zero))) & 15) << i;
-            }
-            out[k / 64] = bits;
+    ISOTET_AVX2 static std::size_t cross_foreign_seams(const std::uint8_t* above,
+                                                       std::span<const core::ForeignSeam> seams, core::ForeignSeam* out,
+                                                       std::uint16_t* places) {
+        const __m256i table = table_of(above);
+        std::size_t count = 0;
+        const auto add = [&](std::size_t k) {
+            out[count] = seams[k];
+            places[count++] = static_cast<std::uint16_t>(k);
+        };
+        std::size_t k = 0;
+        for (; k + 8 <= seams.size(); k += 8) {
+            const __m256i sides =
+                look_up(table, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(seams.data() + k)));
+            const __m256i differ = _mm256_slli_epi32(_mm256_xor_si256(sides, _mm256_srli_epi32(sides, 8)), 31);
+            auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(differ)));
+            for (; bits; bits &= bits - 1) add(k + static_cast<std::size_t>(std::countr_zero(bits)));
+        }
+        for (; k < seams.size(); ++k)
+            if (above[seams[k].edge.lower] != above[seams[k].edge.higher]) add(k);
+        return count;
+    }
+
+    ISOTET_AVX2 static std::size_t list_keys(KeyTable& used, VertexKey* out) {
+        return Portable::list_keys<Avx2>(used, out);
+    }
+    ISOTET_AVX2 static std::uint64_t ones(const std::uint8_t* bytes) {
+        const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
+        const __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));
+        return static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(low, 7))) |
+               std::uint64_t{static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(high, 7)))} << 32;
+    }
+
+    ISOTET_AVX2 static void keys(const CutTets& cut, VertexKey* out) {
+        for (std::size_t i = 0; i < cut.count; ++i, out += 4) {
+            const __m128i v = _mm_cvtsi32_si128(static_cast<int>(cut.corners[i]));
+            const __m128i ends = _mm_shuffle_epi8(
+                v, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(polygon_bytes[cut.cases[i]].data())));
+            const __m128i others = _mm_srli_epi64(ends, 32);
+            const __m128i lower = _mm_cvtepu8_epi16(_mm_min_epu8(ends, others)),
+                          higher = _mm_cvtepu8_epi16(_mm_max_epu8(ends, others));
+            _mm_storel_epi64(reinterpret_cast<__m128i*>(out), _mm_or_si128(_mm_slli_epi16(lower, 7), higher));
         }
     }
 
-    ISOTET_AVX2 static void keys(const CutTets& cut, VertexKey* out) { Portable::keys(cut, out); }
+    ISOTET_AVX2 static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above, const float* values,
+                                  float isovalue, EndPair* ends, float* weights) {
+        const __m256 level = _mm256_set1_ps(isovalue);
+        const __m256i table = table_of(above);
+        for (std::size_t i = 0; i < n; i += 8) {
+            const __m256i key = _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(edges + i)));
+            const __m256i a = _mm256_srli_epi32(key, 7), b = _mm256_and_si256(key, _mm256_set1_epi32(127));
+            const __m256i a_is_above =
+                _mm256_cmpeq_epi32(_mm256_and_si256(look_up(table, a), _mm256_set1_epi32(1)), _mm256_set1_epi32(1));
+            const __m256i below = _mm256_blendv_epi8(a, b, a_is_above),
+                          end_above = _mm256_blendv_epi8(b, a, a_is_above);
+            const __m256i pairs = _mm256_or_si256(below, _mm256_slli_epi32(end_above, 8));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(ends + i), halves(pairs));
+            const __m256 value_below = _mm256_i32gather_ps(values, below, 4),
+                         value_above = _mm256_i32gather_ps(values, end_above, 4);
+            const __m256 t = _mm256_div_ps(_mm256_sub_ps(level, value_below), _mm256_sub_ps(value_above, value_below));
+            const __m256 large = _mm256_cmp_ps(t, _mm256_set1_ps(0x1p-32f), _CMP_NLT_UQ);
+            _mm256_storeu_ps(weights + i, _mm256_and_ps(t, large));
+        }
+    }
+
+    ISOTET_AVX2 static void place(const EndPair* ends, const float* weights, std::size_t n,
+                                  const core::LocalPoints& points, const float* positions, float* out) {
+        // The last position of all has nothing behind it: three numbers are loaded, not four.
+        const __m128i three = _mm_setr_epi32(-1, -1, -1, 0);
+        for (std::size_t i = 0; i < n; ++i, out += 3) {
+            const __m128 a = _mm_maskload_ps(positions + 3 * points[ends[i].below], three);
+            const __m128 b = _mm_maskload_ps(positions + 3 * points[ends[i].above], three);
+            const __m128 t = _mm_set1_ps(weights[i]);
+            const __m128 between = _mm_add_ps(a, _mm_mul_ps(t, _mm_sub_ps(b, a)));
+            _mm_storeu_ps(out, _mm_blendv_ps(between, b, _mm_cmpeq_ps(t, _mm_set1_ps(1))));
+        }
+    }
+
+    template <class Local, class Index>
+    ISOTET_AVX2 static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first,
+                                   Index* numbers, Index* out) {
+        Portable::number(local, n, listed, first, numbers, out);
+    }
 
 private:
+    /// For each case, the corners above of the four edges, then the corners below: a shuffle.
+    static constexpr auto polygon_bytes = [] {
+        std::array<std::array<std::uint8_t, 8>, 16> bytes{};
+        for (std::size_t index = 0; index < 16; ++index)
+            for (std::size_t k = 0; k < 4; ++k) {
+                bytes[index][k] = core::case_table[index].polygon[k].above;
+                bytes[index][k + 4] = core::case_table[index].polygon[k].below;
+            }
+        return bytes;
+    }();
+    /// For each mask of eight lanes, those that it has.
+    static constexpr auto lanes_of = [] {
+        std::array<std::array<std::uint8_t, 8>, 256> lanes{};
+        for (std::size_t mask = 0; mask < 256; ++mask)
+            for (std::uint8_t lane = 0, n = 0; lane < 8; ++lane)
+                if (mask >> lane & 1) lanes[mask][n++] = lane;
+        return lanes;
+    }();
+
+    /// The lower halves of eight numbers below 2^15.
+    ISOTET_AVX2 static __m128i halves(__m256i x) {
+        return _mm_packs_epi32(_mm256_castsi256_si128(x), _mm256_extracti128_si256(x, 1));
+    }
     /// Bits of the 128 sides in 16 bytes, twice.
     ISOTET_AVX2 static __m256i table_of(const std::uint8_t* above) {
         std::uint32_t bits[4];
@@ -91,11 +195,13 @@ private:
         }
         return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(bits)));
     }
-    /// Bit 0 of each byte of the result is the table's bit for that byte of `indices`; other bits are leftovers.
+    /// Each byte of the result is 1 or 0, the table's bit for that byte of `indices`.
     ISOTET_AVX2 static __m256i look_up(__m256i table, __m256i indices) {
         const __m256i seven = _mm256_set1_epi8(7);
-        const __m256i byte = _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(indices, 3), _mm256_set1_epi8(15)));
-        const __m256i bit = _mm256_shuffle_epi8(_mm256_set1_epi64x(static_cast<long long>(0x8040201008040201u)), _mm256_and_si256(indices, seven));
+        const __m256i byte =
+            _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(indices, 3), _mm256_set1_epi8(15)));
+        const __m256i bit = _mm256_shuffle_epi8(_mm256_set1_epi64x(static_cast<long long>(0x8040201008040201u)),
+                                                _mm256_and_si256(indices, seven));
         return _mm256_min_epu8(_mm256_and_si256(byte, bit), _mm256_set1_epi8(1));
     }
 };

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The small loops of the plain path with AVX-512: a table of 128 bytes is looked up 64 bytes at a time (VBMI).
+// The small loops of the plain path with AVX-512: a table of 128 bytes is looked up 64 bytes at a time (VBMI),
+// and of many numbers those wanted are moved together (VBMI2).
 // Functions carry their instruction set as an attribute, so that nothing else in the program is compiled for it.
 #pragma once
 
@@ -7,9 +8,9 @@
 
 #include <immintrin.h>
 
-#include "cpu/simd_portable.hpp"
+#include "cpu/simd_avx2.hpp"
 
-#define ISOTET_AVX512 [[gnu::target("avx512f,avx512bw,avx512vl,avx512vbmi,bmi,bmi2,popcnt")]]
+#define ISOTET_AVX512 [[gnu::target("avx512f,avx512bw,avx512vl,avx512vbmi,avx512vbmi2,bmi,bmi2,popcnt")]]
 
 namespace isotet::cpu {
 
@@ -27,8 +28,8 @@ struct Avx512 {
         return special;
     }
 
-    ISOTET_AVX512 static void cut(const std::uint8_t* above, const core::StoredTet* tets, std::size_t n, std::size_t first,
-                                  CutTets& out) {
+    ISOTET_AVX512 static void cut(const std::uint8_t* above, const core::StoredTet* tets, std::size_t n,
+                                  std::size_t first, CutTets& out) {
         const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
         const __m512i weights = _mm512_set1_epi32(0x08040201);
         const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -38,7 +39,8 @@ struct Avx512 {
             const __m512i sides = _mm512_permutex2var_epi8(low, corners, high);
             const __m512i index = _mm512_madd_epi16(_mm512_maddubs_epi16(sides, weights), _mm512_set1_epi16(1));
             const __mmask16 there = n - i >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - i)) - 1);
-            const __mmask16 is_cut = _mm512_mask_cmplt_epu32_mask(there, _mm512_sub_epi32(index, _mm512_set1_epi32(1)), _mm512_set1_epi32(14));
+            const __mmask16 is_cut = _mm512_mask_cmplt_epu32_mask(there, _mm512_sub_epi32(index, _mm512_set1_epi32(1)),
+                                                                  _mm512_set1_epi32(14));
             _mm512_storeu_si512(out.corners.data() + out.count, _mm512_maskz_compress_epi32(is_cut, corners));
             _mm_storeu_si128(reinterpret_cast<__m128i*>(out.cases.data() + out.count),
                              _mm512_cvtepi32_epi8(_mm512_maskz_compress_epi32(is_cut, index)));
@@ -49,57 +51,141 @@ struct Avx512 {
         }
     }
 
-    template <std::size_t stride>
-    ISOTET_AVX512 static void crossed(const std::uint8_t* above, const std::uint8_t* edges, std::size_t n, std::uint64_t* bits) {
-        constexpr std::size_t at_once = 64 / stride;
+    ISOTET_AVX512 static std::size_t cross_own_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
+                                                     std::uint64_t* mask, VertexKey* out) {
         const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
-        for (std::size_t k = 0; k < n; k += at_once) {
-            const std::size_t bytes = std::min<std::size_t>(64, stride * (n - k));
-            const __mmask64 there = bytes == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bytes) - 1;
-            const __m512i e = _mm512_maskz_loadu_epi8(there, edges + stride * k);
-            const __m512i sides = _mm512_permutex2var_epi8(low, e, high);
-            std::uint64_t mask;
-            if constexpr (stride == 2) {
-                mask = _mm512_test_epi16_mask(_mm512_xor_si512(sides, _mm512_srli_epi16(sides, 8)), _mm512_set1_epi16(1));
-            } else {
-                mask = _mm512_test_epi32_mask(_mm512_xor_si512(sides, _mm512_srli_epi32(sides, 8)), _mm512_set1_epi32(1));
+        const VertexKey* const begin = out;
+        for (std::size_t k = 0; k < seams.size(); k += 32) {
+            const __mmask32 there = seams.size() - k >= 32 ? ~__mmask32{0} : (__mmask32{1} << (seams.size() - k)) - 1;
+            const __m512i edges = _mm512_maskz_loadu_epi16(there, seams.data() + k);
+            const __m512i sides = _mm512_permutex2var_epi8(low, edges, high);
+            const __mmask32 crossed = _mm512_mask_test_epi16_mask(
+                there, _mm512_xor_si512(sides, _mm512_srli_epi16(sides, 8)), _mm512_set1_epi16(1));
+            const __m512i lower = _mm512_and_si512(edges, _mm512_set1_epi16(0xff));
+            const __m512i keys = _mm512_or_si512(_mm512_slli_epi16(lower, 7), _mm512_srli_epi16(edges, 8));
+            _mm512_storeu_si512(out, _mm512_maskz_compress_epi16(crossed, keys));
+            out += _mm_popcnt_u32(crossed);
+            if (k % 64 == 0) mask[k / 64] = crossed;
+            else mask[k / 64] |= std::uint64_t{crossed} << 32;
+        }
+        return static_cast<std::size_t>(out - begin);
+    }
+
+    ISOTET_AVX512 static std::size_t cross_foreign_seams(const std::uint8_t* above,
+                                                         std::span<const core::ForeignSeam> seams,
+                                                         core::ForeignSeam* out, std::uint16_t* places) {
+        const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
+        const __m256i lanes = _mm256_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < seams.size(); k += 16) {
+            const __mmask16 there =
+                seams.size() - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (seams.size() - k)) - 1);
+            const __m512i found = _mm512_maskz_loadu_epi32(there, seams.data() + k);
+            const __m512i sides = _mm512_permutex2var_epi8(low, found, high);
+            const __mmask16 crossed = _mm512_mask_test_epi32_mask(
+                there, _mm512_xor_si512(sides, _mm512_srli_epi32(sides, 8)), _mm512_set1_epi32(1));
+            _mm512_storeu_si512(out + count, _mm512_maskz_compress_epi32(crossed, found));
+            const __m256i place = _mm256_add_epi16(lanes, _mm256_set1_epi16(static_cast<short>(k)));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(places + count),
+                                _mm256_maskz_compress_epi16(crossed, place));
+            count += static_cast<std::size_t>(_mm_popcnt_u32(crossed));
+        }
+        return count;
+    }
+
+    ISOTET_AVX512 static std::size_t list_keys(KeyTable& used, VertexKey* out) {
+        const VertexKey* const begin = out;
+        const __m512i lanes = _mm512_loadu_si512(first_numbers.data()), zero = _mm512_setzero_si512();
+        std::array<std::uint64_t, 2> rows;
+        for (std::size_t half = 0; half < 2; ++half) {
+            const __m512i x = _mm512_load_si512(&used.rows[64 * half]);
+            rows[half] = _mm512_test_epi8_mask(x, x);
+            _mm512_store_si512(&used.rows[64 * half], zero);
+        }
+        for (std::size_t half = 0; half < 2; ++half)
+            for (; rows[half]; rows[half] &= rows[half] - 1) {
+                const std::size_t row = 64 * half + static_cast<std::size_t>(std::countr_zero(rows[half]));
+                for (std::size_t first = KeyTable::row_size * row; first < KeyTable::row_size * (row + 1);
+                     first += 64) {
+                    const __m512i x = _mm512_load_si512(&used.bytes[first]);
+                    const __mmask64 there = _mm512_test_epi8_mask(x, x);
+                    _mm512_store_si512(&used.bytes[first], zero);
+                    const __m512i found = _mm512_maskz_compress_epi8(there, lanes),
+                                  before = _mm512_set1_epi16(static_cast<short>(first));
+                    _mm512_storeu_si512(out,
+                                        _mm512_add_epi16(before, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(found))));
+                    const auto count = static_cast<std::size_t>(_mm_popcnt_u64(there));
+                    if (count > 32)
+                        _mm512_storeu_si512(
+                            out + 32,
+                            _mm512_add_epi16(before, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(found, 1))));
+                    out += count;
+                }
             }
-            if (n - k < at_once) mask &= (std::uint64_t{1} << (n - k)) - 1;
-            if (k % 64 == 0) bits[k / 64] = 0;
-            bits[k / 64] |= mask << k % 64;
+        return static_cast<std::size_t>(out - begin);
+    }
+
+    ISOTET_AVX512 static void keys(const CutTets& cut, VertexKey* out) { Avx2::keys(cut, out); }
+
+    ISOTET_AVX512 static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above,
+                                    const float* values, float isovalue, EndPair* ends, float* weights) {
+        const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
+        const __m512 level = _mm512_set1_ps(isovalue);
+        for (std::size_t i = 0; i < n; i += 16) {
+            const __m256i key = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(edges + i));
+            const __m256i a = _mm256_and_si256(_mm256_srli_epi16(key, 7), _mm256_set1_epi16(127));
+            const __m256i b = _mm256_and_si256(key, _mm256_set1_epi16(127));
+            const __m256i side = _mm512_castsi512_si256(_mm512_permutex2var_epi8(low, _mm512_castsi256_si512(a), high));
+            const __mmask16 a_is_above = _mm256_test_epi16_mask(side, _mm256_set1_epi16(1));
+            const __m256i end_below = _mm256_mask_mov_epi16(a, a_is_above, b),
+                          end_above = _mm256_mask_mov_epi16(b, a_is_above, a);
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(ends + i),
+                                _mm256_or_si256(end_below, _mm256_slli_epi16(end_above, 8)));
+            const __m512 value_below = _mm512_i32gather_ps(_mm512_cvtepu16_epi32(end_below), values, 4);
+            const __m512 value_above = _mm512_i32gather_ps(_mm512_cvtepu16_epi32(end_above), values, 4);
+            const __m512 t = _mm512_div_ps(_mm512_sub_ps(level, value_below), _mm512_sub_ps(value_above, value_below));
+            const __mmask16 large = _mm512_cmp_ps_mask(t, _mm512_set1_ps(0x1p-32f), _CMP_NLT_UQ);
+            _mm512_storeu_ps(weights + i, _mm512_maskz_mov_ps(large, t));
         }
     }
 
-    ISOTET_AVX512 static void nonzero(const std::uint64_t* words, std::size_t n, std::uint64_t* out) {
-        for (std::size_t k = 0; k < n; k += 64) {
-            std::uint64_t bits = 0;
-            for (std::size_t i = 0; i < 64; i += 8) {
-                const __m512i x = _mm512_loadu_si512(words + k + i);
-                bits |= std::uint64_t{_mm512_test_epi64_mask(x, x)} << i;
-            }
-            out[k / 64] = bits;
+    ISOTET_AVX512 static void place(const EndPair* ends, const float* weights, std::size_t n,
+                                    const core::LocalPoints& points, const float* positions, float* out) {
+        for (std::size_t i = 0; i < n; ++i, out += 3) {
+            // The last position of all has nothing behind it: three numbers are loaded, not four.
+            const __m128 a = _mm_maskz_loadu_ps(7, positions + 3 * points[ends[i].below]);
+            const __m128 b = _mm_maskz_loadu_ps(7, positions + 3 * points[ends[i].above]);
+            const __m128 t = _mm_set1_ps(weights[i]);
+            const __m128 between = _mm_add_ps(a, _mm_mul_ps(t, _mm_sub_ps(b, a)));
+            _mm_storeu_ps(out, _mm_mask_mov_ps(between, _mm_cmp_ps_mask(t, _mm_set1_ps(1), _CMP_EQ_OQ), b));
         }
     }
 
-    ISOTET_AVX512 static void keys(const CutTets& cut, VertexKey* out) {
-        for (std::size_t i = 0; i < cut.count; ++i, out += 4) {
-            const __m128i v = _mm_cvtsi32_si128(static_cast<int>(cut.corners[i]));
-            const __m128i ends = _mm_shuffle_epi8(v, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(polygon_bytes[cut.cases[i]].data())));
-            const __m128i others = _mm_srli_epi64(ends, 32);
-            const __m128i lower = _mm_cvtepu8_epi16(_mm_min_epu8(ends, others)), higher = _mm_cvtepu8_epi16(_mm_max_epu8(ends, others));
-            _mm_storel_epi64(reinterpret_cast<__m128i*>(out), _mm_or_si128(_mm_slli_epi16(lower, 7), higher));
+    template <class Local>
+    ISOTET_AVX512 static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first,
+                                     const std::uint32_t* numbers, std::uint32_t* out) {
+        const __m512i before = _mm512_set1_epi32(static_cast<int>(first)),
+                      end = _mm512_set1_epi32(static_cast<int>(listed));
+        for (std::size_t i = 0; i < n; i += 16) {
+            const __mmask16 there = n - i >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - i)) - 1);
+            __m512i index;
+            if constexpr (sizeof(Local) == 1) index = _mm512_cvtepu8_epi32(_mm_maskz_loadu_epi8(there, local + i));
+            else index = _mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(there, local + i));
+            const __mmask16 others = _mm512_mask_cmpge_epu32_mask(there, index, end);
+            const __m512i own = _mm512_add_epi32(index, before);
+            _mm512_mask_storeu_epi32(out + i, there, _mm512_mask_i32gather_epi32(own, others, index, numbers, 4));
         }
     }
+    template <class Local>
+    ISOTET_AVX512 static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first,
+                                     std::uint64_t* numbers, std::uint64_t* out) {
+        Portable::number(local, n, listed, first, numbers, out);
+    }
 
-    /// For each case, the corners above of the four edges, then the corners below: a shuffle.
-    static constexpr auto polygon_bytes = [] {
-        std::array<std::array<std::uint8_t, 8>, 16> bytes{};
-        for (std::size_t index = 0; index < 16; ++index)
-            for (std::size_t k = 0; k < 4; ++k) {
-                bytes[index][k] = core::case_table[index].polygon[k].above;
-                bytes[index][k + 4] = core::case_table[index].polygon[k].below;
-            }
-        return bytes;
+    static constexpr auto first_numbers = [] {
+        std::array<std::uint8_t, 64> numbers{};
+        for (std::size_t i = 0; i < 64; ++i) numbers[i] = static_cast<std::uint8_t>(i);
+        return numbers;
     }();
     static_assert(core::max_cluster_points == 128, "two registers of 64 bytes, keys of 7 + 7 bits");
 };

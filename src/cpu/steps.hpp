@@ -24,6 +24,7 @@ template <class Real>
 struct Wanted {
     std::span<const Real> isovalues;
     Ties ties = Ties::merge;
+    bool ends = false; ///< records keep ends and weights of vertices instead of positions
     bool source_cells = false;
     std::span<const ops::CarriedField> fields{};
 };
