@@ -1,8 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The same bytes from portable code, AVX2 and AVX-512: as far as the machine goes, which the test prints.
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
+#include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 
 #include "core/level.hpp"
@@ -12,6 +18,20 @@
 
 namespace isotet::test {
 namespace {
+
+/// The reference's surface, from every level.
+void expect_equal_levels(const PackedGrid& packed, double isovalue, ExtractOptions options) {
+    options.engine = Engine::reference;
+    const std::string expected = bytes_of(extract(packed, isovalue, options).value().surface);
+    options.engine = Engine::cpu;
+    for (int level = 0; level <= int(core::best_level()); ++level) {
+        core::force_level(core::Level(level));
+        const Extraction made = extract(packed, isovalue, options).value();
+        core::force_level({});
+        ASSERT_TRUE(bytes_of(made.surface) == expected)
+            << "isovalue " << isovalue << ", " << core::name_of(core::Level(level));
+    }
+}
 
 TEST(InstructionLevels, GiveTheSameBytes) {
     RecordProperty("best_level", std::string(core::name_of(core::best_level())));
@@ -25,18 +45,29 @@ TEST(InstructionLevels, GiveTheSameBytes) {
                 ExtractOptions options;
                 options.edge_ends = options.source_cells = extras;
                 options.normals = extras ? Normals::gradient : Normals::none;
-                options.engine = Engine::reference;
-                const Surface reference = extract(packed, isovalue, options).value().surface;
-                options.engine = Engine::cpu;
-                for (int level = 0; level <= int(core::best_level()); ++level) {
-                    core::force_level(core::Level(level));
-                    const Surface surface = extract(packed, isovalue, options).value().surface;
-                    core::force_level({});
-                    ASSERT_TRUE(bytes_of(surface) == bytes_of(reference))
-                        << "seed " << seed << ", isovalue " << isovalue << ", " << core::name_of(core::Level(level));
-                }
+                SCOPED_TRACE(fmt::format("seed {}", seed));
+                expect_equal_levels(packed, isovalue, options);
             }
     }
+}
+
+/// Noise cuts half of all edges, and clusters have more vertices than a byte can number.
+TEST(InstructionLevels, GiveTheSameBytesOfNoise) {
+    Grid grid = make_grid({.shape = "kuhn", .side = 12}).value();
+    std::mt19937 random(1);
+    std::vector<float> noise(grid.points.tuples());
+    for (float& value : noise) value = std::uniform_real_distribution<float>(-1, 1)(random);
+    PointField field;
+    field.values = Array::own(std::move(noise));
+    const PackedGrid packed = pack(grid, field).value();
+    const Extraction made = extract(packed, 0).value();
+    ASSERT_GT(made.surface.positions.tuples(), 200 * made.report.selected_clusters)
+        << "own ones only: shared ones come on top";
+    ExtractOptions with_ends;
+    with_ends.edge_ends = true;
+    expect_equal_levels(packed, 0, {});
+    expect_equal_levels(packed, 0, with_ends);
+    expect_equal_levels(packed, 0.99, {});
 }
 
 TEST(InstructionLevels, StoreTheSameFields) {
