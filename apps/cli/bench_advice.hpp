@@ -19,7 +19,8 @@ struct Advice {
 /// Which row is fastest from one surface on, which from more: preparing, and then so much a surface.
 std::vector<Advice> advice_of(const std::vector<BenchRow>& rows);
 
-/// How many times as fast drawing with the interval tree is, the mean over the grids; nothing where it was not measured.
+/// How many times as fast drawing with the interval tree is, the mean over the grids; nothing where it was not
+/// measured.
 std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, BenchMethod method);
 
 } // namespace isotet::cli

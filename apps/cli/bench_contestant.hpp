@@ -37,7 +37,8 @@ struct BenchBed {
 struct BenchCosts {
     double prepare_seconds = 0; ///< packing, building the filter, uploading
     std::uint64_t host_bytes = 0, device_bytes = 0; ///< that stay: packed grid, tables, filter; on the device
-    std::uint64_t crossing_bytes = 0; ///< of the store: found no room on the device, and cross the bus for every picture
+    std::uint64_t crossing_bytes = 0; ///< of the store: found no room on the device, and cross the bus for every
+                                      ///< picture
 };
 
 /// From an isovalue to its picture, or without a device to its surface.
@@ -61,8 +62,8 @@ public:
     /// Does what is done once, and tells what it costs.
     virtual Result<BenchCosts> prepare(BenchBed& bed) = 0;
 
-    /// Makes the surface of an isovalue ready to be drawn: `times` has the parts ask and extract then. The surface lasts
-    /// until the next call.
+    /// Makes the surface of an isovalue ready to be drawn: `times` has the parts ask and extract then. The surface
+    /// lasts until the next call.
     virtual Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) = 0;
 };
 

@@ -28,6 +28,7 @@ PictureOptions bench_picture();
 
 /// Measures one pair. What the machine cannot (memory, device) is a row that says why.
 /// Errors   all others, and cancelled
-Result<BenchRow> measure(const BenchPair& pair, BenchBed& bed, const std::vector<double>& isovalues, std::uint64_t rounds);
+Result<BenchRow> measure(const BenchPair& pair, BenchBed& bed, const std::vector<double>& isovalues,
+                         std::uint64_t rounds);
 
 } // namespace isotet::cli

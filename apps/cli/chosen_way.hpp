@@ -23,7 +23,8 @@ struct ChosenWay {
     const char* filter() const noexcept { return brute() ? "none" : "cluster_ranges"; }
     const Forecast* forecast() const noexcept; ///< of the chosen way
 
-    /// Where packing, which was chosen, was refused for want of memory: brute becomes the way, if it was weighed and fits.
+    /// Where packing, which was chosen, was refused for want of memory: brute becomes the way, if it was weighed and
+    /// fits.
     bool takes_brute_instead(const Error& refusal);
 };
 

@@ -24,8 +24,8 @@ struct DeviceNumbers {
     std::uint64_t page_loads = 0;
 };
 
-/// --engine vulkan extracts on the device or not at all. Where the engine is left open but a device is named, what the device
-/// cannot do the CPU engine does, with a note.
+/// --engine vulkan extracts on the device or not at all. Where the engine is left open but a device is named, what the
+/// device cannot do the CPU engine does, with a note.
 class Extractor {
 public:
     Extractor(const ExtractCommand& command, Console& console) : command_(command), console_(console) {}
@@ -48,8 +48,8 @@ public:
     /// Uploads the packed grid, which stays where it is until unload().
     Result<void> load(const PackedGrid& packed);
 
-    /// Replaces the field or the points of the packed grid, here and on the device. Where the device fails and the CPU may
-    /// stand in, they are replaced here.
+    /// Replaces the field or the points of the packed grid, here and on the device. Where the device fails and the CPU
+    /// may stand in, they are replaced here.
     Result<void> set_field(PackedGrid& packed, const PointField& field, int threads);
     Result<void> set_points(PackedGrid& packed, const Array& points, int threads);
 

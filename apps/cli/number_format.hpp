@@ -16,8 +16,8 @@ std::string shortest(double value);
 /// Six significant digits: "3.14159".
 std::string rounded(double value);
 
-/// Six significant digits, or as many as tell the value from one that is `difference` away: "101325.42" of 0.01. Without a
-/// difference above 0 six.
+/// Six significant digits, or as many as tell the value from one that is `difference` away: "101325.42" of 0.01.
+/// Without a difference above 0 six.
 std::string rounded(double value, double difference);
 
 /// The same of each value, so that different values have different texts.

@@ -112,7 +112,9 @@ struct RenderCommand {
 };
 
 /// What `isotet bench` can measure.
-enum class BenchMethod : std::uint8_t { brute, clusters, clusters_vulkan, registers, registers_instanced, textures, mesh };
+enum class BenchMethod : std::uint8_t {
+    brute, clusters, clusters_vulkan, registers, registers_instanced, textures, mesh
+};
 
 struct BenchCommand {
     CommonOptions common;

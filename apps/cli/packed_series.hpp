@@ -22,8 +22,8 @@ public:
     /// What load() had to do.
     enum class Work { packed, moved_points, set_field };
 
-    /// Makes the packed grid that of this step, here and where the extractor has it: with the same cells as the step before
-    /// only points and values are set. One that was packed again the extractor does not have.
+    /// Makes the packed grid that of this step, here and where the extractor has it: with the same cells as the step
+    /// before only points and values are set. One that was packed again the extractor does not have.
     Result<Work> load(const Grid& grid, const PointField& field, Extractor& extractor, const Progress& progress);
 
     const PackedGrid& packed() const noexcept { return packed_; }

@@ -12,7 +12,8 @@
 
 namespace isotet::cli {
 
-/// A field of the grid: a point field or a component of one, a cell field as it is, otherwise what find_field() makes of the name.
+/// A field of the grid: a point field or a component of one, a cell field as it is, otherwise what find_field() makes
+/// of the name.
 /// Errors   invalid_argument: no such field; it has several components; --range is no range, or does not fit --log
 Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Console& console);
 

@@ -40,8 +40,8 @@ struct RenderInput {
 };
 
 /// Reads the file, chooses field and isovalues, and packs.
-/// Errors   as of reading and packing; invalid_argument where options are for grids, but the file is a surface, or a field
-///          to colour by is none
+/// Errors   as of reading and packing; invalid_argument where options are for grids, but the file is a surface, or a
+///          field to colour by is none
 Result<RenderInput> read_render_input(const RenderCommand& command, Console& console);
 
 } // namespace isotet::cli

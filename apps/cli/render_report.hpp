@@ -28,8 +28,8 @@ struct PictureNumbers {
 /// "0.25 %".
 std::string percent_text(double share);
 
-std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
-                         const PictureNumbers& picture);
+std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene,
+                         const Device& device, const PictureNumbers& picture);
 Json render_json(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
                  const PictureNumbers& picture);
 

@@ -22,7 +22,8 @@ namespace isotet::cli {
 struct SurfaceCounts {
     std::optional<double> isovalue; ///< nothing for a surface file
     std::uint64_t vertices = 0, triangles = 0;
-    std::uint64_t tets = 0, sent_bytes = 0; ///< of a method that draws tets: how many, and over the bus for this isovalue
+    std::uint64_t tets = 0, sent_bytes = 0; ///< of a method that draws tets: how many, and over the bus for this
+                                            ///< isovalue
 
     std::uint64_t size() const { return triangles + tets; }
 };
@@ -38,7 +39,8 @@ public:
     /// Makes the scene that of these isovalues; of a surface file there are none.
     Result<void> show(const std::vector<double>& isovalues);
 
-    /// Sees the whole grid, or the whole surface: the same for all isovalues, and from all sides of an orbit at the same distance.
+    /// Sees the whole grid, or the whole surface: the same for all isovalues, and from all sides of an orbit at the
+    /// same distance.
     void fit(Camera& camera, double aspect) const;
 
     const Scene& scene() const noexcept { return scene_; }
@@ -50,7 +52,8 @@ public:
     const char* engine() const { return input_.surface || tets_ ? "none" : grid_ ? "vulkan" : "cpu"; }
     const RenderTets* tets() const { return tets_ ? &*tets_ : nullptr; } ///< null: surfaces are drawn
     double upload_seconds() const noexcept { return upload_seconds_; }
-    double extract_seconds() const noexcept { return extract_seconds_; } ///< of all isovalues so far, with uploading by the CPU engine
+    double extract_seconds() const noexcept { return extract_seconds_; } ///< of all isovalues so far, with uploading by
+                                                                         ///< the CPU engine
     const DeviceWork& extract_work() const noexcept { return work_; }    ///< empty with the CPU engine
 
 private:

@@ -12,9 +12,9 @@
 
 namespace isotet::cli {
 
-/// Ways that the options leave open are weighed (isotet/choose.hpp): by typical speeds; where the work takes longer than
-/// measuring, by those of this machine, which are measured once and kept. A graphics card that nobody asked for is opened
-/// if the CPU would extract for long, and stays open in `extractor` if it is chosen.
+/// Ways that the options leave open are weighed (isotet/choose.hpp): by typical speeds; where the work takes longer
+/// than measuring, by those of this machine, which are measured once and kept. A graphics card that nobody asked for is
+/// opened if the CPU would extract for long, and stays open in `extractor` if it is chosen.
 ///
 /// Errors   cancelled
 Result<ChosenWay> choose_way(const ExtractCommand& command, const Task& task, Extractor& extractor, Console& console);

@@ -10,8 +10,8 @@
 
 namespace isotet {
 
-/// Pictures one after another in one file, for ever: animated WebP, which browsers and slides show. The file is there when
-/// finish() has written it; without that nothing is written. Moving is cheap.
+/// Pictures one after another in one file, for ever: animated WebP, which browsers and slides show. The file is there
+/// when finish() has written it; without that nothing is written. Moving is cheap.
 class Animation {
 public:
     /// `path`                 ends in .webp

@@ -19,8 +19,9 @@ struct LegendEntry {
     std::string text;
 };
 
-/// What is written beside a picture: at the right a colour scale with ticks at round numbers, or a legend, or both, under a
-/// title; below a caption. Text is UTF-8; a font is part of isotet, with Latin and Greek letters, and what it lacks is a box.
+/// What is written beside a picture: at the right a colour scale with ticks at round numbers, or a legend, or both,
+/// under a title; below a caption. Text is UTF-8; a font is part of isotet, with Latin and Greek letters, and what it
+/// lacks is a box.
 struct Annotation {
     std::string title;
     std::optional<ColorScale> scale;
@@ -39,16 +40,17 @@ struct PictureSize {
     std::uint32_t width = 0, height = 0;
 };
 
-/// What an annotation leaves, in a picture of `whole`, for what is drawn; nothing when that would be less than half of its
-/// width or height: then the picture is too small for text.
+/// What an annotation leaves, in a picture of `whole`, for what is drawn; nothing when that would be less than half of
+/// its width or height: then the picture is too small for text.
 /// Errors   internal when the font cannot be opened
 Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole);
 
-/// A picture of `whole`, with a scene of the size that room_beside() says in its upper left corner, and the annotation beside it:
-/// dark on light backgrounds, light on dark ones. An empty background stays empty.
+/// A picture of `whole`, with a scene of the size that room_beside() says in its upper left corner, and the annotation
+/// beside it: dark on light backgrounds, light on dark ones. An empty background stays empty.
 ///
 /// Guarantees   the same bytes for the same version of FreeType
 /// Errors       invalid_argument when the scene has another size; internal when the font cannot be opened
-Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole, const Color& background);
+Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole,
+                         const Color& background);
 
 } // namespace isotet

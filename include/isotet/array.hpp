@@ -47,7 +47,8 @@ public:
     Array() = default;
 
     /// Shares memory kept alive by `owner` (a reader's array, a memory mapping, a NumPy array).
-    Array(ScalarType type, const void* data, std::size_t tuples, std::size_t components, std::shared_ptr<const void> owner)
+    Array(ScalarType type, const void* data, std::size_t tuples, std::size_t components,
+          std::shared_ptr<const void> owner)
         : data_(data), tuples_(tuples), components_(components), owner_(std::move(owner)), type_(type) {}
 
     /// Takes a vector over, without a copy. Its size must be a multiple of `components`.

@@ -8,8 +8,8 @@
 
 namespace isotet {
 
-/// The boundary of a packed grid: all faces that its tets do not use equally often in both directions, holes of no data not
-/// counted. Triangles face outwards; a face that is used more than once too often stands there once.
+/// The boundary of a packed grid: all faces that its tets do not use equally often in both directions, holes of no data
+/// not counted. Triangles face outwards; a face that is used more than once too often stands there once.
 ///
 /// Guarantees   the same bytes for any thread count
 /// Cost         O(T log T); about 5 to 10 bytes a tet while it works, and the surface

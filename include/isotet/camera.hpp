@@ -25,8 +25,8 @@ struct Box {
 Box bounds_of(const PackedGrid& packed);
 Box bounds_of(const Surface& surface);
 
-/// From where one looks: obliquely from the front, the right and above; or from the end of an axis. z is up, except that from
-/// +z and -z y is.
+/// From where one looks: obliquely from the front, the right and above; or from the end of an axis. z is up, except
+/// that from +z and -z y is.
 enum class View : std::uint8_t { iso, plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
 
 /// "iso", "+x", "-x" and so on, and back.
@@ -57,13 +57,14 @@ struct Camera {
     /// `margin`   part of the picture that is left free on each side, below 0.5
     void fit(const Box& box, double aspect, double margin = 0.04);
 
-    /// The same of all vertices of a surface that are finite: closer than their box, which has corners where nothing is.
+    /// The same of all vertices of a surface that are finite: closer than their box, which has corners where nothing
+    /// is.
     /// Cost   one pass
     void fit(const Surface& surface, double aspect, double margin = 0.04);
 
-    /// The same for all cameras that orbit(azimuth, 0) leads to: at one distance, as small as lets each of them see all. A
-    /// camera that has gone around and fits again keeps its distance, as long as it looks up or down by less than 45 degrees;
-    /// the axis that it goes around is in the middle of the picture.
+    /// The same for all cameras that orbit(azimuth, 0) leads to: at one distance, as small as lets each of them see
+    /// all. A camera that has gone around and fits again keeps its distance, as long as it looks up or down by less
+    /// than 45 degrees; the axis that it goes around is in the middle of the picture.
     /// Cost   as fit()
     void fit_orbit(const Box& box, double aspect, double margin = 0.04);
     void fit_orbit(const Surface& surface, double aspect, double margin = 0.04);

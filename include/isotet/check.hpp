@@ -36,7 +36,8 @@ struct SurfaceReport {
     std::uint64_t touching_vertices = 0;       ///< vertices whose triangles are not one fan
     std::uint64_t coincident_vertices = 0;     ///< vertices at the position of an earlier one
     std::uint64_t unused_vertices = 0;
-    std::uint64_t collapsed_by_welding = 0;    ///< triangles that welding by coordinates removed (formats without numbers)
+    std::uint64_t collapsed_by_welding = 0;    ///< triangles that welding by coordinates removed (formats without
+                                               ///< numbers)
     std::uint64_t components = 0;
     std::int64_t euler = 0;                    ///< V - E + F, over used vertices
     std::vector<std::int64_t> genus;           ///< one for each closed, manifold, oriented component
@@ -50,7 +51,8 @@ struct SurfaceReport {
 
 struct CheckOptions {
     bool closed = false;       ///< blame every edge used unequally often in the two directions
-    const Grid* grid = nullptr; ///< blame such edges unless their grid points lie in one boundary face of the valid tets; needs surface.edge_ends
+    const Grid* grid = nullptr; ///< blame such edges unless their grid points lie in one boundary face of the valid
+                                ///< tets; needs surface.edge_ends
     const PointField* field = nullptr; ///< with `grid`: tets with a corner of no data are not valid
     bool weld = false;         ///< weld by exact coordinates first (STL)
     int most_findings = 5;     ///< of each kind

@@ -35,17 +35,18 @@ public:
     /// Cells that are not as they should be are passed over: reading and packing say what is wrong with them.
     ///
     /// Cost     a few milliseconds
-    /// Errors   invalid_argument when the field does not fit the grid; invalid_data when the arrays of the grid do not fit
-    ///          together; out_of_memory
+    /// Errors   invalid_argument when the field does not fit the grid; invalid_data when the arrays of the grid do not
+    ///          fit together; out_of_memory
     static Result<FieldSample> take(const Grid& grid, const PointField& field);
 
     std::uint64_t points() const noexcept { return points_; } ///< of the grid
-    std::uint64_t tets() const noexcept { return tets_; }     ///< of the grid, estimated where cells are not tets; exact where they are
+    std::uint64_t tets() const noexcept { return tets_; }     ///< of the grid, estimated where cells are not tets;
+                                                              ///< exact where they are
     double lower() const noexcept { return lower_; }          ///< of the values seen; lower > upper: none is finite
     double upper() const noexcept { return upper_; }
 
-    /// Triangles of an isovalue's surface, estimated. Of a surface that cuts few cells the estimate is rough: from t cut tets
-    /// in the sample it is wrong by about a part of 1 / sqrt(t).
+    /// Triangles of an isovalue's surface, estimated. Of a surface that cuts few cells the estimate is rough: from t
+    /// cut tets in the sample it is wrong by about a part of 1 / sqrt(t).
     double triangles(double isovalue) const noexcept;
 
 private:
@@ -70,8 +71,8 @@ struct Task {
     std::optional<std::uint64_t> device_memory_free; ///< nothing: there is no device
 };
 
-/// Seconds that a machine takes, with a number of threads. Those of calls come once a grid or a surface, besides tets and
-/// triangles.
+/// Seconds that a machine takes, with a number of threads. Those of calls come once a grid or a surface, besides tets
+/// and triangles.
 struct Speeds {
     double pack_call = 0, pack_tet = 0, pack_gradient_tet = 0; ///< the last: with gradients, besides
     double brute_call = 0, brute_tet = 0, brute_triangle = 0, brute_gradient_tet = 0;
@@ -102,14 +103,16 @@ Result<DeviceSpeeds> measure_speeds(const Device& device, int threads = 0, const
 struct Forecast {
     Way way = Way::brute;
     double seconds = 0;
-    std::uint64_t bytes = 0;        ///< needed beyond the grid, at the peak; rather too many than too few. Memory that is free is
-                                    ///< used beyond that, to keep blocks for later: up to 1/64 of the machine's
-    std::uint64_t device_bytes = 0; ///< the packed grid and a surface; less will do, slower, but does not count as fitting
+    std::uint64_t bytes = 0;        ///< needed beyond the grid, at the peak; rather too many than too few. Memory that
+                                    ///< is free is used beyond that, to keep blocks for later: up to 1/64 of the
+                                    ///< machine's
+    std::uint64_t device_bytes = 0; ///< the packed grid and a surface; less will do, slower, but does not count as
+                                    ///< fitting
     bool fits = false;              ///< into the memory that is free
 };
 
-/// All ways that there are: those that fit, the fastest first, then those that do not, the smallest first. Ways on a device are
-/// there if the device is.
+/// All ways that there are: those that fit, the fastest first, then those that do not, the smallest first. Ways on a
+/// device are there if the device is.
 ///
 /// `task`    numbers that are finite and not negative
 /// `device`  of the device; null: none is weighed

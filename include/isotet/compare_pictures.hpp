@@ -13,8 +13,8 @@ namespace isotet {
 /// Errors   file: not there; invalid_data: no PNG, broken, or of more than 32768 x 32768 pixels
 Result<Picture> read_picture(const std::string& path);
 
-/// The share of pixels, 0 to 1, that differ visibly: in some part by more than `tolerance` of 255. Where nothing can be seen in
-/// either picture, colours do not count.
+/// The share of pixels, 0 to 1, that differ visibly: in some part by more than `tolerance` of 255. Where nothing can be
+/// seen in either picture, colours do not count.
 ///
 /// Errors   invalid_argument when the pictures have different sizes
 Result<double> difference(const Picture& a, const Picture& b, int tolerance = 12);

@@ -32,7 +32,8 @@ struct DeviceInfo {
     std::string driver;                ///< name and version: "NVIDIA 550.54.14"
     std::string api;                   ///< Vulkan version: "1.3.277"
     std::uint64_t memory = 0;          ///< bytes of the device's own memory (of the machine's, where they are one)
-    std::uint64_t memory_free = 0;     ///< of these, what this process can still take; all of `memory` where the driver does not tell
+    std::uint64_t memory_free = 0;     ///< of these, what this process can still take; all of `memory` where the driver
+                                       ///< does not tell
     bool memory_free_known = false;    ///< the driver tells (VK_EXT_memory_budget)
     bool unified_memory = false;       ///< the processor reads and writes the device's memory directly
     bool transfer_queue = false;       ///< copies to and from the device have a queue of their own
@@ -61,11 +62,12 @@ struct DeviceList {
 Result<DeviceList> list_devices();
 
 struct DeviceOptions {
-    /// "": the best real GPU that can be used (discrete before integrated before virtual, then the most memory), never a
-    /// software device. "software": the software device. A number: the index in list_devices(). Else a part of a name, in
-    /// small or capital letters, that fits one device only.
+    /// "": the best real GPU that can be used (discrete before integrated before virtual, then the most memory), never
+    /// a software device. "software": the software device. A number: the index in list_devices(). Else a part of a
+    /// name, in small or capital letters, that fits one device only.
     std::string choice;
-    std::uint64_t memory_limit = 0; ///< bytes of device memory that buffers may take in all; 0: what the driver says is free
+    std::uint64_t memory_limit = 0; ///< bytes of device memory that buffers may take in all; 0: what the driver says is
+                                    ///< free
 };
 
 /// A device that is ready to work. Copies share it.
@@ -76,8 +78,8 @@ public:
     /// Opens a device and tests its arithmetic on the device itself (docs/inside/gpu.md).
     ///
     /// Cost      100 ms to a second, mostly the driver's; compiled kernels are kept in XDG_CACHE_HOME/isotet
-    /// Errors    invalid_argument when no device, or more than one, fits the choice; machine when there is no Vulkan, no GPU,
-    ///           or when the device cannot be used, with the reason
+    /// Errors    invalid_argument when no device, or more than one, fits the choice; machine when there is no Vulkan,
+    ///           no GPU, or when the device cannot be used, with the reason
     static Result<Device> open(const DeviceOptions& options = {});
 
     /// A device that was opened with settings of its own, by tests.

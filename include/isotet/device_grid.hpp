@@ -23,9 +23,10 @@ class SurfaceBuffers;
 }
 
 struct DeviceGridOptions {
-    std::uint64_t page_bytes = std::uint64_t{32} << 20; ///< of a page, 1 GiB at most: what is moved at once where not all of the grid fits
-    /// Device memory that uploading leaves free for surfaces where not all of the grid fits; nothing: an eighth of what is
-    /// free.
+    std::uint64_t page_bytes = std::uint64_t{32} << 20; ///< of a page, 1 GiB at most: what is moved at once where not
+                                                        ///< all of the grid fits
+    /// Device memory that uploading leaves free for surfaces where not all of the grid fits; nothing: an eighth of what
+    /// is free.
     std::optional<std::uint64_t> surface_bytes;
 };
 
@@ -49,7 +50,8 @@ struct DevicePass {
 /// What a call cost.
 struct DeviceWork {
     std::vector<DevicePass> passes;    ///< in order; empty where the device has no timestamps
-    double device_seconds = 0;         ///< from the beginning of the first pass to the end of the last, waits between aside
+    double device_seconds = 0;         ///< from the beginning of the first pass to the end of the last, waits between
+                                       ///< aside
     double waited_seconds = 0;         ///< for the device, as seen from here
     std::uint64_t uploaded_bytes = 0;  ///< over the bus
     std::uint64_t downloaded_bytes = 0;
@@ -73,7 +75,8 @@ public:
     std::uint64_t triangle_count() const noexcept;
     std::uint64_t device_bytes() const noexcept; ///< taken, with the room that is kept for the next surface
 
-    /// The buffers, for drawing; src/vulkan/engine/surface_buffers.hpp says what stands where. Null before any extraction.
+    /// The buffers, for drawing; src/vulkan/engine/surface_buffers.hpp says what stands where. Null before any
+    /// extraction.
     const vulkan::SurfaceBuffers* buffers() const noexcept;
 
 private:
@@ -82,12 +85,14 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-/// A packed grid on a device: uploaded once, then each new isovalue is answered there, and only what is asked for comes back.
+/// A packed grid on a device: uploaded once, then each new isovalue is answered there, and only what is asked for comes
+/// back.
 ///
-/// The grid lies on the device in pages. Where not all of them fit, those that an isovalue needs are loaded, and the least
-/// recently used ones go: slower, the same surfaces.
+/// The grid lies on the device in pages. Where not all of them fit, those that an isovalue needs are loaded, and the
+/// least recently used ones go: slower, the same surfaces.
 ///
-/// Guarantees   surfaces are the same bytes as those of extract() on the same packed grid, unless the device has a notice
+/// Guarantees   surfaces are the same bytes as those of extract() on the same packed grid, unless the device has a
+///              notice
 /// Threads      one call at a time on one device
 /// Method       marching tetrahedra over clusters in compute shaders; docs/inside/gpu.md
 class DeviceGrid {
@@ -98,28 +103,29 @@ public:
 
     /// Uploads a packed grid.
     ///
-    /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages that did
-    ///            not fit, for the user's numbers of points and cells, and for ties, unless it is given up. When its field or points are set, but
-    ///            not by the functions below, it must be uploaded again
+    /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages
+    ///            that did not fit, for the user's numbers of points and cells, and for ties, unless it is given up.
+    ///            When its field or points are set, but not by the functions below, it must be uploaded again
     /// Cost       about 11 bytes a tet over the bus
-    /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more; out_of_memory,
-    ///            before anything is uploaded, when needs().least() is more than is free; machine; cancelled
-    static Result<DeviceGrid> upload(const Device& device, const PackedGrid& packed, const DeviceGridOptions& options = {},
-                                     const Progress& progress = {});
+    /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more;
+    ///            out_of_memory, before anything is uploaded, when needs().least() is more than is free; machine;
+    ///            cancelled
+    static Result<DeviceGrid> upload(const Device& device, const PackedGrid& packed,
+                                     const DeviceGridOptions& options = {}, const Progress& progress = {});
 
     DeviceGrid(DeviceGrid&&) noexcept;
     DeviceGrid& operator=(DeviceGrid&&) noexcept;
     ~DeviceGrid();
 
-    /// Replaces the contoured field of the packed grid and of the grid on the device (another field, or the next time step):
-    /// values go up, ranges are worked out on the device and come back.
+    /// Replaces the contoured field of the packed grid and of the grid on the device (another field, or the next time
+    /// step): values go up, ranges are worked out on the device and come back.
     ///
     /// `packed`     the one that was uploaded
     /// Guarantees   the packed grid is byte for byte what packed.set_field() makes of it
-    /// Cost         a pass over the values and 4 bytes a point over the bus, 0.1 bytes a tet back; gradients, and ranges of pages
-    ///              that are not on the device, are worked out on the processor
-    /// Errors       as PackedGrid::set_field(); invalid_argument when `packed` is another one; of the device: out_of_memory,
-    ///              machine. The packed grid has the field then, but must be uploaded again
+    /// Cost         a pass over the values and 4 bytes a point over the bus, 0.1 bytes a tet back; gradients, and
+    ///              ranges of pages that are not on the device, are worked out on the processor
+    /// Errors       as PackedGrid::set_field(); invalid_argument when `packed` is another one; of the device:
+    ///              out_of_memory, machine. The packed grid has the field then, but must be uploaded again
     Result<void> set_field(PackedGrid& packed, const PointField& field, int threads = 0, const Progress& progress = {});
 
     /// Replaces the coordinates of both (a mesh that moves).
@@ -128,9 +134,9 @@ public:
     /// Errors   as PackedGrid::set_points(): nothing has changed then; the others as set_field()
     Result<void> set_points(PackedGrid& packed, const Array& points, int threads = 0, const Progress& progress = {});
 
-    /// Lets the packed grid go, which may then be changed or destroyed. Extraction stays, without what its numbers are needed
-    /// for: edge ends, source cells, cell fields, and point fields that are not on the device yet; the report then does not tell
-    /// false ties and near ties, and set_field() and set_points() are errors.
+    /// Lets the packed grid go, which may then be changed or destroyed. Extraction stays, without what its numbers are
+    /// needed for: edge ends, source cells, cell fields, and point fields that are not on the device yet; the report
+    /// then does not tell false ties and near ties, and set_field() and set_points() are errors.
     ///
     /// Errors   invalid_argument when not all pages are there
     Result<void> give_up_packed();
@@ -140,24 +146,25 @@ public:
 
     /// Extracts the surface of an isovalue; it stays on the device. `options` as for extract(), `engine` aside.
     ///
-    /// Point fields are uploaded once, 4 bytes a point and component, and stay while their arrays live (borrowed ones are
-    /// uploaded each time); where there is no room for them, download() interpolates instead.
+    /// Point fields are uploaded once, 4 bytes a point and component, and stay while their arrays live (borrowed ones
+    /// are uploaded each time); where there is no room for them, download() interpolates instead.
     ///
-    /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes, and new fields. Where pages must be
-    ///          loaded: these, up to twice
-    /// Errors   as extract(); invalid_argument when the surface has 2^32 vertices or triangles or more; out_of_memory of the
-    ///          device; machine
+    /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes, and new fields. Where pages
+    ///          must be loaded: these, up to twice
+    /// Errors   as extract(); invalid_argument when the surface has 2^32 vertices or triangles or more; out_of_memory
+    ///          of the device; machine
     Result<DeviceSurface> extract(double isovalue, const ExtractOptions& options = {}, const Progress& progress = {});
 
     /// The same, into a surface that was extracted before: its memory is used again where it is large enough.
-    Result<void> extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options = {}, const Progress& progress = {});
+    Result<void> extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options = {},
+                         const Progress& progress = {});
 
     /// The surfaces of several isovalues, in their order, in one submission where everything fits.
     Result<std::vector<DeviceSurface>> extract(std::span<const double> isovalues, const ExtractOptions& options = {},
                                                const Progress& progress = {});
 
-    /// A surface of this grid, on the processor, with all that was asked for when it was extracted. When the packed grid has
-    /// got another field or other points since then, the report does not tell false ties and near ties.
+    /// A surface of this grid, on the processor, with all that was asked for when it was extracted. When the packed
+    /// grid has got another field or other points since then, the report does not tell false ties and near ties.
     ///
     /// Cost     the arrays over the bus; cell fields are copied here
     Result<Extraction> download(const DeviceSurface& surface, const Progress& progress = {});
@@ -169,8 +176,8 @@ private:
     struct Data;
     explicit DeviceGrid(std::unique_ptr<Data> data);
     Result<void> check_same(const PackedGrid& packed) const;
-    Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces, const ExtractOptions& options,
-                              const Progress& progress);
+    Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
+                              const ExtractOptions& options, const Progress& progress);
     std::unique_ptr<Data> data_;
 };
 

@@ -29,19 +29,23 @@ struct ExtractOptions {
     bool edge_ends = false;          ///< edge_ends and edge_weights
     bool source_cells = false;       ///< needs PackOptions::source_cells
     std::vector<Field> point_fields; ///< carried onto the surface: one tuple a point of the user's grid, any components
-    std::vector<Field> cell_fields;  ///< copied to the triangles: one tuple a user's cell; needs PackOptions::source_cells
+    std::vector<Field> cell_fields;  ///< copied to the triangles: one tuple a user's cell; needs
+                                     ///< PackOptions::source_cells
     int threads = 0;                 ///< 0: all
 };
 
 struct ExtractReport {
     std::uint64_t selected_clusters = 0;
     std::uint64_t tied_points = 0;            ///< points whose stored value equals the stored isovalue
-    std::optional<std::uint64_t> false_ties;  ///< of these, not ties in the input's own precision; nothing when the input is no longer at hand
-    bool near_tie = false; ///< no point is tied, but points hold the value of the field's type nearest to the isovalue (0.7 on float32)
+    std::optional<std::uint64_t> false_ties;  ///< of these, not ties in the input's own precision; nothing when the
+                                              ///< input is no longer at hand
+    bool near_tie = false; ///< no point is tied, but points hold the value of the field's type nearest to the isovalue
+                           ///< (0.7 on float32)
     double isovalue_stored = 0;               ///< the isovalue as rounded for the comparison, in the unit of the field
     std::uint64_t surface_bytes = 0;          ///< all arrays of the surface
     std::uint64_t transient_bytes = 0;        ///< beyond the surfaces themselves, at the peak of the call
-    std::uint64_t predicted_bytes = 0;        ///< what the call was expected to need at most, surfaces included, before it began
+    std::uint64_t predicted_bytes = 0;        ///< what the call was expected to need at most, surfaces included, before
+                                              ///< it began
 };
 
 struct Extraction {
@@ -59,7 +63,8 @@ struct Extraction {
 ///
 /// Guarantees   every crossed edge gives one vertex; the surface is closed except on boundary faces of the valid tets;
 ///              the same bytes for any thread count and on every engine
-/// Cost         O(C + V + F); transient memory at most 48 bytes a triangle, 100 a selected cluster, 16 a cluster, 1 MB a thread
+/// Cost         O(C + V + F); transient memory at most 48 bytes a triangle, 100 a selected cluster, 16 a cluster, 1 MB
+///              a thread
 /// Errors       invalid_argument when the isovalue is not finite, a field does not fit, or something was not packed;
 ///              out_of_memory; cancelled
 /// Threads      safe from many threads on one packed grid
@@ -67,14 +72,14 @@ struct Extraction {
 Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options = {},
                            const Progress& progress = {});
 
-/// Extracts the surfaces of several isovalues in one pass: the ranges of all clusters are looked at once, and a cluster that
-/// several isovalues cut is read once. The more clusters they have in common, the more this saves.
+/// Extracts the surfaces of several isovalues in one pass: the ranges of all clusters are looked at once, and a cluster
+/// that several isovalues cut is read once. The more clusters they have in common, the more this saves.
 ///
 /// `isovalues`  finite; in any order, with repetitions or none at all
 ///
 /// Guarantees   the surfaces stand in the order of `isovalues`, each the same bytes as when extracted alone
-/// Cost         O(C + V + F) of all surfaces; they are in memory together, and so is the transient memory of each: limits as
-///              above, a cluster counted once for every isovalue that selects it
+/// Cost         O(C + V + F) of all surfaces; they are in memory together, and so is the transient memory of each:
+///              limits as above, a cluster counted once for every isovalue that selects it
 /// Errors       as above; all or nothing
 Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
                                         const ExtractOptions& options = {}, const Progress& progress = {});

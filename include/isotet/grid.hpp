@@ -52,8 +52,10 @@ struct GridReport {
     std::size_t points = 0;
     std::size_t cells = 0;
     std::map<std::uint8_t, std::size_t> cells_by_type; ///< VTK's number -> cells
-    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic, polyhedral)
-    std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones counted
+    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic,
+                                                       ///< polyhedral)
+    std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones
+                                                       ///< counted
     std::size_t collapsed_tets = 0;    ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
     std::size_t repeated_tets = 0;     ///< tets with the same four corners as an earlier one; packing keeps the first
     std::size_t negative_tets = 0;     ///< tets of negative volume in the order of the file
@@ -128,7 +130,8 @@ struct FindFieldOptions {
 };
 Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {});
 
-/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is needed.
+/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
+/// needed.
 struct FieldName {
     std::string field;
     std::optional<std::string> component;

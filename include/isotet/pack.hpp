@@ -34,7 +34,8 @@ struct PackReport {
     std::uint64_t cells_left_out = 0;  ///< cells of types that are not contoured
     std::uint64_t collapsed_tets = 0, repeated_tets = 0, negative_tets = 0, inverted_tets = 0, flat_tets = 0;
     std::uint64_t flushed_coordinates = 0; ///< non-zero coordinates below 2^-70, stored as 0
-    std::uint64_t coarse_clusters = 0; ///< clusters where rounding to float32 moves a point by over a thousandth of the shortest edge
+    std::uint64_t coarse_clusters = 0; ///< clusters where rounding to float32 moves a point by over a thousandth of the
+                                       ///< shortest edge
     std::uint64_t bytes = 0;           ///< packed grid, point map included
     std::uint64_t source_bytes = 0;    ///< of the map to user's cells
     std::uint64_t gradient_bytes = 0;
@@ -43,7 +44,8 @@ struct PackReport {
 /// How a field's values are stored; see docs/inside/precision.md.
 struct FieldReport {
     std::string name;
-    double lower = 0, upper = 0;       ///< smallest and largest finite value at the points that tets use, as the user gave them; lower > upper: there is none
+    double lower = 0, upper = 0;       ///< smallest and largest finite value at the points that tets use, as the user
+                                       ///< gave them; lower > upper: there is none
     std::uint64_t no_data = 0;         ///< points with NaN
     std::uint64_t infinite = 0;
     std::uint64_t flushed = 0;         ///< non-zero values that are stored as 0
@@ -87,8 +89,8 @@ public:
     /// Replaces the coordinates (a mesh that moves) without packing again: the same points and cells in the same order.
     ///
     /// `points`  float32 or float64, 3 components, as many as the user's grid has
-    /// Errors    invalid_argument when the shape or type is wrong; invalid_data when a coordinate is not finite or 2^91 or
-    ///           more, or when a tet changes its orientation (pack again)
+    /// Errors    invalid_argument when the shape or type is wrong; invalid_data when a coordinate is not finite or 2^91
+    ///           or more, or when a tet changes its orientation (pack again)
     Result<void> set_points(const Array& points, int threads = 0, const Progress& progress = {});
 
 private:

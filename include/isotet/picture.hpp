@@ -29,14 +29,18 @@ struct Picture {
     std::uint32_t width = 0, height = 0;
     std::vector<std::array<std::uint8_t, 4>> pixels;
 
-    const std::array<std::uint8_t, 4>& at(std::uint32_t x, std::uint32_t y) const noexcept { return pixels[std::size_t{y} * width + x]; }
+    const std::array<std::uint8_t, 4>& at(std::uint32_t x, std::uint32_t y) const noexcept {
+        return pixels[std::size_t{y} * width + x];
+    }
     bool opaque() const noexcept; ///< no pixel lets anything through
 };
 
-/// Writes a PNG file, with an alpha channel only where the picture is not opaque. Written beside and renamed, as all files.
+/// Writes a PNG file, with an alpha channel only where the picture is not opaque. Written beside and renamed, as all
+/// files.
 ///
 /// Guarantees   the same bytes for the same picture (and version of libpng and zlib)
-/// Errors       invalid_argument when the ending is not .png, or the picture has no pixels; file, machine as write_surface()
+/// Errors       invalid_argument when the ending is not .png, or the picture has no pixels; file, machine as
+///              write_surface()
 Result<std::uint64_t> write_picture(const Picture& picture, const std::string& path);
 
 } // namespace isotet

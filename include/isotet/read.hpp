@@ -45,10 +45,12 @@ struct ReadOptions {
     std::string format;                            ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
     std::optional<std::size_t> step;               ///< index into FileInfo::times; nothing: the first
-    bool merge_pieces_by_coordinates = false;      ///< pieces without global ids: join points with exactly equal coordinates
+    bool merge_pieces_by_coordinates = false;      ///< pieces without global ids: join points with exactly equal
+                                                   ///< coordinates
     bool allow_outside = false;                    ///< index files may name files outside their own folder
     std::string displace;                          ///< a point vector field to add to the coordinates
-    std::string reader_program;                    ///< the program that runs VTK's readers ("isotet"); empty: the installed one
+    std::string reader_program;                    ///< the program that runs VTK's readers ("isotet"); empty: the
+                                                   ///< installed one
     std::uint64_t memory_limit = 0;                ///< bytes of address space of a reader process; 0: by free memory
     std::chrono::seconds time_limit{3600};
 };
@@ -65,19 +67,22 @@ Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {
 
 /// Reads a grid. Fields have the names of the file; coordinates are those of the file.
 ///
-/// Every grid that comes back has passed the checks of array lengths and index ranges; a file that is cut short or broken
-/// is an error that says what was seen. VTK's readers run in a child process: if one crashes, that is an error, too.
+/// Every grid that comes back has passed the checks of array lengths and index ranges; a file that is cut short or
+/// broken is an error that says what was seen. VTK's readers run in a child process: if one crashes, that is an error,
+/// too.
 ///
 /// Errors   file: not there, not readable, format not recognized; invalid_data: broken content; invalid_argument: an
 ///          unknown field, step or format; out_of_memory; machine; cancelled
 Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Progress& progress = {});
 
-/// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared vertices: weld it.
+/// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared
+/// vertices: weld it.
 struct SurfaceFile {
     Surface surface;
     std::string format;
 };
-Result<SurfaceFile> read_surface(const std::string& path, const std::string& format = {}, const Progress& progress = {});
+Result<SurfaceFile> read_surface(const std::string& path, const std::string& format = {},
+                                 const Progress& progress = {});
 
 /// What a program that serves as reader_program must call first in main(): does the reading and returns the exit status
 /// when it was started as a reader process, nothing otherwise.

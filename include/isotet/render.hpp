@@ -56,8 +56,9 @@ public:
     /// Uploads positions, triangles and, where there is one a vertex, normals.
     ///
     /// Cost     12 to 24 bytes a vertex and 12 a triangle over the bus
-    /// Errors   invalid_argument when the surface has 2^32 vertices or triangles or more, or arrays that do not fit together;
-    ///          invalid_data when a triangle has a vertex that is not there, or a vertex is not finite; out_of_memory; machine
+    /// Errors   invalid_argument when the surface has 2^32 vertices or triangles or more, or arrays that do not fit
+    ///          together; invalid_data when a triangle has a vertex that is not there, or a vertex is not finite;
+    ///          out_of_memory; machine
     static Result<DeviceMesh> upload(const Device& device, const Surface& surface);
 
     DeviceMesh(DeviceMesh&&) noexcept;
@@ -78,15 +79,17 @@ class DeviceColors {
 public:
     /// For a mesh: a scalar a vertex, or a triangle.
     /// Errors   invalid_argument when `values` has several components, or the scale is wrong; out_of_memory; machine
-    static Result<DeviceColors> of_mesh(const Device& device, const Array& values, Association association, const ColorScale& scale);
+    static Result<DeviceColors> of_mesh(const Device& device, const Array& values, Association association,
+                                        const ColorScale& scale);
 
-    /// For surfaces that are extracted on the device: a scalar a point or a cell of the user's grid. Surfaces extracted with
-    /// edge_ends (points) or source_cells (cells) are coloured by it where they are: it is uploaded once, not once a surface.
+    /// For surfaces that are extracted on the device: a scalar a point or a cell of the user's grid. Surfaces extracted
+    /// with edge_ends (points) or source_cells (cells) are coloured by it where they are: it is uploaded once, not once
+    /// a surface.
     ///
     /// `packed`   the grid that was uploaded; for cells packed with source_cells
     /// Errors     as of_mesh(); invalid_argument when the number of values is not that of the grid
-    static Result<DeviceColors> of_grid(const Device& device, const PackedGrid& packed, const Array& values, Association association,
-                                        const ColorScale& scale);
+    static Result<DeviceColors> of_grid(const Device& device, const PackedGrid& packed, const Array& values,
+                                        Association association, const ColorScale& scale);
 
     DeviceColors(DeviceColors&&) noexcept;
     DeviceColors& operator=(DeviceColors&&) noexcept;
@@ -98,14 +101,15 @@ private:
     std::unique_ptr<render::FieldBuffer> buffer_;
 };
 
-/// Something with triangles that is drawn: an uploaded mesh, a surface where the Vulkan engine left it, or tets that give
-/// their triangles while they are drawn (draw_tets.hpp).
+/// Something with triangles that is drawn: an uploaded mesh, a surface where the Vulkan engine left it, or tets that
+/// give their triangles while they are drawn (draw_tets.hpp).
 struct DrawnSurface {
     const DeviceMesh* mesh = nullptr;       ///< one of `mesh`, `surface` and `tets`; borrowed
     const DeviceSurface* surface = nullptr;
     const DeviceColors* colors = nullptr;   ///< borrowed; null: `color` everywhere. Tets have none
     Color color{0.70F, 0.75F, 0.80F, 1};    ///< its opacity does not count
-    double opacity = 1;                     ///< of the sheet seen at a right angle; at a slant it is denser. 0: not drawn
+    double opacity = 1;                     ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
+                                            ///< drawn
     const TetSurface* tets = nullptr;
 };
 
@@ -135,12 +139,12 @@ struct PictureOptions {
     Camera camera;
 };
 
-/// Draws scenes on a device. Nothing is read back but the picture (and a count where something is translucent). Drawing on a
-/// software device works like drawing on any other.
+/// Draws scenes on a device. Nothing is read back but the picture (and a count where something is translucent). Drawing
+/// on a software device works like drawing on any other.
 ///
-/// Light comes from the eye: a surface seen at a right angle has just its own colour. Both sides are lit. Gradient normals
-/// shade smoothly, without them every triangle is flat. Translucent surfaces are put in order sample by sample, so that any
-/// number of them may pass through each other. Samples are averaged, and surfaces blended, in linear light.
+/// Light comes from the eye: a surface seen at a right angle has just its own colour. Both sides are lit. Gradient
+/// normals shade smoothly, without them every triangle is flat. Translucent surfaces are put in order sample by sample,
+/// so that any number of them may pass through each other. Samples are averaged, and surfaces blended, in linear light.
 ///
 /// Guarantees   the same picture every time on one device and driver
 /// Threads      one call at a time on one device
@@ -157,10 +161,10 @@ public:
 
     /// Draws a picture.
     ///
-    /// Cost     O(triangles) a part of the picture (parts have 16 million samples); device memory 28 bytes a sample of a part and
-    ///          16 a translucent fragment
-    /// Errors   invalid_argument when a size, a camera or an opacity is out of range, or colours do not fit their surface;
-    ///          out_of_memory of the device, with the amount needed; machine; cancelled
+    /// Cost     O(triangles) a part of the picture (parts have 16 million samples); device memory 28 bytes a sample of
+    ///          a part and 16 a translucent fragment
+    /// Errors   invalid_argument when a size, a camera or an opacity is out of range, or colours do not fit their
+    ///          surface; out_of_memory of the device, with the amount needed; machine; cancelled
     Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Progress& progress = {});
 
     /// What the last call of draw() cost.

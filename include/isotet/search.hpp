@@ -42,7 +42,8 @@ class FilteredTets;
 
 /// A filter over the tets of a packed grid. Tets have the numbers 0, 1, 2, ... in which they are packed.
 ///
-/// The packed grid is not needed any more. It holds the values of the field at the time: another field needs another filter.
+/// The packed grid is not needed any more. It holds the values of the field at the time: another field needs another
+/// filter.
 ///
 /// Threads   const functions are safe from many threads; find() needs the object alone
 class TetFilter {
@@ -50,7 +51,8 @@ public:
     /// Errors   invalid_argument for a grid packed in double; invalid_data with 2^32 - 1 tets or more; out_of_memory;
     ///          cancelled
     /// Cost     O(n log n), parallel where the structure allows; the report tells the memory
-    static Result<TetFilter> build(const PackedGrid& grid, Filter filter, int threads = 0, const Progress& progress = {});
+    static Result<TetFilter> build(const PackedGrid& grid, Filter filter, int threads = 0,
+                                   const Progress& progress = {});
 
     TetFilter(TetFilter&&) noexcept;
     TetFilter& operator=(TetFilter&&) noexcept;

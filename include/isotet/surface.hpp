@@ -23,8 +23,8 @@ enum class Normals : std::uint8_t { none, gradient, face };
 /// Triangles on welded vertices. V vertices, F triangles.
 ///
 /// `positions`     float32 (float64 from a double packing), 3 components, V tuples, relative to `origin`
-/// `triangles`     uint32 (uint64 from 2^32 vertices on), 3 components, F tuples; counter-clockwise seen from the side of
-///                 higher values
+/// `triangles`     uint32 (uint64 from 2^32 vertices on), 3 components, F tuples; counter-clockwise seen from the side
+///                 of higher values
 /// `normals`       empty, or float32, 3 components: V tuples (gradient) or F tuples (face); unit length, or zero where
 ///                 nothing defines one; towards higher values
 /// `edge_ends`     empty, or int64, 2 components, V tuples: the user's numbers of the points between which the vertex
@@ -47,8 +47,8 @@ struct Surface {
     std::size_t triangle_count() const noexcept { return triangles.tuples(); }
 };
 
-/// Joins surfaces into one, vertices and triangles one after another; fields that not all of them have are dropped, empty
-/// surfaces aside. Origins that differ are added to the positions, in double.
+/// Joins surfaces into one, vertices and triangles one after another; fields that not all of them have are dropped,
+/// empty surfaces aside. Origins that differ are added to the positions, in double.
 /// With `isovalues` (one a surface) the result has a cell field "isovalue", float64.
 Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues);
 

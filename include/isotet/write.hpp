@@ -14,14 +14,16 @@ namespace isotet {
 
 struct WriteReport {
     std::uint64_t bytes = 0;
-    std::vector<std::string> notes; ///< what the format could not hold: "STL holds float32: the origin (4.3e6, ...) was left out"
+    std::vector<std::string> notes; ///< what the format could not hold: "STL holds float32: the origin (4.3e6, ...) was
+                                    ///< left out"
 };
 
-/// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless given.
+/// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless
+/// given.
 ///
-/// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the old
-/// file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file differs
-/// between runs. A symbolic link stays: what it points to is replaced. Permission bits of an old file are kept.
+/// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the
+/// old file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file
+/// differs between runs. A symbolic link stays: what it points to is replaced. Permission bits of an old file are kept.
 ///
 /// Errors   invalid_argument: unknown format, arrays that do not fit together, `path` is a folder or not a plain file;
 ///          invalid_data: a triangle with a vertex that is not there; file: the folder of `path` is not there;

@@ -9,7 +9,8 @@
 
 namespace isotet::api {
 
-/// A point field of the user's grid at the vertices: stored by the rules for values, interpolated between the edge ends.
+/// A point field of the user's grid at the vertices: stored by the rules for values, interpolated between the edge
+/// ends.
 /// Cost   O(V)
 template <class Real>
 SurfaceField interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw);
@@ -23,8 +24,8 @@ constexpr std::size_t fill_normals_bytes = 16;
 template <class Real>
 Array face_normals(const ops::RawSurface& raw);
 
-/// Replaces gradient normals that are zero by the face normal of the lowest-numbered triangle at the vertex: in the array
-/// itself, which nobody but the engine and the caller may have seen.
+/// Replaces gradient normals that are zero by the face normal of the lowest-numbered triangle at the vertex: in the
+/// array itself, which nobody but the engine and the caller may have seen.
 /// Cost   at most fill_normals_bytes a vertex, of memory; nothing where no normal is zero
 template <class Real>
 Array fill_normals(const ops::RawSurface& raw);

@@ -19,10 +19,11 @@ Result<void> check_isovalues(std::span<const double> isovalues);
 
 /// Geometry, normals and fields. `storages` are those of the point fields of `options`, in their order.
 template <class Real>
-Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options, std::span<const core::Storage> storages,
-               const ops::RawSurface& raw);
+Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
+               std::span<const core::Storage> storages, const ops::RawSurface& raw);
 
-/// Bytes that finish() adds to each vertex and triangle of the surface of an engine that interpolates point fields itself.
+/// Bytes that finish() adds to each vertex and triangle of the surface of an engine that interpolates point fields
+/// itself.
 struct MoreBytes {
     std::size_t vertex = 0, triangle = 0;
 };

@@ -10,9 +10,11 @@ namespace isotet::api {
 
 /// Fills tied_points, false_ties, near_tie and isovalue_stored.
 /// `tied_points`  how many an engine found
-/// Cost           nothing beyond what must be looked at: O(C) and the points of clusters whose range holds the isovalue when
-///                there are tied points; the same for the nearest value of the field's type when it is stored differently
+/// Cost           nothing beyond what must be looked at: O(C) and the points of clusters whose range holds the isovalue
+///                when there are tied points; the same for the nearest value of the field's type when it is stored
+///                differently
 template <class Real>
-void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points, ExtractReport& report);
+void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points,
+                 ExtractReport& report);
 
 } // namespace isotet::api

@@ -1,14 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Extraction, the contract that every engine meets: from a packed grid and stored isovalues to the bytes of surfaces, each
-// the same as if it were the only one.
+// Extraction, the contract that every engine meets: from a packed grid and stored isovalues to the bytes of surfaces,
+// each the same as if it were the only one.
 //
-// Vertices: clusters ascending; within the owner first tied own points (Ties::merge), then own seam edges in stored order,
-// then inner edges by (lower, higher local index). Triangles: clusters ascending, stored tets ascending, then the case table.
-// A tet counts when no corner is without data; with B corners below, T tied and A strictly above it gives triangles
+// Vertices: clusters ascending; within the owner first tied own points (Ties::merge), then own seam edges in stored
+// order, then inner edges by (lower, higher local index). Triangles: clusters ascending, stored tets ascending, then
+// the case table. A tet counts when no corner is without data; with B corners below, T tied and A strictly above it
+// gives triangles
 //   Ties::merge   when B > 0 and (A > 0 or T = 3)
 //   Ties::keep    when B > 0 and A + T > 0
-// A vertex is there when a tet that counts has its tied corner, or its edge from below to strictly above (Ties::keep: to
-// above or tied).
+// A vertex is there when a tet that counts has its tied corner, or its edge from below to strictly above (Ties::keep:
+// to above or tied).
 #pragma once
 
 #include <cstddef>
@@ -60,7 +61,8 @@ struct RawSurface {
 struct RawSurfaces {
     std::vector<RawSurface> surfaces;  ///< in the order of the isovalues
     std::uint64_t transient_bytes = 0; ///< beyond the surfaces, at the peak
-    std::uint64_t predicted_bytes = 0; ///< needed at most, with surfaces and what the caller adds, as known before the start
+    std::uint64_t predicted_bytes = 0; ///< needed at most, with surfaces and what the caller adds, as known before the
+                                       ///< start
 };
 
 } // namespace isotet::ops

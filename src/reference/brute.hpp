@@ -9,6 +9,7 @@ namespace isotet::reference {
 /// Cost     O((T + V) log V), some 50 bytes a tet
 /// Errors   invalid_data for a broken grid; cancelled
 template <class Real>
-Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress);
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request,
+                                       const Progress& progress);
 
 } // namespace isotet::reference

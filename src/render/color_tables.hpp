@@ -2,10 +2,12 @@
 // The colour maps, 256 colours each, six hexadecimal digits a colour (sRGB).
 //
 // viridis, plasma   Nathaniel J. Smith and Stefan van der Walt, 2015; CC0-1.0
-// cividis           Jamie R. Nuñez, Christopher R. Anderton and Ryan S. Renslow, "Optimizing colormaps with consideration for
-//                   color vision deficiency", PLOS ONE 13 (2018); the table as in matplotlib, whose licence is of the BSD kind
+// cividis           Jamie R. Nuñez, Christopher R. Anderton and Ryan S. Renslow, "Optimizing colormaps with
+//                   consideration for color vision deficiency", PLOS ONE 13 (2018); the table as in matplotlib, whose
+//                   licence is of the BSD kind
 // turbo             Anton Mikhailov, Google LLC, 2019; Apache-2.0 (data/licences/Apache-2.0.txt)
-// cool-warm         computed as Kenneth Moreland, "Diverging color maps for scientific visualization" (2009) says, between
+// cool-warm         computed as Kenneth Moreland, "Diverging color maps for scientific visualization" (2009) says,
+//                   between
 //                   (59, 76, 192) and (180, 4, 38) in the space Msh
 #pragma once
 

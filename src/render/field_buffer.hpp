@@ -14,8 +14,8 @@ namespace isotet::render {
 
 class FieldBuffer {
 public:
-    /// `count` values, the i-th of them the one that `number(i)` says. Places in the map where the scale is linear; where it is
-    /// logarithmic values / lower end, so that the logarithm can be taken of what was interpolated.
+    /// `count` values, the i-th of them the one that `number(i)` says. Places in the map where the scale is linear;
+    /// where it is logarithmic values / lower end, so that the logarithm can be taken of what was interpolated.
     ///
     /// `coloring`   layout::by_vertex and so on
     static Result<std::unique_ptr<FieldBuffer>> upload(std::shared_ptr<vulkan::Context> context, const Array& values,

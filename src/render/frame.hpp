@@ -46,7 +46,8 @@ private:
     void fill_addresses(layout::View& view) const;
     void record(vulkan::Recorder& recorder, const layout::View& view, const std::vector<DrawStep>& steps,
                 const vulkan::Kernel& resolve);
-    void record_draws(vulkan::Recorder& recorder, const layout::View& view, std::span<const DrawStep> steps, vulkan::Images images);
+    void record_draws(vulkan::Recorder& recorder, const layout::View& view, std::span<const DrawStep> steps,
+                      vulkan::Images images);
     Result<bool> fragments_fit(std::uint32_t room);
     Result<void> fetch(const Part& part, Picture& picture);
 

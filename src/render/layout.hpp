@@ -25,8 +25,8 @@ static_assert(sizeof(DrawPush) == 16 && sizeof(ResolvePush) == 8);
 /// What marching tetrahedra looks up, by the same numbers in C++ and in shaders.
 inline constexpr TetTables tet_tables{{ISOTET_HALF_CASES}, {ISOTET_TET_EDGES}};
 
-/// Whether the row of a case, or of its complement, is the polygon of the table of the engines: the same edges, from the same
-/// one on, so that the same diagonal cuts a quad; one way around or the other.
+/// Whether the row of a case, or of its complement, is the polygon of the table of the engines: the same edges, from
+/// the same one on, so that the same diagonal cuts a quad; one way around or the other.
 constexpr bool row_agrees(unsigned index) {
     const core::TetCase& whole = core::case_table[index];
     const uint* row = tet_tables.cases + std::size_t{4} * (index < 8 ? index : 15 - index);

@@ -20,9 +20,10 @@ struct LineDraw {
 
 /// `samples`   an axis and pixel
 /// Errors      invalid_argument when an end is not finite or the width not positive; out_of_memory; machine
-Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines& pipelines, const Space& space, const DrawnLines& drawn,
-                                std::uint32_t samples);
+Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines& pipelines, const Space& space,
+                                const DrawnLines& drawn, std::uint32_t samples);
 
-void record(const LineDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands);
+void record(const LineDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call,
+            VkCommandBuffer commands);
 
 } // namespace isotet::render

@@ -14,7 +14,8 @@ namespace isotet::render {
 
 class MeshBuffers {
 public:
-    static Result<std::unique_ptr<MeshBuffers>> upload(std::shared_ptr<vulkan::Context> context, const Surface& surface);
+    static Result<std::unique_ptr<MeshBuffers>> upload(std::shared_ptr<vulkan::Context> context,
+                                                       const Surface& surface);
 
     std::shared_ptr<vulkan::Context> context; ///< before the buffers, so that it goes after them
     vulkan::Buffer positions, triangles, normals; ///< as layout::Mesh has them; normals may be empty

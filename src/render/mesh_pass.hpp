@@ -31,9 +31,10 @@ struct MeshDraw {
 /// Exactly one of `mesh` and `surface` is not null; `colors` may be.
 ///
 /// Errors   invalid_argument when the colours do not fit the surface, or the opacity is out of range
-Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn, const MeshBuffers* mesh,
-                                const FieldBuffer* colors);
+Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
+                                const MeshBuffers* mesh, const FieldBuffer* colors);
 
-void record(const MeshDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands);
+void record(const MeshDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call,
+            VkCommandBuffer commands);
 
 } // namespace isotet::render

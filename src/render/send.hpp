@@ -30,7 +30,8 @@ template <class T>
 Result<vulkan::Buffer> send(vulkan::Context& context, const Array& array, std::string_view name) {
     core::Buffer<T> scalars(array.size());
     array.visit([&](auto from) {
-        core::parallel_each(from.size(), std::size_t{1} << 16, [&](std::size_t i) { scalars[i] = static_cast<T>(from[i]); });
+        core::parallel_each(from.size(), std::size_t{1} << 16,
+                            [&](std::size_t i) { scalars[i] = static_cast<T>(from[i]); });
     });
     return send(context, scalars, name);
 }

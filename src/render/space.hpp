@@ -25,7 +25,8 @@ public:
     double scale() const noexcept { return scale_; }
 
     /// Fills how the camera sees a part of a picture of `width` x `height`.
-    void look(const Camera& camera, std::uint32_t width, std::uint32_t height, const Part& part, layout::View& view) const;
+    void look(const Camera& camera, std::uint32_t width, std::uint32_t height, const Part& part,
+              layout::View& view) const;
 
 private:
     std::array<double, 3> centre_{}, half_{}; ///< of the bounds

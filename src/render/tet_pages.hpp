@@ -25,8 +25,9 @@ public:
         bool on_device = false; ///< else in the machine's memory, copied to `guest` whenever it is needed
     };
 
-    static Result<std::shared_ptr<TetPages>> upload(std::shared_ptr<vulkan::Context> context, const core::Packed& packed,
-                                                    DrawMethod method, const TetStoreOptions& options, const Progress& progress);
+    static Result<std::shared_ptr<TetPages>> upload(std::shared_ptr<vulkan::Context> context,
+                                                    const core::Packed& packed, DrawMethod method,
+                                                    const TetStoreOptions& options, const Progress& progress);
 
     std::shared_ptr<vulkan::Context> context; ///< before the buffers, so that it goes after them
     DrawMethod method = DrawMethod::textures;

@@ -13,8 +13,8 @@
 
 namespace isotet::render {
 
-/// The corners of the quads of one page, two triangles each: 0, 1, 2, 0, 2, 3, then 4 more each. The same for every page, so
-/// that each vertex of a tet need be worked out once, as in the paper.
+/// The corners of the quads of one page, two triangles each: 0, 1, 2, 0, 2, 3, then 4 more each. The same for every
+/// page, so that each vertex of a tet need be worked out once, as in the paper.
 Result<vulkan::Buffer> make_quad_corners(vulkan::Context& context);
 
 /// A page of tets, ready to be drawn.
@@ -31,9 +31,10 @@ struct TetDraw {
 /// Adds a draw for each page.
 ///
 /// Errors   invalid_argument when there are colours, or the opacity is out of range
-Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn, const ChosenTets& tets,
-                           const vulkan::Buffer& quad_corners, std::vector<TetDraw>& draws);
+Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
+                           const ChosenTets& tets, const vulkan::Buffer& quad_corners, std::vector<TetDraw>& draws);
 
-void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call, VkCommandBuffer commands);
+void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::DeviceFunctions& call,
+            VkCommandBuffer commands);
 
 } // namespace isotet::render

@@ -15,8 +15,8 @@ class FaceNeighbours {
 public:
     static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
 
-    /// Only tets that some isovalue cuts have neighbours and are some. Where more than two share a face, the first and the
-    /// second are neighbours, the third and the fourth, and so on.
+    /// Only tets that some isovalue cuts have neighbours and are some. Where more than two share a face, the first and
+    /// the second are neighbours, the third and the fourth, and so on.
     ///
     /// Guarantees   if a is b's neighbour, b is a's
     /// Cost         O(n), 48 bytes a tet meanwhile; 16 stay

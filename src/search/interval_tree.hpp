@@ -13,9 +13,9 @@ namespace isotet::search {
 
 /// Finds exactly the cut tets.
 ///
-/// A node splits at a value. Ranges that hold the value stay at the node, in two lists: by lower end ascending, and by upper
-/// end descending. An isovalue below the split takes a piece of the first list from its start on, one above it of the
-/// second: whatever is read is found.
+/// A node splits at a value. Ranges that hold the value stay at the node, in two lists: by lower end ascending, and by
+/// upper end descending. An isovalue below the split takes a piece of the first list from its start on, one above it of
+/// the second: whatever is read is found.
 ///
 /// Cost   O(n log n) to build, 12 bytes a tet meanwhile; O(log n + found) to ask; 16 bytes a tet that can be cut
 class IntervalTree final : public Search {

@@ -18,8 +18,8 @@ public:
     /// Beside the tet table.
     virtual std::uint64_t bytes() const = 0;
 
-    /// Replaces `found` by the numbers of tets: all that the isovalue cuts, and whatever else the structure cannot tell from
-    /// them; each once, in the same order every time.
+    /// Replaces `found` by the numbers of tets: all that the isovalue cuts, and whatever else the structure cannot tell
+    /// from them; each once, in the same order every time.
     virtual void find(float isovalue, TetNumbers& found) const = 0;
 };
 

@@ -10,8 +10,8 @@ namespace isotet::search {
 
 /// Finds exactly the cut tets.
 ///
-/// The tree has no pointers: the middle of a stretch divides it, by lower and by upper end in turn. An isovalue asks for the
-/// quarter plane lower < isovalue <= upper; a stretch that lies in it as a whole is taken without a look.
+/// The tree has no pointers: the middle of a stretch divides it, by lower and by upper end in turn. An isovalue asks
+/// for the quarter plane lower < isovalue <= upper; a stretch that lies in it as a whole is taken without a look.
 ///
 /// Cost   O(n log n) to build; O(sqrt n + found) to ask; 12 bytes a tet that can be cut
 class SpanSpace final : public Search {

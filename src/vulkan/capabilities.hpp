@@ -27,7 +27,8 @@ struct Capabilities {
     VkPhysicalDeviceFeatures features{};
     VkPhysicalDeviceVulkan12Features features12{};
     VkPhysicalDeviceMemoryProperties memory{};
-    std::array<VkDeviceSize, VK_MAX_MEMORY_HEAPS> heap_free{}; ///< of each heap, for this process; its size where not known
+    std::array<VkDeviceSize, VK_MAX_MEMORY_HEAPS> heap_free{}; ///< of each heap, for this process; its size where not
+                                                               ///< known
     std::vector<QueueFamily> queues;
     bool memory_budget = false; ///< VK_EXT_memory_budget: heap_free is known, and changes
 

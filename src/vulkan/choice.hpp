@@ -13,8 +13,8 @@ namespace isotet::vulkan {
 
 /// The index of the device that DeviceOptions::choice means; the device can be used.
 ///
-/// Errors   invalid_argument when no device fits, or more than one; machine when the device that fits cannot be used, or
-///          when no GPU is there and none was named. Messages list what there is.
+/// Errors   invalid_argument when no device fits, or more than one; machine when the device that fits cannot be used,
+///          or when no GPU is there and none was named. Messages list what there is.
 Result<std::size_t> choose(std::span<const DeviceInfo> devices, std::string_view choice);
 
 } // namespace isotet::vulkan

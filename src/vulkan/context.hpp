@@ -28,7 +28,8 @@ namespace isotet::vulkan {
 struct Settings {
     Watch watch;
     bool force_staging = false;                            ///< as if the processor did not reach the device's memory
-    std::uint64_t most_items = std::uint64_t{0xffffffff};  ///< vertices of a surface, and triangles: what 32 bits can number
+    std::uint64_t most_items = std::uint64_t{0xffffffff};  ///< vertices of a surface, and triangles: what 32 bits can
+                                                           ///< number
     std::uint32_t groups_an_axis = 0;                      ///< most workgroups an axis; 0: the device's own limit
     std::uint64_t staging_bytes = std::uint64_t{16} << 20; ///< of each of the two staging buffers
     std::chrono::milliseconds wait_limit = std::chrono::seconds(60);

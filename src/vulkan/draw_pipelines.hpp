@@ -33,8 +33,8 @@ enum class Surfaces : std::uint8_t {
     translucent, ///< the fragment shader keeps it where it likes; colour and depth stay
 };
 
-/// All pipelines of a device. No vertex inputs, no descriptor sets: shaders take up to 128 bytes of push constants, seen by
-/// all stages, and reach buffers by address. Triangles are seen from both sides.
+/// All pipelines of a device. No vertex inputs, no descriptor sets: shaders take up to 128 bytes of push constants,
+/// seen by all stages, and reach buffers by address. Triangles are seen from both sides.
 ///
 /// Threads   one thread at a time
 class DrawPipelines {
@@ -46,13 +46,14 @@ public:
     DrawPipelines(const DrawPipelines&) = delete;
     DrawPipelines& operator=(const DrawPipelines&) = delete;
 
-    /// The pipeline of two shaders with these specialization constants (constant_id 0, 1, ..., the same for both), made when
-    /// it is first asked for.
+    /// The pipeline of two shaders with these specialization constants (constant_id 0, 1, ..., the same for both), made
+    /// when it is first asked for.
     ///
     /// Cost     5 to 500 ms the first time
     /// Errors   machine when the driver cannot build it; out_of_memory
     Result<const DrawPipeline*> get(const ShaderCode& first, const ShaderCode& fragment, Surfaces surfaces,
-                                    std::span<const std::uint32_t> constants = {}, FirstStage stage = FirstStage::vertex);
+                                    std::span<const std::uint32_t> constants = {},
+                                    FirstStage stage = FirstStage::vertex);
 
 private:
     struct Made {

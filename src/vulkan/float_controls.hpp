@@ -14,8 +14,8 @@ struct FloatControls {
     bool keeps_signed_zero = false; ///< and infinities and NaN
 };
 
-/// The SPIR-V of a shader with these promises asked for. Not every device reports them, and a module that asks for what is
-/// not reported is invalid: so they are added here, not by the shader compiler.
+/// The SPIR-V of a shader with these promises asked for. Not every device reports them, and a module that asks for what
+/// is not reported is invalid: so they are added here, not by the shader compiler.
 std::vector<std::uint32_t> with_float_controls(std::span<const std::uint32_t> words, FloatControls controls);
 
 } // namespace isotet::vulkan

@@ -34,8 +34,9 @@ struct Barrier {
     friend bool operator==(const Barrier&, const Barrier&) = default;
 };
 
-/// Follows a list of passes. A pass waits for the passes before it that wrote what it uses, or used what it writes, unless a
-/// barrier since then stands between them already. Whole buffers count: two passes that write different halves are ordered.
+/// Follows a list of passes. A pass waits for the passes before it that wrote what it uses, or used what it writes,
+/// unless a barrier since then stands between them already. Whole buffers count: two passes that write different halves
+/// are ordered.
 class Hazards {
 public:
     /// The barrier that must stand before a pass that uses these buffers, the next in the list.
@@ -45,7 +46,8 @@ private:
     struct History {
         VkPipelineStageFlags write_stage = 0; ///< of the last write; 0: none yet
         VkAccessFlags write_access = 0;
-        std::uint32_t visible = 0;            ///< a bit for each Access that barriers have made the last write visible to
+        std::uint32_t visible = 0;            ///< a bit for each Access that barriers have made the last write visible
+                                              ///< to
         VkPipelineStageFlags read_stages = 0; ///< that read since the last write
         VkPipelineStageFlags after_reads = 0; ///< that barriers make wait for all these reads
     };

@@ -36,7 +36,8 @@ public:
     Kernels(LogicalDevice& device, const Capabilities& capabilities, PipelineCache& cache);
     ~Kernels();
 
-    /// The kernel of a shader with these specialization constants (constant_id 0, 1, ...), made when it is first asked for.
+    /// The kernel of a shader with these specialization constants (constant_id 0, 1, ...), made when it is first asked
+    /// for.
     ///
     /// Cost     5 to 500 ms the first time, a millisecond from the cache on disk
     /// Errors   machine when the driver cannot build it; out_of_memory

@@ -62,8 +62,9 @@ public:
     /// An error when the device was lost before.
     Result<void> alive() const;
 
-    /// Work that did not end in time still goes on, perhaps for ever, and may use anything: nothing may be destroyed, and
-    /// everything stays until the process ends. Asked by whatever is about to destroy something; once true, it stays so.
+    /// Work that did not end in time still goes on, perhaps for ever, and may use anything: nothing may be destroyed,
+    /// and everything stays until the process ends. Asked by whatever is about to destroy something; once true, it
+    /// stays so.
     bool hung() const;
 
 private:

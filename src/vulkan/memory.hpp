@@ -43,8 +43,8 @@ struct Pool {
     std::list<Block> blocks;
 };
 
-/// A buffer with an address on the device. Gives its memory back when it goes; must not outlive its Context, nor be given
-/// back while the device works on it (Recorder::run and Staging wait, so nothing can be under way between calls).
+/// A buffer with an address on the device. Gives its memory back when it goes; must not outlive its Context, nor be
+/// given back while the device works on it (Recorder::run and Staging wait, so nothing can be under way between calls).
 class Buffer {
 public:
     Buffer() = default;
@@ -56,7 +56,8 @@ public:
     ~Buffer();
 
     VkBuffer handle() const noexcept { return handle_; }
-    VkDeviceAddress address() const noexcept { return address_; } ///< a multiple of 256 where memory begins at one, as it does on every known driver; at least of 16
+    VkDeviceAddress address() const noexcept { return address_; } ///< a multiple of 256 where memory begins at one, as
+                                                                  ///< it does on every known driver; at least of 16
     std::uint64_t size() const noexcept { return size_; }         ///< bytes, as asked for
     explicit operator bool() const noexcept { return handle_ != VK_NULL_HANDLE; }
 
@@ -93,8 +94,9 @@ public:
     Memory(LogicalDevice& device, const Capabilities& capabilities, const Options& options);
     ~Memory();
 
-    /// A buffer of `bytes` (at least one is taken), not cleared. It can be copied from and to, filled, read and written by
-    /// kernels, and hold arguments of indirect dispatches. Four more bytes than asked for may be read behind its end.
+    /// A buffer of `bytes` (at least one is taken), not cleared. It can be copied from and to, filled, read and written
+    /// by kernels, and hold arguments of indirect dispatches. Four more bytes than asked for may be read behind its
+    /// end.
     ///
     /// `name`    for messages and debuggers: "triangles"
     /// Cost      in Where::device memory comes in blocks of 64 MiB (less under a small limit), larger buffers alone

@@ -50,10 +50,11 @@ struct Timings {
 
 /// A list of passes, recorded first and then run in one submission, again and again if wanted.
 ///
-/// Every pass says which buffers it uses, and all barriers follow from that: a pass that says less than it does is wrong on
-/// real devices, and no software device will show it. Passes see everything that ran or was uploaded before run(), and what
-/// they write is seen by everything after it, the processor included (mapped buffers). Recording functions cannot fail:
-/// what is wrong is said by run(). Buffers and kernels must live until the last run() has returned.
+/// Every pass says which buffers it uses, and all barriers follow from that: a pass that says less than it does is
+/// wrong on real devices, and no software device will show it. Passes see everything that ran or was uploaded before
+/// run(), and what they write is seen by everything after it, the processor included (mapped buffers). Recording
+/// functions cannot fail: what is wrong is said by run(). Buffers and kernels must live until the last run() has
+/// returned.
 ///
 /// Threads   one recorder of a Context at a time
 class Recorder {
@@ -67,7 +68,8 @@ public:
     void fill(const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
 
     /// Copies bytes that do not overlap.
-    void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset, std::uint64_t bytes);
+    void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
+              std::uint64_t bytes);
 
     /// Writes up to 65,536 bytes, now taken from the processor: parameters. Offset and size multiples of 4.
     void write(const Buffer& buffer, std::uint64_t offset, std::span<const std::byte> bytes);
@@ -80,8 +82,8 @@ public:
         add_dispatch(kernel, std::as_bytes(std::span(&push, 1)), groups, uses);
     }
 
-    /// The same, with three counts that stand in `arguments` at `offset` (a multiple of 4) when the pass begins; each at most
-    /// groups_an_axis(), see fold_groups() in kernels/shared/groups.glsl. `uses` need not name `arguments`.
+    /// The same, with three counts that stand in `arguments` at `offset` (a multiple of 4) when the pass begins; each
+    /// at most groups_an_axis(), see fold_groups() in kernels/shared/groups.glsl. `uses` need not name `arguments`.
     template <class Push>
     void dispatch_indirect(const Kernel& kernel, const Push& push, const Buffer& arguments, std::uint64_t offset,
                            const std::vector<Use>& uses) {
@@ -89,13 +91,14 @@ public:
         add_dispatch_indirect(kernel, std::as_bytes(std::span(&push, 1)), arguments, offset, uses);
     }
 
-    /// A pass that `work` records by itself, whenever the list is run: draws, copies of images. What it does to images must be
-    /// ordered by its own render passes; for buffers `uses` speaks. `work` and all that it refers to must live as long.
+    /// A pass that `work` records by itself, whenever the list is run: draws, copies of images. What it does to images
+    /// must be ordered by its own render passes; for buffers `uses` speaks. `work` and all that it refers to must live
+    /// as long.
     using Work = std::function<void(const DeviceFunctions&, VkCommandBuffer)>;
     void add_work(std::string name, const std::vector<Use>& uses, Work work);
 
-    /// Gives the passes that follow this name in timings and debuggers, until the next call; "": their own (the kernel's, or
-    /// "fill", "copy", "write").
+    /// Gives the passes that follow this name in timings and debuggers, until the next call; "": their own (the
+    /// kernel's, or "fill", "copy", "write").
     void label(std::string name) { label_ = std::move(name); }
 
     /// Forgets all passes.
@@ -140,7 +143,8 @@ private:
 
     static std::vector<BufferUse> uses_of(std::span<const Use> uses);
     void add(Pass pass);
-    void add_dispatch(const Kernel& kernel, std::span<const std::byte> push, std::uint64_t groups, std::span<const Use> uses);
+    void add_dispatch(const Kernel& kernel, std::span<const std::byte> push, std::uint64_t groups,
+                      std::span<const Use> uses);
     void add_dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push, const Buffer& arguments,
                                std::uint64_t offset, std::span<const Use> uses);
     void complain(std::string what);

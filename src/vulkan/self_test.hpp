@@ -13,8 +13,8 @@ namespace isotet::vulkan {
 
 class Context;
 
-/// A few thousand cases, the same in every run: the hardest divisions, products of the smallest numbers that occur, sums that
-/// a fused multiply-add would round otherwise, normals that cancel, ordinary ones.
+/// A few thousand cases, the same in every run: the hardest divisions, products of the smallest numbers that occur,
+/// sums that a fused multiply-add would round otherwise, normals that cancel, ordinary ones.
 std::vector<layout::SelfTestCase> self_test_cases();
 
 /// What the contract says, computed here.

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A compiled shader inside the program; vulkan/shaders.hpp, written by the build, lists them: shaders::self_test and so on.
+// A compiled shader inside the program; vulkan/shaders.hpp, written by the build, lists them: shaders::self_test and so
+// on.
 #pragma once
 
 #include <cstdint>

@@ -16,8 +16,8 @@ namespace isotet::vulkan {
 
 class Context;
 
-/// Copies directly where the processor reaches the buffer, else through two staging buffers in turn, on the queue that only
-/// copies where there is one.
+/// Copies directly where the processor reaches the buffer, else through two staging buffers in turn, on the queue that
+/// only copies where there is one.
 ///
 /// Guarantees   nothing is under way when a call returns, be it with an error
 /// Threads      one call at a time

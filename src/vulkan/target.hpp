@@ -20,8 +20,9 @@ enum class Images : std::uint8_t {
     kept,    ///< what the pass before drew
 };
 
-/// The formats of a target, and what becomes of its images in a pass of draws: both are cleared or kept at the beginning, and
-/// the colour can be copied afterwards. Its dependencies order one use of the images after the other, so that nobody else need.
+/// The formats of a target, and what becomes of its images in a pass of draws: both are cleared or kept at the
+/// beginning, and the colour can be copied afterwards. Its dependencies order one use of the images after the other, so
+/// that nobody else need.
 class RenderPass {
 public:
     static Result<std::unique_ptr<RenderPass>> make(Context& context);
@@ -30,7 +31,9 @@ public:
     RenderPass& operator=(const RenderPass&) = delete;
 
     /// Pipelines and framebuffers of one fit the other.
-    VkRenderPass handle(Images images = Images::cleared) const noexcept { return handles_[static_cast<std::size_t>(images)]; }
+    VkRenderPass handle(Images images = Images::cleared) const noexcept {
+        return handles_[static_cast<std::size_t>(images)];
+    }
 
 private:
     explicit RenderPass(LogicalDevice& device) : device_(device) {}
@@ -48,7 +51,8 @@ public:
     /// Its memory does not count against the limit on buffers.
     ///
     /// Errors   invalid_argument when the device has no images of that size; out_of_memory; machine
-    static Result<std::unique_ptr<Target>> make(Context& context, const RenderPass& pass, std::uint32_t width, std::uint32_t height);
+    static Result<std::unique_ptr<Target>> make(Context& context, const RenderPass& pass, std::uint32_t width,
+                                                std::uint32_t height);
     ~Target();
     Target(const Target&) = delete;
     Target& operator=(const Target&) = delete;
@@ -57,8 +61,8 @@ public:
     std::uint32_t height() const noexcept { return height_; }
 
     /// Adds a pass that runs `draws` in the render pass, with the lower left `width` x `height` texels as the viewport.
-    void draw(Recorder& recorder, Images images, std::uint32_t width, std::uint32_t height, const std::vector<Use>& uses,
-              Recorder::Work draws);
+    void draw(Recorder& recorder, Images images, std::uint32_t width, std::uint32_t height,
+              const std::vector<Use>& uses, Recorder::Work draws);
 
     /// Adds a pass that copies these texels, row by row, to the beginning of a buffer.
     void copy_color(Recorder& recorder, std::uint32_t width, std::uint32_t height, const Buffer& to) const;

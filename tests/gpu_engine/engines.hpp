@@ -30,13 +30,15 @@ protected:
     Device device() { return Device(shared_context()); }
 
     /// Both engines give the same bytes and the same report, for every isovalue.
-    void expect_same(DeviceGrid& grid, const PackedGrid& packed, const std::vector<double>& isovalues, ExtractOptions options) {
+    void expect_same(DeviceGrid& grid, const PackedGrid& packed, const std::vector<double>& isovalues,
+                     ExtractOptions options) {
         for (const double isovalue : isovalues)
             for (const Ties ties : {Ties::merge, Ties::keep}) {
                 options.ties = ties;
                 const Extraction expected = isotet::extract(packed, isovalue, options).value();
                 const DeviceSurface surface = grid.extract(isovalue, options).value();
-                const std::string where = "isovalue " + std::to_string(isovalue) + ", ties " + std::to_string(int(ties));
+                const std::string where =
+                    "isovalue " + std::to_string(isovalue) + ", ties " + std::to_string(int(ties));
                 ASSERT_EQ(surface.vertices(), expected.surface.vertices()) << where;
                 ASSERT_EQ(surface.triangle_count(), expected.surface.triangle_count()) << where;
                 const Extraction found = grid.download(surface).value();

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Every piece of memory that this program takes: operator new in all its forms, and mmap, are replaced by ones that count.
+// Every piece of memory that this program takes: operator new in all its forms, and mmap, are replaced by ones that
+// count.
 #pragma once
 
 #include <cstddef>

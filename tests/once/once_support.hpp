@@ -44,7 +44,8 @@ inline void expect_same_report(const ExtractReport& found, const ExtractReport& 
 }
 
 /// Both engines: the same bytes, the same reports. Returns what the CPU engine gave.
-inline ExtractedOnce extract_on_both(const Grid& grid, const PointField& field, const std::vector<double>& isovalues, OnceOptions options) {
+inline ExtractedOnce extract_on_both(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
+                                     OnceOptions options) {
     ExtractedOnce cpu = extract_once(grid, field, isovalues, options).value();
     options.extract.engine = Engine::reference;
     const ExtractedOnce reference = extract_once(grid, field, isovalues, options).value();

@@ -60,9 +60,11 @@ protected:
 
     DrawnSurface& add(const Surface& surface, const Color& color, double opacity = 1) {
         meshes_.push_back(std::make_unique<DeviceMesh>(DeviceMesh::upload(*device_, surface).value()));
-        return scene_.surfaces.emplace_back(DrawnSurface{.mesh = meshes_.back().get(), .color = color, .opacity = opacity});
+        return scene_.surfaces.emplace_back(
+            DrawnSurface{.mesh = meshes_.back().get(), .color = color, .opacity = opacity});
     }
-    void color_by(DrawnSurface& drawn, const std::vector<float>& values, const ColorScale& scale, Association association = Association::point) {
+    void color_by(DrawnSurface& drawn, const std::vector<float>& values, const ColorScale& scale,
+                  Association association = Association::point) {
         colors_.push_back(std::make_unique<DeviceColors>(
             DeviceColors::of_mesh(*device_, Array::borrow(std::span(values)), association, scale).value()));
         drawn.colors = colors_.back().get();

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Grids and fields that are as nasty as they come: shuffled, with inverted, repeated and missing tets, ties, NaN, zeros of
-// both signs and infinities. All from a seed, so that a failure can be run again.
+// Grids and fields that are as nasty as they come: shuffled, with inverted, repeated and missing tets, ties, NaN, zeros
+// of both signs and infinities. All from a seed, so that a failure can be run again.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +65,8 @@ inline NastyGrid nasty_grid(std::uint32_t seed, const NastyOptions& o) {
 
     std::vector<float> values(points);
     for (std::size_t p = 0; p < points; ++p) {
-        if (o.values > 0) values[p] = static_cast<float>(std::uniform_int_distribution<int>(0, o.values - 1)(random)) - 1.0f;
+        if (o.values > 0)
+            values[p] = static_cast<float>(std::uniform_int_distribution<int>(0, o.values - 1)(random)) - 1.0f;
         else values[p] = static_cast<float>(base.point_fields[0].values.at(p));
         if (values[p] == 0 && chance(0.5)) values[p] = -0.0f;
         if (o.values > 0 && chance(0.02)) values[p] = std::numeric_limits<float>::denorm_min();

@@ -9,7 +9,8 @@
 namespace isotet::test {
 
 inline void append_bytes(std::string& out, const Array& array) {
-    out += std::string(name_of(array.type())) + " " + std::to_string(array.tuples()) + "x" + std::to_string(array.components()) + ":";
+    out += std::string(name_of(array.type())) + " " + std::to_string(array.tuples()) + "x" +
+           std::to_string(array.components()) + ":";
     out.append(static_cast<const char*>(array.data()), array.bytes());
 }
 

@@ -14,7 +14,8 @@ struct ExodusSample {
     std::vector<int> node_ids = {1, 2, 3, 4, 5};
     std::vector<int> cell_ids = {1, 2};
     bool single = false; ///< float32
-    int steps = 2;       ///< with disp_x, disp_y, disp_z and temp on nodes: 10 * step + node; load on the first block only
+    int steps = 2;       ///< with disp_x, disp_y, disp_z and temp on nodes: 10 * step + node; load on the first block
+                         ///< only
     int format = 0;      ///< a flag of ex_create: EX_64BIT_OFFSET, EX_NETCDF4 and so on
 };
 

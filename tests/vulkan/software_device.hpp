@@ -19,9 +19,11 @@ namespace isotet::test {
 vulkan::Settings watched();
 
 /// Opens the software device; a failure of the test, with the reason, when there is none that can be trusted.
-std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings = watched(), std::uint64_t memory_limit = 0);
+std::shared_ptr<vulkan::Context> open_software(const vulkan::Settings& settings = watched(),
+                                               std::uint64_t memory_limit = 0);
 
-/// A test with a device, which fails when the validation layer has something to say, be it that something was not given back.
+/// A test with a device, which fails when the validation layer has something to say, be it that something was not given
+/// back.
 class OnDevice : public testing::Test {
 protected:
     void SetUp() override { reopen(watched()); }

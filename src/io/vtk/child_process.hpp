@@ -32,8 +32,8 @@ struct ChildOutcome {
     std::string last_output;     ///< the last lines that it printed, at most 4 KiB, control characters escaped
 };
 
-/// Guarantees   the process has ended when this returns; a cancel takes less than 100 ms; a process whose parent dies is
-///              killed by the system (the reader asks for that first of all)
+/// Guarantees   the process has ended when this returns; a cancel takes less than 100 ms; a process whose parent dies
+///              is killed by the system (the reader asks for that first of all)
 /// Errors       machine when the program cannot be started
 Result<ChildOutcome> run_child(const ChildRun& run, const Progress& progress);
 

@@ -6,8 +6,8 @@
 
 namespace isotet::io::vtk {
 
-/// Control characters, line ends too, and bytes that are not ASCII or UTF-8 as \x.., so that the content of a file cannot
-/// write to the user's terminal. Runs of line ends become one space.
+/// Control characters, line ends too, and bytes that are not ASCII or UTF-8 as \x.., so that the content of a file
+/// cannot write to the user's terminal. Runs of line ends become one space.
 std::string escaped(std::string_view text);
 
 } // namespace isotet::io::vtk

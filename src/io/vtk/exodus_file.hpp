@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// An Exodus II file through the Exodus library that VTK carries. VTK's own Exodus reader is not used: it glues scalars to
-// vectors, moves the mesh by them, doubles shared nodes, and cannot be told to leave all of that.
+// An Exodus II file through the Exodus library that VTK carries. VTK's own Exodus reader is not used: it glues scalars
+// to vectors, moves the mesh by them, doubles shared nodes, and cannot be told to leave all of that.
 #pragma once
 
 #include <cstdint>

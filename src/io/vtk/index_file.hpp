@@ -9,7 +9,8 @@
 
 namespace isotet::io::vtk {
 
-/// Refuses a name in an index file that is a URL, absolute, or climbs out of the folder with "..", unless `allow_outside`.
+/// Refuses a name in an index file that is a URL, absolute, or climbs out of the folder with "..", unless
+/// `allow_outside`.
 Result<void> check_name(const std::string& index, std::string_view name, bool allow_outside);
 
 /// The path of a file that an index file names, relative to the folder of the index. Links are followed before it is

@@ -34,8 +34,8 @@ Result<Request> decode_request(std::string_view bytes);
 /// Errors   out_of_memory when the memory file cannot grow
 Result<void> write_reply(int descriptor, Reply reply);
 
-/// Seals the memory file, maps it read only, and verifies every offset and length in it before it is used. The arrays of
-/// the reply are views of the mapping and share it.
+/// Seals the memory file, maps it read only, and verifies every offset and length in it before it is used. The arrays
+/// of the reply are views of the mapping and share it.
 ///
 /// Guarantees   whoever wrote the file cannot change, shrink or make it invalid afterwards
 /// Errors       internal when there is no complete reply in the file; machine when it cannot be sealed or mapped

@@ -11,8 +11,8 @@ namespace isotet::io::vtk {
 
 /// Sends a request to a new reader process and takes its reply.
 ///
-/// Errors   what the reader found; invalid_data when it crashed, or ended by itself without a reply; out_of_memory when it
-///          hit its limit; machine when it cannot be started or took longer than ReadOptions::time_limit; cancelled
+/// Errors   what the reader found; invalid_data when it crashed, or ended by itself without a reply; out_of_memory when
+///          it hit its limit; machine when it cannot be started or took longer than ReadOptions::time_limit; cancelled
 Result<Reply> ask_reader_process(Request request, const Progress& progress);
 
 /// Remembers that this program calls run_as_reader(), so that it can be its own reader program.

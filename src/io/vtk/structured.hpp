@@ -11,8 +11,8 @@ class vtkDataSet;
 
 namespace isotet::io::vtk {
 
-/// A structured, rectilinear or image grid as hexahedra, with a note that says so; nothing for other data sets. A flat one
-/// has no hexahedra.
+/// A structured, rectilinear or image grid as hexahedra, with a note that says so; nothing for other data sets. A flat
+/// one has no hexahedra.
 std::optional<Grid> hexahedra_of(vtkDataSet* data, std::vector<std::string>& notes);
 
 } // namespace isotet::io::vtk

@@ -8,8 +8,8 @@
 
 namespace isotet::io::vtk {
 
-/// Switches on the arrays that the options want; for a description all of them, since these readers tell an array's type
-/// only when they have read it.
+/// Switches on the arrays that the options want; for a description all of them, since these readers tell an array's
+/// type only when they have read it.
 template <class Reader>
 void choose_arrays_by_name(Reader& reader, const ReadOptions& options, FileInfo& info) {
     for (int i = 0; i < reader.GetNumberOfPointArrays(); ++i) {
@@ -26,9 +26,11 @@ void choose_arrays_by_name(Reader& reader, const ReadOptions& options, FileInfo&
     }
 }
 
-/// Reads one time step. `choose(options, info)` switches arrays on; it is called after the reader has looked at the file.
+/// Reads one time step. `choose(options, info)` switches arrays on; it is called after the reader has looked at the
+/// file.
 template <class Reader, class Choose>
-Result<Loaded> load_with(Reader& reader, const std::string& path, const ReadOptions& options, Depth depth, Choose choose) {
+Result<Loaded> load_with(Reader& reader, const std::string& path, const ReadOptions& options, Depth depth,
+                         Choose choose) {
     Loaded loaded;
     if (auto ready = update_information(reader, path); !ready) return ready.error();
     loaded.info.times = announced_times(reader);

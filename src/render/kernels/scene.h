@@ -1,9 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Every struct that both the processor and the drawing shaders know, once for both. All members are 4 bytes wide, so that
-// C++ and GLSL's scalar layout place them alike; render/layout.hpp checks the sizes.
+// Every struct that both the processor and the drawing shaders know, once for both. All members are 4 bytes wide, so
+// that C++ and GLSL's scalar layout place them alike; render/layout.hpp checks the sizes.
 //
-// Lengths are those of the scene: relative to its centre, in halves of its size, so that no grid is too large or too small. Colours are linear
-// light. A picture is drawn in parts that fit the images; a part has samples x samples samples for each of its pixels.
+// Lengths are those of the scene: relative to its centre, in halves of its size, so that no grid is too large or too
+// small. Colours are linear light. A picture is drawn in parts that fit the images; a part has samples x samples
+// samples for each of its pixels.
 #ifndef ISOTET_SCENE_H
 #define ISOTET_SCENE_H
 
@@ -59,7 +60,8 @@ struct Mesh {
     Address positions;    ///< float x 3 a vertex
     Address triangles;    ///< uint x 3 a triangle
     Address normals;      ///< float x 3 a vertex, or (0, 0): faces tell
-    Address values;       ///< float each: place in the colour map, 0 to 1; or value / lower end, where log_factor is not 0
+    Address values;       ///< float each: place in the colour map, 0 to 1; or value / lower end, where log_factor is
+                          ///< not 0
     Address ends;         ///< uint x 2 a vertex: packed points
     Address weights;      ///< float a vertex
     Address sources;      ///< uint a triangle: stored tet
@@ -88,8 +90,9 @@ ISOTET_CONSTANT page_tets = 65536u;     ///< of a store, but for its last page
 ISOTET_CONSTANT tet_group = 32u;        ///< tets of a workgroup of mesh shaders
 ISOTET_CONSTANT twin_size = 64u;        ///< invocations of a workgroup, a vertex of a tet each
 
-/// Half the table of marching tetrahedra: by which corners are above (1, 2, 4, 8), four crossed edges around. An index of 8 or
-/// more has the row of 15 - index. Where three edges are crossed the last stands twice, and with it the vertices.
+/// Half the table of marching tetrahedra: by which corners are above (1, 2, 4, 8), four crossed edges around. An index
+/// of 8 or more has the row of 15 - index. Where three edges are crossed the last stands twice, and with it the
+/// vertices.
 #define ISOTET_HALF_CASES                                                                           \
     0u, 0u, 0u, 0u, 0u, 2u, 1u, 1u, 0u, 3u, 4u, 4u, 1u, 3u, 4u, 2u, 1u, 5u, 3u, 3u, 0u, 2u, 5u, 3u, \
     0u, 1u, 5u, 4u, 2u, 5u, 4u, 4u

@@ -50,7 +50,8 @@ public:
 
     /// `packed`   borrowed
     /// Errors     invalid_argument for a double packing, or one with more points or tets than fit into 32 bits;
-    ///            out_of_memory, before anything is uploaded, when resident arrays and a page do not fit; machine; cancelled
+    ///            out_of_memory, before anything is uploaded, when resident arrays and a page do not fit; machine;
+    ///            cancelled
     static Result<std::unique_ptr<GridOnDevice>> upload(std::shared_ptr<Context> context, const core::Packed& packed,
                                                         const GridOptions& options, const Progress& progress);
 
@@ -60,11 +61,12 @@ public:
     ///          out_of_memory; machine; cancelled
     Result<WorkDone> extract(std::span<Task> tasks, const Progress& progress);
 
-    /// After core::store_values(), and store_gradients() where there are gradients, gave the packed grid another field: uploads
-    /// values, works out ranges on the device, and brings these into the packed grid.
+    /// After core::store_values(), and store_gradients() where there are gradients, gave the packed grid another field:
+    /// uploads values, works out ranges on the device, and brings these into the packed grid.
     ///
     /// `packed`   the one that was uploaded
-    /// Errors     out_of_memory; machine; cancelled. Ranges of the packed grid are then wrong, and the grid on the device must go
+    /// Errors     out_of_memory; machine; cancelled. Ranges of the packed grid are then wrong, and the grid on the
+    ///            device must go
     Result<WorkDone> take_field(core::Packed& packed, const Progress& progress);
 
     /// After the packed grid got other points: uploads positions and gradients of the pages that are there.

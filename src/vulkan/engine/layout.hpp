@@ -18,7 +18,8 @@ static_assert(sizeof(Count) == 8 && sizeof(Start) == 12 && sizeof(Lists) == 48 &
 static_assert(sizeof(Tables) == 108 && sizeof(Output) == 144 && sizeof(ExtractPush) == 28 && sizeof(RangesPush) == 8);
 static_assert(sizeof(SurfacePush) == 8 && sizeof(FieldPush) == 28);
 static_assert(group_size == core::group_size && max_cluster_points == core::max_cluster_points);
-static_assert(max_cluster_groups == core::max_cluster_tets / core::group_size && max_cluster_seams == 6 * core::max_cluster_tets);
+static_assert(max_cluster_groups == core::max_cluster_tets / core::group_size &&
+              max_cluster_seams == 6 * core::max_cluster_tets);
 
 constexpr std::uint32_t tet_case(const core::TetCase& c) {
     std::uint32_t word = std::uint32_t{c.triangles} << 16;

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Which pages of a packed grid are on the device. All of them where there is room; else the least recently used one goes
-// when another is wanted.
+// Which pages of a packed grid are on the device. All of them where there is room; else the least recently used one
+// goes when another is wanted.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,8 @@ public:
     /// Loads pages, one at least, until all are there or only `reserve` bytes of the device's memory are free.
     Result<void> load_all(std::uint64_t reserve, const Progress& progress);
 
-    /// Has as many of the `wanted` pages on the device together as fit, and gives them, in Page::batch, a number of their
-    /// own (batch()); those that are there already first. Pages that are not wanted make room.
+    /// Has as many of the `wanted` pages on the device together as fit, and gives them, in Page::batch, a number of
+    /// their own (batch()); those that are there already first. Pages that are not wanted make room.
     ///
     /// Returns  the pages that are there: some, unless none is wanted; the caller asks again for the others
     /// Errors   out_of_memory when there is not room for a single one; machine; cancelled

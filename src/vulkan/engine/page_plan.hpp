@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Cutting a packed grid into pages: whole clusters, and a halo of the points that these borrow from other pages, so that a
-// page can be worked on without any other. kernels/shared/layout.h draws one.
+// Cutting a packed grid into pages: whole clusters, and a halo of the points that these borrow from other pages, so
+// that a page can be worked on without any other. kernels/shared/layout.h draws one.
 #pragma once
 
 #include <cstdint>
@@ -38,12 +38,14 @@ std::vector<PlannedPage> plan_pages(const core::Packed& packed, std::uint64_t pa
 
 /// Where the clusters of a page lie in it and what they have; `first_mask` is left to the caller.
 /// `out`   page.clusters
-void place_clusters(const core::Packed& packed, const PlannedPage& page, std::uint32_t page_number, layout::Cluster* out);
+void place_clusters(const core::Packed& packed, const PlannedPage& page, std::uint32_t page_number,
+                    layout::Cluster* out);
 
 /// What the device holds of a page, as it stands there. Parallel.
 /// `clusters`  of this page, from place_clusters()
 /// `out`       page.words words
-void fill_page(const core::Packed& packed, const PlannedPage& page, const layout::Cluster* clusters, std::uint32_t* out);
+void fill_page(const core::Packed& packed, const PlannedPage& page, const layout::Cluster* clusters,
+               std::uint32_t* out);
 
 /// An array of all points as a page has it: those of its own points, then those of its halo.
 /// `from`   `components` words for each packed point

@@ -51,7 +51,8 @@ public:
     /// Normals that need the whole surface, and fields; nothing where the parts have none.
     void finish(Recorder& recorder, const Task& task) const;
 
-    /// Works out the ranges of all clusters on pages that are there, from their values. By itself: needs no task and no parts.
+    /// Works out the ranges of all clusters on pages that are there, from their values. By itself: needs no task and no
+    /// parts.
     static Result<void> ranges(Context& context, Recorder& recorder, const Resident& resident);
 
 private:
@@ -63,7 +64,8 @@ private:
     const Resident& resident_;
     SurfaceParts parts_;
     const Kernel *select_ = nullptr, *count_ = nullptr, *scan_ = nullptr, *emit_few_ = nullptr, *emit_many_ = nullptr;
-    const Kernel *face_normals_ = nullptr, *lowest_triangles_ = nullptr, *missing_normals_ = nullptr, *fields_ = nullptr;
+    const Kernel *face_normals_ = nullptr, *lowest_triangles_ = nullptr, *missing_normals_ = nullptr,
+                 *fields_ = nullptr;
 };
 
 } // namespace isotet::vulkan

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A surface in the device's memory, where it can be drawn from: layout::Output at the head says how much there is and where,
-// and holds the arguments of an indexed draw.
+// A surface in the device's memory, where it can be drawn from: layout::Output at the head says how much there is and
+// where, and holds the arguments of an indexed draw.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Every struct that both the processor and the kernels know, once for both. All members are 4 bytes wide, so that C++ and
-// GLSL's scalar layout place them alike; engine/layout.hpp checks the sizes, tests/gpu_engine asks a device for each place.
+// Every struct that both the processor and the kernels know, once for both. All members are 4 bytes wide, so that C++
+// and GLSL's scalar layout place them alike; engine/layout.hpp checks the sizes, tests/gpu_engine asks a device for
+// each place.
 //
 // On the device a packed grid lies in two kinds of memory. Resident, by cluster: Page, Cluster, Range, masks, counts,
-// starts. In pages, which may come and go: points, values, tets, group ranges, links, each array of a page beginning at a
-// word that Page tells. A page holds whole clusters, and copies of the points that these borrow from other pages: its halo.
+// starts. In pages, which may come and go: points, values, tets, group ranges, links, each array of a page beginning at
+// a word that Page tells. A page holds whole clusters, and copies of the points that these borrow from other pages: its
+// halo.
 //
 //   page-local points   0 ......... own_points ......... own_points + halo
 //                       own points of its clusters       halo, in packed order
@@ -41,8 +43,8 @@ ISOTET_CONSTANT block_segments = 128u;
 ISOTET_CONSTANT few_edges = 1024u;           ///< crossed edges of a cluster that the smaller emit kernel has room for
 ISOTET_CONSTANT most_edges = 4096u;          ///< crossed edges that a cluster can have: 64 points below, 64 above
 
-/// Marching tetrahedra by which corners are above (core/case_table.hpp): four crossed edges, each corner above + 4 * corner
-/// below, in 4 bits; then the number of triangles. engine/layout.hpp checks them against the table.
+/// Marching tetrahedra by which corners are above (core/case_table.hpp): four crossed edges, each corner above + 4 *
+/// corner below, in 4 bits; then the number of triangles. engine/layout.hpp checks them against the table.
 #define ISOTET_TET_CASES                                                        \
     0x00000u, 0x188c4u, 0x1dd91u, 0x2cd98u, 0x166e2u, 0x26ec4u, 0x2de21u, 0x1ddecu, \
     0x1bb73u, 0x28b74u, 0x23b91u, 0x1bb98u, 0x26732u, 0x16674u, 0x13321u, 0x00000u

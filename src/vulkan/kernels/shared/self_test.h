@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A case of the arithmetic self-test, and what a device makes of it. All members are 4 bytes wide, so that C++ and GLSL's
-// scalar layout place them alike.
+// A case of the arithmetic self-test, and what a device makes of it. All members are 4 bytes wide, so that C++ and
+// GLSL's scalar layout place them alike.
 #ifndef ISOTET_SELF_TEST_H
 #define ISOTET_SELF_TEST_H
 
