@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Repeated extraction on a Vulkan device, step by step, beside the CPU engine on the same machine: one table, made grids of
-// growing size until the time is up. scripts/bench_gpu.sh runs it.
+// Repeated extraction on a Vulkan device, step by step, beside the CPU engine on the same machine: one table, made
+// grids of growing size until the time is up. scripts/bench_gpu.sh runs it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

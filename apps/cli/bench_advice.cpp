@@ -9,7 +9,8 @@ namespace isotet::cli {
 
 std::vector<Advice> advice_of(const std::vector<BenchRow>& rows) {
     std::vector<Advice> advice;
-    // By the best rounds: what slows a round down is other programs, and rounds of different rows do not meet the same ones.
+    // By the best rounds: what slows a round down is other programs, and rounds of different rows do not meet the same
+    // ones.
     const auto cost = [&](std::size_t row, double surfaces) {
         return rows[row].costs.prepare_seconds + surfaces * rows[row].best.total();
     };

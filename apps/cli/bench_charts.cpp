@@ -10,8 +10,8 @@ namespace isotet::cli {
 
 namespace {
 
-/// Figure 4 as far as its text has numbers: GPU(R) on a card of 256 MB. It gives GPU(T) twice the speed of the CPU, both
-/// constant up to 5 million tets, but no number for them.
+/// Figure 4 as far as its text has numbers: GPU(R) on a card of 256 MB. It gives GPU(T) twice the speed of the CPU,
+/// both constant up to 5 million tets, but no number for them.
 ChartLine registers_in_the_paper() {
     return {"GPU(R) in the paper, 2006", {{1e5, 6.7e6}, {6e5, 6.7e6}, {1e6, 4e6}}, true};
 }

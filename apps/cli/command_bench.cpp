@@ -137,8 +137,8 @@ Result<void> BenchRun::run_file() {
     return {};
 }
 
-/// Sides of regular grids from 100 thousand tets on, the sizes of the figure and beyond, ascending: the last is the largest grid
-/// that has no more than `most` tets.
+/// Sides of regular grids from 100 thousand tets on, the sizes of the figure and beyond, ascending: the last is the
+/// largest grid that has no more than `most` tets.
 std::vector<std::uint64_t> sides_of_paper(std::uint64_t most) {
     const auto tets = [](std::uint64_t side) { return 6 * side * side * side; };
     auto largest = static_cast<std::uint64_t>(std::lround(std::cbrt(static_cast<double>(most) / 6)));

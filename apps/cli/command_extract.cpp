@@ -140,8 +140,8 @@ Result<void> ExtractRun::load(std::size_t step) {
     return choose_values(step);
 }
 
-/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written. What goes into one
-/// file is in memory together anyway.
+/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written. What goes
+/// into one file is in memory together anyway.
 std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
     constexpr std::size_t a_pass = 8;
     return goes_into_one_file() ? isovalues : a_pass;

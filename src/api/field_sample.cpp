@@ -14,12 +14,12 @@ namespace isotet {
 
 namespace {
 
-/// Triangles for each cut tet: one where one corner is cut off, two where two are on each side. Of smooth fields on regular
-/// grids, on perturbed ones and on those of data/, about 1.3.
+/// Triangles for each cut tet: one where one corner is cut off, two where two are on each side. Of smooth fields on
+/// regular grids, on perturbed ones and on those of data/, about 1.3.
 constexpr double triangles_a_cut_tet = 1.3;
 
-/// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does not
-/// replace: it keeps a look at a few cells within the arrays.
+/// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does
+/// not replace: it keeps a look at a few cells within the arrays.
 bool is_within(const core::CellReader& cells, std::size_t cell) {
     const auto corners = static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
     const std::uint64_t first = cells.first(cell);

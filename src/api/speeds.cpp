@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Speeds of a machine: a made grid is packed and extracted from. Each figure is the best of a few runs, since other programs
-// can only slow one down. What a surface costs besides its triangles shows at an isovalue that cuts nothing, and what a call
-// costs besides, on a small grid.
+// Speeds of a machine: a made grid is packed and extracted from. Each figure is the best of a few runs, since other
+// programs can only slow one down. What a surface costs besides its triangles shows at an isovalue that cuts nothing,
+// and what a call costs besides, on a small grid.
 #include "api/speeds.hpp"
 
 #include <algorithm>
@@ -58,7 +58,8 @@ Result<double> best_of(int runs, const Progress& progress, const std::function<R
     return best;
 }
 
-/// The three parts of what a surface costs: c + tets t + triangles f; and what one that cuts much of the large grid costs.
+/// The three parts of what a surface costs: c + tets t + triangles f; and what one that cuts much of the large grid
+/// costs.
 struct Parts {
     double call = 0, tet = 0, triangle = 0;
     double large_surface = 0;

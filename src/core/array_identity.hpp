@@ -8,17 +8,22 @@
 
 namespace isotet::core {
 
-/// Tells an array that was seen before by its memory and its owner. A borrowed array has no owner: its memory may be used
-/// again, so it is never known.
+/// Tells an array that was seen before by its memory and its owner. A borrowed array has no owner: its memory may be
+/// used again, so it is never known.
 class ArrayIdentity {
 public:
     explicit ArrayIdentity(const Array& array)
-        : owner_(array.owner()), data_(array.data()), tuples_(array.tuples()), components_(array.components()), type_(array.type()) {}
+        : owner_(array.owner()),
+          data_(array.data()),
+          tuples_(array.tuples()),
+          components_(array.components()),
+          type_(array.type()) {}
 
     /// The owner is gone, or there was none.
     bool expired() const noexcept { return owner_.expired(); }
     bool is(const Array& array) const noexcept {
-        return !expired() && data_ == array.data() && tuples_ == array.tuples() && components_ == array.components() && type_ == array.type();
+        return !expired() && data_ == array.data() && tuples_ == array.tuples() && components_ == array.components() &&
+               type_ == array.type();
     }
 
 private:

@@ -31,7 +31,8 @@ inline std::size_t count_bits(const std::uint64_t* words, std::size_t n) {
 template <class F>
 void for_bits(const std::uint64_t* words, std::size_t n, F&& f) {
     for (std::size_t w = 0; w < n; ++w)
-        for (std::uint64_t bits = words[w]; bits; bits &= bits - 1) f(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
+        for (std::uint64_t bits = words[w]; bits; bits &= bits - 1)
+            f(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 } // namespace isotet::core

@@ -67,7 +67,8 @@ Block map_block(std::size_t bytes) {
 /// Blocks given back, waiting for the next one who wants about as much; and what is in use.
 class KeptBlocks {
 public:
-    /// The smallest block that is large enough and not more than a quarter too large; with reuse, also a piece of a larger one.
+    /// The smallest block that is large enough and not more than a quarter too large; with reuse, also a piece of a
+    /// larger one.
     Block take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
         auto best = blocks_.end();

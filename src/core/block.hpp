@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Where the memory of large arrays comes from. The first touch of fresh memory costs more than most of what is done with
-// it: the system clears it page by page. So large blocks ask for huge pages, and a few of those given back are kept for
-// the next surface, which is about as large as the last one.
+// Where the memory of large arrays comes from. The first touch of fresh memory costs more than most of what is done
+// with it: the system clears it page by page. So large blocks ask for huge pages, and a few of those given back are
+// kept for the next surface, which is about as large as the last one.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,8 @@ void give_back(Block block) noexcept;
 /// Gives what is kept to the system; returns how many bytes that were.
 std::size_t drop_kept_blocks() noexcept;
 
-/// Smaller blocks come from the ordinary heap. (The heap gives a megabyte that becomes free at its end back to the system,
-/// and every small surface would touch its pages anew.)
+/// Smaller blocks come from the ordinary heap. (The heap gives a megabyte that becomes free at its end back to the
+/// system, and every small surface would touch its pages anew.)
 constexpr std::size_t large_block = std::size_t{256} << 10;
 
 } // namespace isotet::core

@@ -66,8 +66,8 @@ void mark_repeated(std::span<const RankedTet> tets, std::vector<std::uint8_t>& r
         if (sorted[i].first == sorted[i - 1].first) repeated[sorted[i].second] = 1;
 }
 
-/// A tet with its corners in ascending order of the user's points, the order that makes all that follows simple: the canonical
-/// form is this one, the last two exchanged where it is not upright.
+/// A tet with its corners in ascending order of the user's points, the order that makes all that follows simple: the
+/// canonical form is this one, the last two exchanged where it is not upright.
 struct Ascending {
     RankedTet ranks;
     bool odd; ///< whether the corners had the other orientation before

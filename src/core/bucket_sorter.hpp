@@ -26,8 +26,8 @@ struct RankedPoints {
     PointReader coordinates;
 };
 
-/// Gives the tets of a bucket their stored form and order: by lowest rank, then as they were dealt out. Of tets with the same
-/// four corners the first stays.
+/// Gives the tets of a bucket their stored form and order: by lowest rank, then as they were dealt out. Of tets with
+/// the same four corners the first stays.
 ///
 /// Threads   buckets may be sorted at the same time
 SortedBucket sort_bucket(const RankedPoints& points, const CellReader& cells, std::size_t bucket, TetBuckets& tets);

@@ -1,9 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Marching tetrahedra: which triangles a tet gives, by which of its corners are above.
 //
-// A corner of a triangle lies on a crossed edge, written (corner above, corner below). Triangles are counter-clockwise seen
-// from above, for an upright tet. A quadrilateral is cut from its vertex between the first above and the first below corner,
-// so that a case and its complement have the same diagonal.
+// A corner of a triangle lies on a crossed edge, written (corner above, corner below). Triangles are counter-clockwise
+// seen from above, for an upright tet. A quadrilateral is cut from its vertex between the first above and the first
+// below corner, so that a case and its complement have the same diagonal.
 #pragma once
 
 #include <array>
@@ -54,7 +54,8 @@ constexpr std::array<TetCase, 16> make_case_table() {
                             : std::array{first, other_above, opposite, other_below};
         } else {
             std::array<CrossedEdge, 3> e{};
-            for (unsigned k = 0; k < 3; ++k) e[k] = lone_below ? CrossedEdge{above[k], below[0]} : CrossedEdge{above[0], below[k]};
+            for (unsigned k = 0; k < 3; ++k)
+                e[k] = lone_below ? CrossedEdge{above[k], below[0]} : CrossedEdge{above[0], below[k]};
             const bool swap = lone_below == odd;
             c.edges = 3;
             c.triangles = 1;

@@ -46,8 +46,8 @@ constexpr int hexahedron_rotations[8][8] = {
     {0, 1, 2, 3, 4, 5, 6, 7}, {1, 2, 3, 0, 5, 6, 7, 4}, {2, 3, 0, 1, 6, 7, 4, 5}, {3, 0, 1, 2, 7, 4, 5, 6},
     {4, 7, 6, 5, 0, 3, 2, 1}, {5, 4, 7, 6, 1, 0, 3, 2}, {6, 5, 4, 7, 2, 1, 0, 3}, {7, 6, 5, 4, 3, 2, 1, 0}};
 
-// The lowest corner sees the three faces that do not touch it; each of their halves makes a tet with it. If no diagonal of
-// these faces ends in the opposite corner 6, that corner is cut off and five tets are enough.
+// The lowest corner sees the three faces that do not touch it; each of their halves makes a tet with it. If no diagonal
+// of these faces ends in the opposite corner 6, that corner is cut off and five tets are enough.
 void split_hexahedron(const std::uint64_t* corners, CellTets& out) {
     const auto lowest = std::min_element(corners, corners + 8) - corners;
     std::uint64_t v[8];

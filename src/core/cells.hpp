@@ -81,8 +81,8 @@ public:
     std::uint64_t connectivity_size() const { return connectivity_size_; }
     std::uint64_t points() const { return points_; }
 
-    /// The tets of a cell, none for a type that is not contoured. Corners in the order of the file (tetrahedra) or of the
-    /// splitting; the cell must have passed check_cells().
+    /// The tets of a cell, none for a type that is not contoured. Corners in the order of the file (tetrahedra) or of
+    /// the splitting; the cell must have passed check_cells().
     CellTets tets(std::size_t cell) const {
         CellTets out;
         if (type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron)) {

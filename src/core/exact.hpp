@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Signs computed exactly: a floating-point filter first, expansions (sums of doubles that do not overlap) where it fails.
-// Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates (1997).
+// Signs computed exactly: a floating-point filter first, expansions (sums of doubles that do not overlap) where it
+// fails. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates (1997).
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@ using Point = std::array<double, 3>;
 /// What orientation_sign() says, by expansions alone.
 int exact_orientation_sign(const Point& a, const Point& b, const Point& c, const Point& d);
 
-/// The sign of (b - a) . ((c - a) x (d - a)): +1 when the tet a b c d is upright, -1 when it is inverted, 0 when it is flat.
+/// The sign of (b - a) . ((c - a) x (d - a)): +1 when the tet a b c d is upright, -1 when it is inverted, 0 when it is
+/// flat.
 ///
 /// Guarantees   exact for all coordinates below 2^91, unless parts smaller than 2^-1000 of the largest decide
 inline int orientation_sign(const Point& a, const Point& b, const Point& c, const Point& d) {

@@ -32,13 +32,13 @@ struct FaceSurvey {
     Orienter::Counts orientation;
 };
 
-/// Surveys a checked grid of any size: points are dealt out into so many hands that the faces (or tets) with their lowest
-/// point in one hand fit `memory` bytes, and each hand takes a pass over the cells.
+/// Surveys a checked grid of any size: points are dealt out into so many hands that the faces (or tets) with their
+/// lowest point in one hand fit `memory` bytes, and each hand takes a pass over the cells.
 ///
 /// Guarantees   the same counts for any thread count and any `memory`
 /// Cost         O(T log T) and a pass over the cells a hand; 96 T / `memory` hands
 /// Errors       cancelled
-Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey, std::uint64_t memory,
-                                const Progress& progress);
+Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
+                                std::uint64_t memory, const Progress& progress);
 
 } // namespace isotet::core

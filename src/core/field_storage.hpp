@@ -22,8 +22,8 @@ struct FieldStorage {
     std::uint64_t flushed = 0; ///< stored values that are 0 though the values are not
 };
 
-/// Chooses offset and scale for a field of one component, one value for each of the user's points, and stores its values
-/// at the packed points in `out`. When cancelled, what comes back means nothing.
+/// Chooses offset and scale for a field of one component, one value for each of the user's points, and stores its
+/// values at the packed points in `out`. When cancelled, what comes back means nothing.
 /// Cost   parallel; one pass over the packed points, one more for an offset, one more for a scale
 template <class Real>
 FieldStorage store_field_values(const Array& values, const Packed& packed, const Progress& progress, Real* out);

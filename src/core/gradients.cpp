@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Directions of the gradient at points: the sum over the valid tets of each point, in stored order, of the tet's gradient
-// times its volume, in double.
+// Directions of the gradient at points: the sum over the valid tets of each point, in stored order, of the tet's
+// gradient times its volume, in double.
 #include <vector>
 
 #include "core/local_values.hpp"

@@ -16,6 +16,7 @@ using PointSteps = std::array<std::uint8_t, max_cluster_points>;
 /// For whole groups, padding included.
 /// `lower`, `upper`  the steps whose smallest and whose largest is taken: they differ where points have no data
 /// Guarantees        the same on every instruction level (level.hpp)
-void find_group_ranges(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper, GroupRange* out);
+void find_group_ranges(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
+                       GroupRange* out);
 
 } // namespace isotet::core

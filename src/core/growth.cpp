@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// Numbers the points of a block 0, 1, 2, ... in the order in which they are first seen. The tets of a block come by their
-/// lowest rank, so most of its points are within a short stretch of ranks, and have their numbers in a table; a hash table
-/// has those of the others.
+/// Numbers the points of a block 0, 1, 2, ... in the order in which they are first seen. The tets of a block come by
+/// their lowest rank, so most of its points are within a short stretch of ranks, and have their numbers in a table; a
+/// hash table has those of the others.
 class PointNumbers {
 public:
     explicit PointNumbers(std::uint32_t lowest) : lowest_(lowest), near_(1 << 16) {
@@ -66,8 +66,9 @@ private:
     std::size_t mask_ = 0, far_ = 0;
 };
 
-/// Points that would complete a tet, and how much each is wanted. Looking for the best one is what growth does most: the
-/// scores stand side by side in 16 bits, in loops without exits that compilers turn into SIMD, eight at a time and more.
+/// Points that would complete a tet, and how much each is wanted. Looking for the best one is what growth does most:
+/// the scores stand side by side in 16 bits, in loops without exits that compilers turn into SIMD, eight at a time and
+/// more.
 class Candidates {
 public:
     std::uint32_t add(std::uint32_t point, std::int16_t score) {
@@ -148,9 +149,9 @@ private:
     std::array<std::uint64_t, tets_a_block / 4096> full_words_{}; ///< which words are not 0
 };
 
-/// How far a tet is from completion, in one word that a joining corner changes without looking at the others: how many of
-/// its corners are in the growing cluster, and the exclusive or of the numbers of those that are not. So when three are in,
-/// the word says which one is missing.
+/// How far a tet is from completion, in one word that a joining corner changes without looking at the others: how many
+/// of its corners are in the growing cluster, and the exclusive or of the numbers of those that are not. So when three
+/// are in, the word says which one is missing.
 class TetState {
 public:
     static TetState none_inside(const RankedTet& corners) {
@@ -233,8 +234,8 @@ private:
         }
     }
 
-    /// Adds the points of a tet that is left: one beside the given points, else the next along the curve. False when there
-    /// is none, or no room for it.
+    /// Adds the points of a tet that is left: one beside the given points, else the next along the curve. False when
+    /// there is none, or no room for it.
     bool start(const std::vector<std::uint32_t>& points) {
         std::uint32_t seed = beside(points);
         if (seed == none) {
@@ -265,8 +266,8 @@ private:
         return seed;
     }
 
-    /// What joins has no taken tets in its list: these have all their points in the clusters of which they are, and every
-    /// cluster cleans the lists of its points in the end.
+    /// What joins has no taken tets in its list: these have all their points in the clusters of which they are, and
+    /// every cluster cleans the lists of its points in the end.
     void join(std::uint32_t v) {
         places_[v] = inside;
         points_.push_back(v);
@@ -300,8 +301,8 @@ private:
         taken_.push_back(tet);
     }
 
-    /// One more tet that v would complete. The score is gain * (1 + 20 / left), in 1/256, and `left` stays what it is while v
-    /// is a candidate: all points of a tet that is taken are in the cluster.
+    /// One more tet that v would complete. The score is gain * (1 + 20 / left), in 1/256, and `left` stays what it is
+    /// while v is a candidate: all points of a tet that is taken are in the cluster.
     void add_gain(std::uint32_t v) {
         Vertex& vertex = vertices_[v];
         const std::int16_t weight = weight_[std::min<std::size_t>(vertex.left, weight_.size() - 1)];
@@ -328,7 +329,8 @@ private:
         sorter_.drain(
             [&](std::uint32_t tet) { tets[next++] = tet; }); // along the curve: tets of a group are close together
 
-        // A point that joined for a tet which was not taken any more is not in the cluster: places go to those that tets use.
+        // A point that joined for a tet which was not taken any more is not in the cluster: places go to those that
+        // tets use.
         if (full_) {
             for (const std::uint32_t v : points_) places_[v] = outside;
             for (const std::uint32_t tet : tets)

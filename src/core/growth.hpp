@@ -11,8 +11,8 @@
 
 namespace isotet::core {
 
-/// Tets along the curve are cut into blocks of this many, and clusters are grown inside each block on its own: fixed, so
-/// that the number of threads does not matter.
+/// Tets along the curve are cut into blocks of this many, and clusters are grown inside each block on its own: fixed,
+/// so that the number of threads does not matter.
 constexpr std::size_t tets_a_block = 65536;
 
 /// The clusters of one block. Points of a cluster stand in the order in which they joined; corners of tets are
@@ -27,7 +27,8 @@ struct BlockClusters {
     std::vector<std::uint32_t> points; ///< ranks, cluster by cluster
 };
 
-/// Gathers the tets of a block, sorted by their lowest rank, into clusters of at most max_cluster_points points and max_cluster_tets tets.
+/// Gathers the tets of a block, sorted by their lowest rank, into clusters of at most max_cluster_points points and
+/// max_cluster_tets tets.
 ///
 /// A cluster starts beside the last one and takes, again and again, the point v with the largest
 /// gain(v) * (1 + 20 / left(v)): gain = tets that v completes, left = tets of v not yet in a cluster. The second factor

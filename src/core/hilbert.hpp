@@ -66,7 +66,8 @@ constexpr std::uint64_t spread(std::uint64_t x) {
 inline std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     const std::uint64_t octants = detail::spread(x) | detail::spread(y) << 1 | detail::spread(z) << 2;
     std::uint64_t index = 0;
-    unsigned state = 2; // eleven pairs for 21 octants: state 2 leads through octant 0 to state 0, where the curve begins
+    unsigned state = 2; // eleven pairs for 21 octants: state 2 leads through octant 0 to state 0, where the curve
+                        // begins
     for (int bit = 60; bit >= 0; bit -= 6) {
         const detail::HilbertStep step = detail::hilbert_pairs[state][octants >> bit & 63];
         index = index << 6 | step.digit;

@@ -15,16 +15,16 @@ namespace isotet::core {
 /// the limit on address space leaves. Huge where none of these can be told.
 std::uint64_t free_memory();
 
-/// What the control group of a process (version 2, or 1) and those above it leave; huge where there is no limit. Files that
-/// are only cached are counted as used there, but give way.
+/// What the control group of a process (version 2, or 1) and those above it leave; huge where there is no limit. Files
+/// that are only cached are counted as used there, but give way.
 /// `membership`  /proc/self/cgroup   `mount`  /sys/fs/cgroup
 std::uint64_t control_group_free(const std::string& membership, const std::string& mount);
 
 /// An out_of_memory error when `bytes` are more than free_memory(): "packing needs 12.3 GB, but 4.5 GB are free".
 Result<void> require_memory(std::string_view what, std::uint64_t bytes);
 
-/// The memory of this process that is in the machine: now, and at its most since the process began or since the peak was last
-/// forgotten. Nothing where the system does not tell.
+/// The memory of this process that is in the machine: now, and at its most since the process began or since the peak
+/// was last forgotten. Nothing where the system does not tell.
 std::optional<std::uint64_t> resident_memory();
 std::optional<std::uint64_t> peak_resident_memory();
 

@@ -23,7 +23,9 @@ inline std::uint32_t encode_normal(const std::array<double, 3>& n) {
         v = (1 - std::abs(u)) * (v < 0 ? -1 : 1);
         u = folded;
     }
-    const auto step = [](double x) { return static_cast<std::uint16_t>(static_cast<std::int16_t>(std::floor(x * normal_code_steps + 0.5))); };
+    const auto step = [](double x) {
+        return static_cast<std::uint16_t>(static_cast<std::int16_t>(std::floor(x * normal_code_steps + 0.5)));
+    };
     return step(u) | static_cast<std::uint32_t>(step(v)) << 16;
 }
 
@@ -33,7 +35,8 @@ inline std::array<int, 3> decode_normal(std::uint32_t code) {
     const int u = static_cast<std::int16_t>(code & 0xffff), v = static_cast<std::int16_t>(code >> 16);
     const int z = normal_code_steps - std::abs(u) - std::abs(v);
     if (z >= 0) return {u, v, z};
-    return {(normal_code_steps - std::abs(v)) * (u < 0 ? -1 : 1), (normal_code_steps - std::abs(u)) * (v < 0 ? -1 : 1), z};
+    return {(normal_code_steps - std::abs(v)) * (u < 0 ? -1 : 1), (normal_code_steps - std::abs(u)) * (v < 0 ? -1 : 1),
+            z};
 }
 
 } // namespace isotet::core

@@ -72,7 +72,8 @@ public:
 
     struct Counts {
         std::uint64_t upright = 0, negative = 0, flat = 0; ///< of tetrahedra
-        std::uint64_t twisted = 0; ///< pieces of split cells whose sign is not that of their cell; flat pieces count as flat
+        std::uint64_t twisted = 0; ///< pieces of split cells whose sign is not that of their cell; flat pieces count as
+                                   ///< flat
 
         /// Counts a tet by the sign of its volume. Returns whether its stored form is the mirrored one.
         /// `mirrored`   what a flat one is: as most tetrahedra, or as the cell of which it is a piece
@@ -102,7 +103,9 @@ public:
         return canonical(t);
     }
 
-    static bool is_whole(std::uint8_t cell_type) { return cell_type == static_cast<std::uint8_t>(CellType::tetrahedron); }
+    static bool is_whole(std::uint8_t cell_type) {
+        return cell_type == static_cast<std::uint8_t>(CellType::tetrahedron);
+    }
 
     /// Six times the volume of a split cell, rounded.
     static double six_volumes(const PointReader& points, const CellTets& cell) {

@@ -30,9 +30,9 @@ Result<void> check_field(const PointField& field, std::uint64_t points) {
 
 namespace {
 
-/// At the peak, while clusters are grown: the sorted tets (16 B, some pages half empty) and what is grown so far; before, as
-/// points are sorted, or later, as seams are found, about as much. And what each thread needs for the bucket and the block
-/// at hand.
+/// At the peak, while clusters are grown: the sorted tets (16 B, some pages half empty) and what is grown so far;
+/// before, as points are sorted, or later, as seams are found, about as much. And what each thread needs for the bucket
+/// and the block at hand.
 std::uint64_t packing_memory(std::uint64_t tets, const Grid& grid, bool origins) {
     constexpr std::uint64_t a_thread = 500'000, a_block = 3'000'000;
     const std::uint64_t a_point = grid.points.type() == ScalarType::float32 ? 38 : 50;

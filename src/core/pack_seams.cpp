@@ -1,7 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Seam edges: which edges are held by several clusters, and who owns them. Edges whose two ends both lie in other clusters
-// too are the candidates. Every cluster sends its candidates to the owner of their lower end, where the same edge sent by
-// several clusters stands side by side after sorting; the lowest-numbered sender is the owner, and all senders are told.
+// Seam edges: which edges are held by several clusters, and who owns them. Edges whose two ends both lie in other
+// clusters too are the candidates. Every cluster sends its candidates to the owner of their lower end, where the same
+// edge sent by several clusters stands side by side after sorting; the lowest-numbered sender is the owner, and all
+// senders are told.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -81,8 +82,8 @@ private:
 };
 constexpr std::uint32_t nobody = 0xffffffffu;
 
-/// Sorts the letters to one cluster by edge, then sender. By the lower end first, of which there are few; what is left to
-/// do for each of these is short.
+/// Sorts the letters to one cluster by edge, then sender. By the lower end first, of which there are few; what is left
+/// to do for each of these is short.
 void sort_letters(std::span<Letter> letters, std::vector<Letter>& scratch) {
     std::uint32_t next[max_cluster_points + 1] = {};
     for (const Letter& letter : letters) ++next[letter.lower_index() + 1];
@@ -136,7 +137,8 @@ private:
         ForeignSeam seam;
     };
 
-    /// Where the owner stands in the table, or its end. Tables are short, and the same owner comes several times in a row.
+    /// Where the owner stands in the table, or its end. Tables are short, and the same owner comes several times in a
+    /// row.
     std::size_t position(std::uint32_t owner) {
         if (last_ < table_.size() && table_[last_].cluster == owner) return last_;
         last_ = 0;
@@ -261,8 +263,8 @@ private:
         return {candidates_.data() + first_candidate_[c], first_candidate_[c + 1] - first_candidate_[c]};
     }
 
-    /// Calls f(owner, begin, end) for each run of a cluster's candidates whose lower ends have one owner of [first, last): all
-    /// that this owner has here, since local points stand by owner.
+    /// Calls f(owner, begin, end) for each run of a cluster's candidates whose lower ends have one owner of [first,
+    /// last): all that this owner has here, since local points stand by owner.
     template <class F>
     void for_runs(std::size_t c, std::size_t first, std::size_t last, const F& f) const {
         if (c < first || ref(c, 0).owner() >= last) return; // no cluster has points of a later one
@@ -302,8 +304,8 @@ private:
             deliver(begin_of(round), begin_of(round + 1), first, next, letters);
     }
 
-    /// Sends the letters to the clusters [from, to), and answers them. `next` is where each cluster's next letter goes, at
-    /// first as `first`; letters lie in the buffer from first[from] on.
+    /// Sends the letters to the clusters [from, to), and answers them. `next` is where each cluster's next letter goes,
+    /// at first as `first`; letters lie in the buffer from first[from] on.
     void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first,
                  std::vector<std::uint64_t>& next, Buffer<Letter>& letters) {
         Letter* const to_first = letters.data();

@@ -11,7 +11,8 @@
 //                                                        index among the neighbour's own points
 //                                        own seams       2 bytes each (lower, higher local index), padded to a word
 //                                        foreign seams   1 word each, grouped by neighbour:
-//                                                        lower + 256 * higher + 65536 * index among the owner's own seams
+//                                                        lower + 256 * higher + 65536 * index among the owner's own
+//                                                        seams
 //
 // Local indices run foreign points first, then own points, ascending in packed order. A point belongs to the
 // lowest-numbered cluster that holds it (its owner), so every neighbour in the table has a lower number.
@@ -191,8 +192,8 @@ inline std::size_t local_points(const Packed& packed, std::size_t cluster, std::
     return n;
 }
 
-/// The power of two that brings the width of a range into [128, 256); 0 for a width of 0. Widths are far from denormals and
-/// overflow, and so is the factor.
+/// The power of two that brings the width of a range into [128, 256); 0 for a width of 0. Widths are far from denormals
+/// and overflow, and so is the factor.
 template <class Real>
 Real quantize_factor(Range<Real> range) {
     using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;

@@ -15,8 +15,8 @@ namespace isotet::core {
 
 namespace {
 
-/// An arena alone never gets more workers than there are cores. Of several controls the smallest rules, and calls that run
-/// at the same time would slow each other down: so there is one, which only grows.
+/// An arena alone never gets more workers than there are cores. Of several controls the smallest rules, and calls that
+/// run at the same time would slow each other down: so there is one, which only grows.
 void allow_threads(int count) {
     static std::mutex mutex;
     static std::optional<tbb::global_control> control;

@@ -10,8 +10,8 @@
 
 namespace isotet::core {
 
-/// The used points along a Hilbert curve, each with its place there as the key; those of equal keys by number. Parallel; the
-/// same for any thread count.
+/// The used points along a Hilbert curve, each with its place there as the key; those of equal keys by number.
+/// Parallel; the same for any thread count.
 ///
 /// `used`   by point: 1 when it is used, else 0
 /// Cost     32 bytes a used point

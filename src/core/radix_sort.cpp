@@ -31,7 +31,8 @@ Digit digit_for(std::uint64_t differing, int bits) {
     return {shift, (std::size_t{1} << bits) - 1};
 }
 
-/// The two places of a part: where it is now, and the other one. In the end it is to be in `home`, which is one of them.
+/// The two places of a part: where it is now, and the other one. In the end it is to be in `home`, which is one of
+/// them.
 struct Part {
     Keyed* here;
     Keyed* there;
@@ -90,8 +91,8 @@ std::uint64_t differing_bits(const Part& part) {
     return differing;
 }
 
-/// Splits the part by its highest digit, chunks of it at the same time. Returns where each digit's items end up, and the
-/// whole size behind them.
+/// Splits the part by its highest digit, chunks of it at the same time. Returns where each digit's items end up, and
+/// the whole size behind them.
 std::vector<std::size_t> split_parallel(const Part& part, Digit digit) {
     const std::size_t digits = digit.mask + 1;
     const std::size_t chunks = std::clamp<std::size_t>(part.size >> 16, 1, 64);

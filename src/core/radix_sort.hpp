@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Sorting by 64-bit keys, from the highest digit down: a tenth of the comparisons' time where keys are spread, and no worse
-// where they are not, since each part looks only at the bits in which its keys differ.
+// Sorting by 64-bit keys, from the highest digit down: a tenth of the comparisons' time where keys are spread, and no
+// worse where they are not, since each part looks only at the bits in which its keys differ.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What giving a packed grid a field is made of: values, then what follows from them. A device may work out ranges itself.
+// What giving a packed grid a field is made of: values, then what follows from them. A device may work out ranges
+// itself.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +17,14 @@ namespace isotet::core {
 /// Errors   invalid_argument when the field is not one scalar for each of `points` points
 Result<void> check_field(const PointField& field, std::uint64_t points);
 
-/// Stores the values of a field; fills values, storage and the field's report, and makes room for ranges, group ranges and
-/// has_no_data, which are then those of the field before, or nothing.
+/// Stores the values of a field; fills values, storage and the field's report, and makes room for ranges, group ranges
+/// and has_no_data, which are then those of the field before, or nothing.
 /// Errors   cancelled
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress);
 
-/// Works out ranges, group ranges and has_no_data of the clusters [begin, end) from the stored values. Parallel; what is left
-/// when cancelled means nothing.
+/// Works out ranges, group ranges and has_no_data of the clusters [begin, end) from the stored values. Parallel; what
+/// is left when cancelled means nothing.
 template <class Real>
 void store_ranges(Packed& packed, std::size_t begin, std::size_t end, const Progress& progress);
 

@@ -100,7 +100,8 @@ bool equals_exactly(T value, double wanted) {
     if constexpr (std::is_integral_v<T>) {
         // A double that is an integer inside T's range converts without loss; all others cannot be equal.
         if (!(wanted >= -0x1p63 && wanted < 0x1p64) || wanted != std::floor(wanted)) return false;
-        if (wanted < 0) return std::is_signed_v<T> && static_cast<std::int64_t>(value) == static_cast<std::int64_t>(wanted);
+        if (wanted < 0)
+            return std::is_signed_v<T> && static_cast<std::int64_t>(value) == static_cast<std::int64_t>(wanted);
         return value >= 0 && static_cast<std::uint64_t>(value) == static_cast<std::uint64_t>(wanted);
     } else {
         return static_cast<double>(value) == wanted;

@@ -28,8 +28,8 @@ Real greater(Real a, Real b) {
     return a > b ? a : b;
 }
 
-/// Stored values of the local points of a cluster, and what ranges are made of. Values stand in whole lanes, filled up with
-/// copies of the first one.
+/// Stored values of the local points of a cluster, and what ranges are made of. Values stand in whole lanes, filled up
+/// with copies of the first one.
 template <class Real>
 class LocalRanges {
 public:

@@ -18,7 +18,8 @@ TetBuckets::TetBuckets(std::size_t ranks, std::uint64_t tets, std::size_t writer
     buckets_.resize((ranks >> shift_) + 1);
     next_.resize(writers * buckets());
     stream_pages_.resize(next_.size());
-    // Half of the last page of each stream stays empty: a twenty-fourth of the memory, or a sixth for very many writers.
+    // Half of the last page of each stream stays empty: a twenty-fourth of the memory, or a sixth for very many
+    // writers.
     page_bits_ = static_cast<unsigned>(std::bit_width(std::clamp<std::size_t>(2048 / writers, 16, 256)) - 1);
     const std::size_t room = (tets / page_size() + std::min<std::size_t>(next_.size(), tets)) * page_size();
     tets_ = Buffer<RankedTet>(room);

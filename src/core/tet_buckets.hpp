@@ -1,14 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// All tets of a grid, in buckets by their lowest rank. One pass over the cells deals them out, although nobody knows then how
-// many each bucket gets: tets lie in pages, and pages are added where they are wanted.
+// All tets of a grid, in buckets by their lowest rank. One pass over the cells deals them out, although nobody knows
+// then how many each bucket gets: tets lie in pages, and pages are added where they are wanted.
 //
-//   writer 0 ─┬─ bucket 0: ▓▓▓▓▓▓▓▓ ▓▓▓▓▓░░░     a writer deals out the tets of some cells, one after another, into pages of
+//   writer 0 ─┬─ bucket 0: ▓▓▓▓▓▓▓▓ ▓▓▓▓▓░░░     a writer deals out the tets of some cells, one after another, into
+//   pages of
 //             └─ bucket 1: ▓▓▓░░░░░              its own: so a bucket can be read in the order of the cells
 //   writer 1 ─┬─ bucket 0: ▓▓▓▓▓░░░
 //             └─ bucket 1: ▓▓▓▓▓▓▓▓ ▓▓░░░░░░
 //
-// A bucket fits into a processor's cache, where it is sorted; it is written back into its first pages. When all are, the
-// tets are numbered through, bucket by bucket.
+// A bucket fits into a processor's cache, where it is sorted; it is written back into its first pages. When all are,
+// the tets are numbered through, bucket by bucket.
 #pragma once
 
 #include <algorithm>
@@ -146,8 +147,8 @@ private:
     Buffer<RankedTet> tets_;    ///< page by page
     Buffer<TetOrigin> origins_; ///< beside them, or empty
     std::size_t pages_ = 0;     ///< taken so far, by all writers
-    // Streams, by writer, then bucket. What every tet needs stands close together, in a processor's first cache. Where a
-    // stream's next position is the beginning of a page, that page is still to be added.
+    // Streams, by writer, then bucket. What every tet needs stands close together, in a processor's first cache. Where
+    // a stream's next position is the beginning of a page, that page is still to be added.
     std::vector<std::size_t> next_;
     std::vector<Pages> stream_pages_;
     std::vector<Bucket> buckets_;

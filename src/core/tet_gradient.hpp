@@ -22,7 +22,8 @@ inline Point six_volumes_times_gradient(const std::array<Point, 4>& corners, con
     };
     const Point n0 = cross(edge[1], edge[2]), n1 = cross(edge[2], edge[0]), n2 = cross(edge[0], edge[1]);
     Point gradient;
-    for (std::size_t axis = 0; axis < 3; ++axis) gradient[axis] = rise[0] * n0[axis] + rise[1] * n1[axis] + rise[2] * n2[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        gradient[axis] = rise[0] * n0[axis] + rise[1] * n1[axis] + rise[2] * n2[axis];
     return gradient;
 }
 

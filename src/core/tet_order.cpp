@@ -67,8 +67,8 @@ std::size_t writers_for(std::size_t cells) {
     return std::min(std::max(threads, std::min<std::size_t>(8 * threads, 128)), 1 + (cells >> 16));
 }
 
-/// Deals out the tets of the cells [begin, end). Each waits for a while behind others, as the ranks of its points are on
-/// their way from memory.
+/// Deals out the tets of the cells [begin, end). Each waits for a while behind others, as the ranks of its points are
+/// on their way from memory.
 void deal_out(const PointReader& points, const CellReader& cells, std::size_t begin, std::size_t end,
               const Buffer<std::uint32_t>& rank_of, TetBuckets::Writer& writer) {
     struct Waiting {

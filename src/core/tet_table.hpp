@@ -14,8 +14,8 @@
 
 namespace isotet::core {
 
-/// The isovalues that cut a tet or a face: those above `lower`, up to and with `upper`. A tet with a corner without data has
-/// none.
+/// The isovalues that cut a tet or a face: those above `lower`, up to and with `upper`. A tet with a corner without
+/// data has none.
 struct CutRange {
     float lower = 0, upper = 0;
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Any cluster: with tied points, points without data, double precision. Which of its own tied points and seam edges give
-// vertices may depend on clusters that hold them too, so these are left to the masks.
+// Any cluster: with tied points, points without data, double precision. Which of its own tied points and seam edges
+// give vertices may depend on clusters that hold them too, so these are left to the masks.
 #include <algorithm>
 #include <bit>
 
@@ -133,8 +133,8 @@ private:
                 share(local, place_, static_cast<std::uint32_t>(local - header_.foreign_points));
     }
 
-    /// Where all points of its owner have data, every crossed edge of the owner is used, and the owner knows it. Elsewhere
-    /// an edge may lie between tets without data only: whoever has a valid tet there tells the owner.
+    /// Where all points of its owner have data, every crossed edge of the owner is used, and the owner knows it.
+    /// Elsewhere an edge may lie between tets without data only: whoever has a valid tet there tells the owner.
     void share_own_seams() {
         for (std::size_t k = 0; k < links_.own_seams.size(); ++k) {
             const VertexKey key = edge_key(links_.own_seams[k]);

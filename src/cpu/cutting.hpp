@@ -1,8 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Cutting one cluster at one isovalue: what plain_cluster.cpp (fast, for most) and any_cluster.cpp (for all) have in common.
+// Cutting one cluster at one isovalue: what plain_cluster.cpp (fast, for most) and any_cluster.cpp (for all) have in
+// common.
 //
-// A vertex of a cluster has a *key*: lower local index * 128 + higher for one on an edge, local index * 129 for one at a tied
-// point. Keys are marked in a table while vertices are gathered, and are places in another once they have numbers.
+// A vertex of a cluster has a *key*: lower local index * 128 + higher for one on an edge, local index * 129 for one at
+// a tied point. Keys are marked in a table while vertices are gathered, and are places in another once they have
+// numbers.
 #pragma once
 
 #include <array>
@@ -22,7 +24,9 @@ namespace isotet::cpu {
 
 constexpr std::size_t max_cluster_edges = core::max_cluster_points * (core::max_cluster_points - 1) / 2;
 
-constexpr VertexKey point_key(std::size_t local) { return static_cast<VertexKey>(local * (core::max_cluster_points + 1)); }
+constexpr VertexKey point_key(std::size_t local) {
+    return static_cast<VertexKey>(local * (core::max_cluster_points + 1));
+}
 
 /// A list with room for `most`: adding to it checks nothing.
 template <class T, std::size_t most>
@@ -134,11 +138,12 @@ void write_vertices(const Packed& packed, const CutScratch<Real>& s, Record<Real
 }
 
 /// Counts a place and leaves a record of it; null when its cluster is not plain: nothing has been changed then.
-const Record<float>* cut_plain_cluster(const Cutting<float>& cutting, std::size_t place, CutScratch<float>& scratch, Start& count);
+const Record<float>* cut_plain_cluster(const Cutting<float>& cutting, std::size_t place, CutScratch<float>& scratch,
+                                       Start& count);
 
 /// Counts a place of any cluster. `tied_points` grows by the points of its own that are tied.
 template <class Real>
-const Record<Real>* cut_any_cluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch, Start& count,
-                                    std::uint64_t& tied_points);
+const Record<Real>* cut_any_cluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch,
+                                    Start& count, std::uint64_t& tied_points);
 
 } // namespace isotet::cpu

@@ -48,8 +48,9 @@ private:
     std::uint64_t fixed_ = 0, at_most_ = 0;
 };
 
-/// What is needed is known exactly only once everything has been counted. But a bound is known from the selected clusters,
-/// and mostly there is far more memory. Asking the system how much takes longer than extracting a small surface.
+/// What is needed is known exactly only once everything has been counted. But a bound is known from the selected
+/// clusters, and mostly there is far more memory. Asking the system how much takes longer than extracting a small
+/// surface.
 constexpr std::uint64_t ask_from = std::uint64_t{256} << 20;
 
 } // namespace
@@ -67,8 +68,8 @@ Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<
               [&](std::size_t a, std::size_t b) { return request.isovalues[a] < request.isovalues[b]; });
     std::vector<Real> isovalues;
     for (const std::size_t i : order) isovalues.push_back(request.isovalues[i]);
-    // Where only positions are wanted, they are kept at once: more memory than ends and weights, but nothing is found twice.
-    // In double precision that would be too much.
+    // Where only positions are wanted, they are kept at once: more memory than ends and weights, but nothing is found
+    // twice. In double precision that would be too much.
     const bool ends = sizeof(Real) > sizeof(float) || request.ends || request.normals || !request.fields.empty();
     const Wanted<Real> wanted{isovalues, request.ties, ends, request.source_cells, request.fields};
 

@@ -7,12 +7,14 @@
 namespace isotet::cpu {
 
 /// Guarantees   the same bytes for any thread count
-/// Cost         O(C + V + F). Transient memory: 4 bytes a cluster; for each cluster and isovalue that selects it about 85,
-///              with the masks of its seam edges (one bit each); about 11 bytes a triangle, at most 33; 0.5 MB a thread
-/// Errors       out_of_memory, before records and surfaces take any; invalid_argument when isovalues select clusters 2^32
-///              times or more; cancelled
+/// Cost         O(C + V + F). Transient memory: 4 bytes a cluster; for each cluster and isovalue that selects it about
+///              85, with the masks of its seam edges (one bit each); about 11 bytes a triangle, at most 33; 0.5 MB a
+///              thread
+/// Errors       out_of_memory, before records and surfaces take any; invalid_argument when isovalues select clusters
+///              2^32 times or more; cancelled
 template <class Real>
-Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request, const Progress& progress);
+Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<Real>& request,
+                                 const Progress& progress);
 
 /// From this many vertices on indices have 64 bits. Tests lower it.
 inline std::uint64_t wide_from = std::uint64_t{1} << 32;

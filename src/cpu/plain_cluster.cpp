@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The fast path: clusters of single precision where no local point is tied or without data. There a cluster knows by itself
-// all of its vertices.
+// The fast path: clusters of single precision where no local point is tied or without data. There a cluster knows by
+// itself all of its vertices.
 #include <atomic>
 
 #include "cpu/cutting.hpp"

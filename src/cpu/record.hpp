@@ -24,8 +24,8 @@ struct SharedVertex {
     std::uint32_t index; ///< among the owner's own seam edges; or `tied` + among its own points
 };
 
-/// Lies in an Arena with its arrays behind it: 12 bytes a listed vertex (6 with ends, 10 in double precision), 8 a shared
-/// one, 3 a triangle (6 where there are more than 256 vertices).
+/// Lies in an Arena with its arrays behind it: 12 bytes a listed vertex (6 with ends, 10 in double precision), 8 a
+/// shared one, 3 a triangle (6 where there are more than 256 vertices).
 ///
 /// Local vertex numbers: listed vertices in their final order, then shared ones. A plain cluster lists all of its own
 /// vertices, for it knows them alone; any other lists those on inner edges, which come last among its own.
@@ -36,9 +36,11 @@ struct Record {
     bool has_ends : 1 = false;   ///< ends and weights of listed vertices; else it has positions
     bool has_tets : 1 = false;
 
-    static std::size_t bytes(std::size_t listed, std::size_t shared, std::size_t triangles, bool has_ends, bool has_tets) {
+    static std::size_t bytes(std::size_t listed, std::size_t shared, std::size_t triangles, bool has_ends,
+                             bool has_tets) {
         // Positions are written four numbers at a time, corners of triangles eight: room for more than there are.
-        return sizeof(Record) + (has_ends ? (sizeof(Real) + sizeof(EndPair)) * listed : sizeof(Real) * (3 * listed + 1)) +
+        return sizeof(Record) +
+               (has_ends ? (sizeof(Real) + sizeof(EndPair)) * listed : sizeof(Real) * (3 * listed + 1)) +
                sizeof(SharedVertex) * shared + (has_tets ? sizeof(std::uint16_t) * (triangles + 1) : 0) +
                (is_wide(listed, shared) ? sizeof(std::uint16_t) : 1) * (3 * triangles + 5);
     }
@@ -50,7 +52,8 @@ struct Record {
         return reinterpret_cast<SharedVertex*>(weights() + (has_ends ? listed : 3 * listed + 1));
     }
     EndPair* ends() const { return reinterpret_cast<EndPair*>(shared_vertices() + shared); }
-    std::uint16_t* tets() const { return reinterpret_cast<std::uint16_t*>(ends() + (has_ends ? listed : 0)); } ///< in the cluster
+    /// In the cluster, one a triangle.
+    std::uint16_t* tets() const { return reinterpret_cast<std::uint16_t*>(ends() + (has_ends ? listed : 0)); }
     /// Three a triangle: 8 bits each, or 16 where local vertex numbers need them.
     void* corners() const { return tets() + (has_tets ? triangles + 1 : 0); }
     bool wide() const { return is_wide(listed, shared); }
@@ -60,8 +63,8 @@ private:
 };
 static_assert(sizeof(Record<float>) == 8 && sizeof(Record<double>) == 8);
 
-/// Memory that is handed out piece by piece and given back as a whole; one a thread. At most a quarter more than is used,
-/// and a first block, is taken.
+/// Memory that is handed out piece by piece and given back as a whole; one a thread. At most a quarter more than is
+/// used, and a first block, is taken.
 class Arena {
 public:
     Arena() = default;
@@ -91,7 +94,9 @@ public:
     }
     std::size_t bytes() const { return total_; }
 
-    static std::size_t most_bytes(std::size_t used, std::size_t threads) { return used + used / 4 + threads * first_block; }
+    static std::size_t most_bytes(std::size_t used, std::size_t threads) {
+        return used + used / 4 + threads * first_block;
+    }
 
 private:
     static constexpr std::size_t first_block = std::size_t{256} << 10, largest_block = std::size_t{4} << 20;

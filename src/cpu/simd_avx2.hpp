@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The small loops of the plain path with AVX2. A table of 128 bits (one a point) is looked up by shuffling its 16 bytes and
-// testing one bit of the byte found.
+// The small loops of the plain path with AVX2. A table of 128 bits (one a point) is looked up by shuffling its 16 bytes
+// and testing one bit of the byte found.
 // Functions carry their instruction set as an attribute, so that nothing else in the program is compiled for it.
 #pragma once
 

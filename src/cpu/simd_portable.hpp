@@ -52,8 +52,8 @@ struct KeyTable {
 struct Portable {
     static constexpr std::size_t table_size = core::max_cluster_points;
 
-    /// above[k] = 1 where values[k] >= isovalue, else 0, for k < n. Returns true when some value equals the isovalue or is NaN.
-    /// May read and write up to the next multiple of 64.
+    /// above[k] = 1 where values[k] >= isovalue, else 0, for k < n. Returns true when some value equals the isovalue or
+    /// is NaN. May read and write up to the next multiple of 64.
     static bool classify(const float* values, std::size_t n, float isovalue, std::uint8_t* above) {
         bool special = false;
         for (std::size_t k = 0; k < n; ++k) {
@@ -76,8 +76,8 @@ struct Portable {
         }
     }
 
-    /// Bit k of `mask` is set when the ends of own seam k lie on different sides; the words are cleared first. Writes the
-    /// keys of these seams, in order, and returns how many there are. May write up to 32 more.
+    /// Bit k of `mask` is set when the ends of own seam k lie on different sides; the words are cleared first. Writes
+    /// the keys of these seams, in order, and returns how many there are. May write up to 32 more.
     static std::size_t cross_own_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
                                        std::uint64_t* mask, VertexKey* out) {
         std::fill_n(mask, core::words_of_bits(seams.size()), std::uint64_t{0});
@@ -91,8 +91,8 @@ struct Portable {
         return count;
     }
 
-    /// Writes the foreign seams with ends on different sides, in order, and their places in the list. Returns how many there
-    /// are. May write up to 16 more.
+    /// Writes the foreign seams with ends on different sides, in order, and their places in the list. Returns how many
+    /// there are. May write up to 16 more.
     static std::size_t cross_foreign_seams(const std::uint8_t* above, std::span<const core::ForeignSeam> seams,
                                            core::ForeignSeam* out, std::uint16_t* places) {
         std::size_t count = 0;
@@ -110,8 +110,8 @@ struct Portable {
     /// The same for a `Simd` that has nothing but ones(): which of 64 bytes are 1, the others being 0.
     template <class Simd>
     static std::size_t list_keys(KeyTable& used, VertexKey* out) {
-        // How many keys a part of a row has is as good as random, and each guess of a branch that fails costs as much as
-        // several keys: parts without any are left out first, without a branch.
+        // How many keys a part of a row has is as good as random, and each guess of a branch that fails costs as much
+        // as several keys: parts without any are left out first, without a branch.
         std::array<std::uint64_t, table_size * table_size / 64 + 1> masks;
         std::array<VertexKey, table_size * table_size / 64 + 1> firsts;
         std::size_t parts = 0;
@@ -180,8 +180,8 @@ struct Portable {
         }
     }
 
-    /// Numbers of a surface's vertices from local ones: `first` + those below `listed`; `numbers` holds those of others, by
-    /// local number, and has room for all.
+    /// Numbers of a surface's vertices from local ones: `first` + those below `listed`; `numbers` holds those of
+    /// others, by local number, and has room for all.
     template <class Local, class Index>
     static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first, Index* numbers,
                        Index* out) {

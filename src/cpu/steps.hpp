@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The four steps of extraction on the CPU and what they hand on: select, count, scan, emit. All isovalues of a call go
-// through them together. A cluster and an isovalue inside its range have a *place*: N places, by cluster, then by isovalue.
+// through them together. A cluster and an isovalue inside its range have a *place*: N places, by cluster, then by
+// isovalue.
 #pragma once
 
 #include <atomic>
@@ -39,12 +40,14 @@ struct Selection {
 
     std::size_t size() const { return clusters.size(); }
     /// The place of a cluster and an isovalue that has one: those of a cluster stand side by side.
-    std::size_t place(std::uint32_t cluster, std::uint32_t isovalue) const { return base[cluster] + isovalue; } // modulo 2^32
+    std::size_t place(std::uint32_t cluster, std::uint32_t isovalue) const {
+        return base[cluster] + isovalue; // modulo 2^32
+    }
     std::size_t bytes() const { return clusters.bytes() + isovalues.bytes() + first_word.bytes() + base.bytes(); }
 };
 
-/// Which of its own points (tied ones) and own seam edges a cluster gives vertices to. Bits are set by every cluster that
-/// holds them, with atomic ORs: these commute, so threads do not matter.
+/// Which of its own points (tied ones) and own seam edges a cluster gives vertices to. Bits are set by every cluster
+/// that holds them, with atomic ORs: these commute, so threads do not matter.
 class Masks {
 public:
     static constexpr std::size_t tied_words = core::words_of_bits(core::max_cluster_points);
@@ -74,7 +77,9 @@ private:
     static void set(std::uint64_t* words, std::size_t i) {
         std::atomic_ref<std::uint64_t>(words[i / 64]).fetch_or(std::uint64_t{1} << i % 64, std::memory_order_relaxed);
     }
-    std::size_t words(std::size_t place) const { return selection_->first_word[place + 1] - selection_->first_word[place]; }
+    std::size_t words(std::size_t place) const {
+        return selection_->first_word[place + 1] - selection_->first_word[place];
+    }
 
     const Selection* selection_;
     core::Buffer<std::uint64_t> words_;
@@ -123,11 +128,12 @@ template <class Real>
 Result<Selection> select(const Packed& packed, std::span<const Real> isovalues);
 
 template <class Real>
-Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks, Keep keep,
-                    const Progress& progress);
+Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,
+                    Keep keep, const Progress& progress);
 
 /// Turns counts into starts. Returns the total of each isovalue.
-std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues, core::Buffer<Start>& starts);
+std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues,
+                        core::Buffer<Start>& starts);
 
 /// `targets`  one for each isovalue
 template <class Real>

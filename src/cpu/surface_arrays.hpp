@@ -18,7 +18,8 @@ public:
           triangles_(wide_ ? 0 : 3 * total.triangles), wide_triangles_(wide_ ? 3 * total.triangles : 0),
           normals_(request.normals ? 3 * total.vertices : 0), ends_(request.ends ? 2 * total.vertices : 0),
           weights_(request.ends ? total.vertices : 0), source_cells_(request.source_cells ? total.triangles : 0) {
-        for (const ops::CarriedField& field : request.fields) fields_.emplace_back(total.vertices * field.values.components());
+        for (const ops::CarriedField& field : request.fields)
+            fields_.emplace_back(total.vertices * field.values.components());
     }
 
     static std::uint64_t bytes(const ops::Request<Real>& request, const Total& total) {

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// core::vertex_normal() for many vertices: the same operations in the same order, side by side without branches, so that a
-// compiler makes SIMD code of them.
+// core::vertex_normal() for many vertices: the same operations in the same order, side by side without branches, so
+// that a compiler makes SIMD code of them.
 #pragma once
 
 #include <array>

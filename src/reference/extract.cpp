@@ -56,8 +56,8 @@ struct Holders {
 
 enum Kind { tied_point = 0, seam_edge = 1, inner_edge = 2 };
 
-/// Where a vertex stands in the order: cluster, kind, then the lower and the higher packed point. Local indices ascend with
-/// packed points, and so do own seam edges in stored order.
+/// Where a vertex stands in the order: cluster, kind, then the lower and the higher packed point. Local indices ascend
+/// with packed points, and so do own seam edges in stored order.
 using Place = std::tuple<std::uint32_t, int, std::uint64_t, std::uint64_t>;
 
 template <class Real>

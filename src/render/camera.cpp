@@ -46,7 +46,8 @@ std::array<double, 3> middle_of(const Box& box) {
     return middle;
 }
 
-/// The axis of the world that is up the most: a picture whose horizon is level keeps it when the camera goes about this one.
+/// The axis of the world that is up the most: a picture whose horizon is level keeps it when the camera goes about this
+/// one.
 std::array<double, 3> pole_of(const std::array<double, 3>& up) {
     const auto steepest =
         std::max_element(up.begin(), up.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -55,8 +56,8 @@ std::array<double, 3> pole_of(const std::array<double, 3>& up) {
     return pole;
 }
 
-/// How far something reaches along an axis of the picture, to its two ends, where lines of sight spread by a slope: the place
-/// along the axis, plus slope times the way towards the eye.
+/// How far something reaches along an axis of the picture, to its two ends, where lines of sight spread by a slope: the
+/// place along the axis, plus slope times the way towards the eye.
 struct Reach {
     double right = -INFINITY, left = -INFINITY;
 
@@ -84,8 +85,8 @@ private:
     }
 };
 
-/// Points as a camera sees them that goes all around the pole: each is a circle about it, and reaches as far as the farthest
-/// point of the circle. On a circle of radius r, a cos(t) + b sin(t) is at most r times the length of (a, b).
+/// Points as a camera sees them that goes all around the pole: each is a circle about it, and reaches as far as the
+/// farthest point of the circle. On a circle of radius r, a cos(t) + b sin(t) is at most r times the length of (a, b).
 struct FromAllSides {
     std::array<double, 3> pole;
     double sine, cosine; ///< of the angle between direction and horizon

@@ -14,7 +14,8 @@ namespace {
 
 /// Room before the nearest and behind the farthest point, in the scene.
 constexpr double depth_room = 1e-2;
-/// Nearest and farthest depth of a perspective picture are at most this far apart: the depth buffer has 24 bits at least.
+/// Nearest and farthest depth of a perspective picture are at most this far apart: the depth buffer has 24 bits at
+/// least.
 constexpr double depth_ratio = 1e-4;
 
 /// A row of a matrix that maps (x, y, z, 1).

@@ -52,8 +52,8 @@ struct TextPainter::Data {
         if (library) FT_Done_FreeType(library);
     }
 
-    /// Calls `draw` with the glyph of each character (not hinted, so that it is the same everywhere) and where it begins;
-    /// returns where the text ends.
+    /// Calls `draw` with the glyph of each character (not hinted, so that it is the same everywhere) and where it
+    /// begins; returns where the text ends.
     template <class Draw>
     double each_glyph(std::string_view text, const Draw& draw) const {
         double x = 0;

@@ -49,7 +49,8 @@ std::size_t corner_beside(const std::array<std::uint32_t, 4>& tet, std::uint32_t
 FaceNeighbours::FaceNeighbours(const core::TetTable& table) : neighbours_(table.tets.size()) {
     constexpr std::size_t grain = 1 << 14;
     const std::size_t tets = table.tets.size(), points = table.points.size();
-    // Faces by their lowest point: counted, then each put where the next one goes. next[p] is then where those of p end.
+    // Faces by their lowest point: counted, then each put where the next one goes. next[p] is then where those of p
+    // end.
     core::Buffer<std::uint64_t> next(points + 1);
     std::fill(next.begin(), next.end(), 0);
     const auto for_all_faces = [&](const auto& f) {

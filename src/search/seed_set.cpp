@@ -46,8 +46,8 @@ private:
         open_.push_back(tet);
     }
 
-    /// Whether every isovalue of a tet is one of some face behind which a tet has been taken in. The faces' isovalues leave
-    /// no gap: two faces share two corners, and each has one of the two others at most besides.
+    /// Whether every isovalue of a tet is one of some face behind which a tet has been taken in. The faces' isovalues
+    /// leave no gap: two faces share two corners, and each has one of the two others at most besides.
     bool is_led_back(std::uint32_t tet) const {
         core::CutRange led_back;
         for (unsigned k = 0; k < 4; ++k) {

@@ -16,8 +16,8 @@ namespace isotet::vulkan {
 
 namespace {
 
-/// Keeps a device on which work still goes on, and the instance that it needs, to the end of the process and beyond the end
-/// of static objects.
+/// Keeps a device on which work still goes on, and the instance that it needs, to the end of the process and beyond the
+/// end of static objects.
 void leave_behind(std::unique_ptr<Instance> instance, std::unique_ptr<LogicalDevice> device) {
     using Left = std::pair<std::unique_ptr<Instance>, std::unique_ptr<LogicalDevice>>;
     static std::mutex mutex;

@@ -41,8 +41,8 @@ constexpr Access all_kinds[] = {Access::kernel_read, Access::kernel_write, Acces
 
 std::uint32_t bit_of(Access access) { return 1u << static_cast<unsigned>(access); }
 
-/// The kinds of use that a barrier makes what was written visible to. A kind needs all its stages and accesses: kernels and
-/// fragment shaders have accesses in common, but what is visible to the ones need not be to the others.
+/// The kinds of use that a barrier makes what was written visible to. A kind needs all its stages and accesses: kernels
+/// and fragment shaders have accesses in common, but what is visible to the ones need not be to the others.
 std::uint32_t seen_by(const Barrier& barrier) {
     std::uint32_t kinds = 0;
     for (const Access kind : all_kinds) {

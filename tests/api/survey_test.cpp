@@ -35,7 +35,8 @@ TEST(Survey, CountsTheBoundaryOfACube) {
 }
 
 TEST(Survey, CountsOddTets) {
-    // An upright tet, the same listed again in another order, a mirrored one beside it, a flat one, and a collapsed one.
+    // An upright tet, the same listed again in another order, a mirrored one beside it, a flat one, and a collapsed
+    // one.
     Grid grid;
     grid.points =
         Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1, 0.5, 0.5, 0, 9, 9, 9, 0, 0, 0}, 3);

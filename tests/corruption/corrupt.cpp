@@ -3,9 +3,9 @@
 //
 //   corrupt PROGRAM COUNT SEED FILE...
 //
-// COUNT mutations and truncations of each FILE, beside copies of the files that lie in its folder (an index is of no use
-// without them), are read by `PROGRAM info`. What is accepted: success, or exit status 3 or 4 with a message. A crash, any
-// other status, or no end within 30 s is a failure, told with the command that makes it again.
+// COUNT mutations and truncations of each FILE, beside copies of the files that lie in its folder (an index is of no
+// use without them), are read by `PROGRAM info`. What is accepted: success, or exit status 3 or 4 with a message. A
+// crash, any other status, or no end within 30 s is a failure, told with the command that makes it again.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>

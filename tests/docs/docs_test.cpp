@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The documents do not rot: their code is code that the tests build, their links lead somewhere, their tables are whole.
+// The documents do not rot: their code is code that the tests build, their links lead somewhere, their tables are
+// whole.
 #include <algorithm>
 #include <cctype>
 #include <filesystem>

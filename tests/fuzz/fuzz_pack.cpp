@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Any cells on any points: a grid is refused with an error, or packs, extracts alike on both engines, and gives a surface
-// in which nothing is to blame.
+// Any cells on any points: a grid is refused with an error, or packs, extracts alike on both engines, and gives a
+// surface in which nothing is to blame.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

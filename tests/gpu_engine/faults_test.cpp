@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Calls that fail while a grid is uploaded, extracted from and downloaded: an error, or the right bytes; nothing is left
-// over, and the packed grid is as it was.
+// Calls that fail while a grid is uploaded, extracted from and downloaded: an error, or the right bytes; nothing is
+// left over, and the packed grid is as it was.
 #include <algorithm>
 
 #include "gpu_engine/engines.hpp"

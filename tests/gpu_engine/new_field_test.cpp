@@ -50,8 +50,8 @@ protected:
         return pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
     }
 
-    /// Fields one after another on one grid, the values of each other seed as full of ties, NaN, -0, and tiny and infinite
-    /// ones as they come; the last of all points without data.
+    /// Fields one after another on one grid, the values of each other seed as full of ties, NaN, -0, and tiny and
+    /// infinite ones as they come; the last of all points without data.
     static std::vector<PointField> fields_for(const NastyGrid& g) {
         std::vector<PointField> fields;
         for (const std::uint32_t seed : {11, 12, 13}) {

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The same bytes as the CPU engine, in both modes for ties: every array, on grids as nasty as those that the CPU engine is
-// measured on.
+// The same bytes as the CPU engine, in both modes for ties: every array, on grids as nasty as those that the CPU engine
+// is measured on.
 #include "gpu_engine/engines.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"

@@ -148,8 +148,8 @@ TEST_F(Forced, ClustersWithManyCrossedEdgesGiveTheSameBytes) {
     EXPECT_EQ(on_device.work().submissions, 2u) << "the kernel for many edges is known by now, room is made";
 }
 
-// Every address that a kernel uses is looked at. Compiling the kernels of an extraction so takes minutes on a software device:
-// with ISOTET_WATCH_EXTRACTION in the environment they are watched, too.
+// Every address that a kernel uses is looked at. Compiling the kernels of an extraction so takes minutes on a software
+// device: with ISOTET_WATCH_EXTRACTION in the environment they are watched, too.
 TEST_F(Forced, WatchedAddressesStayInTheirBuffers) {
     vulkan::Settings settings = watched();
     settings.watch.validation = vulkan::Validation::gpu_assisted;

@@ -10,7 +10,8 @@
 namespace isotet::test {
 namespace {
 
-/// A folder and the folders under src/ from which its files may include, besides the public headers. First match counts.
+/// A folder and the folders under src/ from which its files may include, besides the public headers. First match
+/// counts.
 struct FolderRule {
     std::string_view folder;
     std::vector<std::string_view> may_see;

@@ -72,7 +72,8 @@ void expect_limits_hold(const PackedGrid& packed, const std::vector<double>& iso
     const ExtractReport& report = surfaces[0].report;
     EXPECT_LE(peak, output + limit) << triangles << " triangles, " << selected << " selected clusters";
     EXPECT_LE(report.transient_bytes, limit);
-    // The heap's rounding, what does not grow, and the moment when a block is mapped too large and cut to whole huge pages.
+    // The heap's rounding, what does not grow, and the moment when a block is mapped too large and cut to whole huge
+    // pages.
     const std::size_t small = 20'000 * (threads + isovalues.size()) + (std::size_t{2} << 20);
     EXPECT_LE(peak, output + report.transient_bytes + small);
     EXPECT_LE(output + report.transient_bytes, report.predicted_bytes);

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// All cases of one tet, of two that share a face, and of flat ones: as from the packed grid, which laws.cases hold to what
-// the contract says.
+// All cases of one tet, of two that share a face, and of flat ones: as from the packed grid, which laws.cases hold to
+// what the contract says.
 #include <cmath>
 #include <functional>
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Broken grids and wrong calls are the errors of pack() and extract(), in the same words; too little memory is told with
-// the amount needed.
+// Broken grids and wrong calls are the errors of pack() and extract(), in the same words; too little memory is told
+// with the amount needed.
 #include <cmath>
 #include <fstream>
 #include <iostream>

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Storing a field side by side gives what storing its values one by one gives, in every type and whatever passes it takes.
+// Storing a field side by side gives what storing its values one by one gives, in every type and whatever passes it
+// takes.
 #include "core/field_storage.hpp"
 
 #include <bit>

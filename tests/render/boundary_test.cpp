@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The boundary of a packed grid: closed, as large as it must be, facing outwards, the same for any number of threads. No device.
+// The boundary of a packed grid: closed, as large as it must be, facing outwards, the same for any number of threads.
+// No device.
 #include <atomic>
 
 #include <gtest/gtest.h>

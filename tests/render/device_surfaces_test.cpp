@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Surfaces drawn where the Vulkan engine left them: the same pictures as of the same surfaces downloaded and uploaded, with
-// nothing crossing the bus but the picture.
+// Surfaces drawn where the Vulkan engine left them: the same pictures as of the same surfaces downloaded and uploaded,
+// with nothing crossing the bus but the picture.
 #include "render/drawing.hpp"
 
 namespace isotet::test {

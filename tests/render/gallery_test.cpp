@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The pictures in docs/gallery are what the commands under them draw, give or take what another version of the device rounds
-// otherwise.
+// The pictures in docs/gallery are what the commands under them draw, give or take what another version of the device
+// rounds otherwise.
 #include <filesystem>
 #include <fstream>
 #include <sstream>

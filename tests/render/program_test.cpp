@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// `isotet render`: pictures of grids and of surfaces, and what it says when there is nothing to draw, or nobody to draw it.
+// `isotet render`: pictures of grids and of surfaces, and what it says when there is nothing to draw, or nobody to draw
+// it.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

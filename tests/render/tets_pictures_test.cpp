@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Tets that are cut while they are drawn give the pictures of the surface that extraction makes; also where the device has no
-// room for them.
+// Tets that are cut while they are drawn give the pictures of the surface that extraction makes; also where the device
+// has no room for them.
 #include "render/drawing.hpp"
 
 #include <string>

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Tets that are cut while they are drawn: what stores take, and the triangles of every method against the reference engine.
+// Tets that are cut while they are drawn: what stores take, and the triangles of every method against the reference
+// engine.
 #include "render/drawing.hpp"
 
 #include <algorithm>
@@ -125,7 +126,8 @@ TEST_F(Tets, AllCasesOfOneTetAgreeWithTheReference) {
         tets.push_back({first, first + 1, first + 2, first + 3});
     }
     const PackedGrid packed = pack(tet_grid(points, tets), field_of(values)).value();
-    // Two a tet with two corners above and two below; one a tet with both kinds otherwise, or with three ties and one below.
+    // Two a tet with two corners above and two below; one a tet with both kinds otherwise, or with three ties and one
+    // below.
     ASSERT_EQ(reference_triangles(packed, 0.25).size(), 2u * 6 + 44 + 4);
     expect_reference_triangles(packed, {0.25, 0.3, 0.2});
 }

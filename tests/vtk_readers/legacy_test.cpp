@@ -45,7 +45,8 @@ TEST_P(ReadLegacy, AnnouncesFieldsWithTheirTypes) {
     }
 }
 
-/// The format has no end mark: cut between two sections a file is a whole one with fewer fields. It never has other values.
+/// The format has no end mark: cut between two sections a file is a whole one with fewer fields. It never has other
+/// values.
 TEST_P(ReadLegacy, IsAnErrorOrHasFewerFieldsForEveryTruncation) {
     const std::string content = content_of(written());
     read_prefixes(content, "cut.vtk", content.size() / 40 + 1,

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Barriers follow from what passes say they use: none is missing, and none is there without need. A software device would
-// not notice a missing one, so the rules of Vulkan are played through here on the list of passes alone.
+// Barriers follow from what passes say they use: none is missing, and none is there without need. A software device
+// would not notice a missing one, so the rules of Vulkan are played through here on the list of passes alone.
 #include <algorithm>
 #include <random>
 #include <sstream>
@@ -78,8 +78,8 @@ TEST(Hazards, OneBarrierServesAllBuffers) {
     EXPECT_EQ(next(hazards, {{2, Access::kernel_read}}), Barrier{});
 }
 
-/// What every pass of a list knows of every write before it, by Vulkan's rules for execution and memory dependencies, with
-/// barriers as given: kept in the simplest possible way, for lists of a few passes.
+/// What every pass of a list knows of every write before it, by Vulkan's rules for execution and memory dependencies,
+/// with barriers as given: kept in the simplest possible way, for lists of a few passes.
 class Model {
 public:
     void add(const Barrier& barrier, const std::vector<BufferUse>& uses) {

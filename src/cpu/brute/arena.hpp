@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Memory that the pass over the cells takes bit by bit, and a budget that all threads share: how much a surface will need
-// is only known afterwards.
+// Memory that the pass over the cells takes bit by bit, and a budget that all threads share: how much a surface will
+// need is only known afterwards.
 #pragma once
 
 #include <algorithm>

@@ -7,11 +7,12 @@
 namespace isotet::cpu {
 
 /// Guarantees   the same bytes for any thread count
-/// Cost         one pass over points and cells for each isovalue; two more, and another extraction, where the points that
-///              decide on the storage (the ends of the range, say) turn out to be used by no tet
+/// Cost         one pass over points and cells for each isovalue; two more, and another extraction, where the points
+///              that decide on the storage (the ends of the range, say) turn out to be used by no tet
 /// Errors       invalid_data for a broken grid; out_of_memory before memory is taken; cancelled
 template <class Real>
-Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request, const Progress& progress);
+Result<ops::BruteResult> extract_brute(const ops::BruteInput& input, const ops::BruteRequest& request,
+                                       const Progress& progress);
 
 namespace brute {
 /// From this many points on, or so many edges found by cut tets, point numbers of welding have 64 bits. Tests lower it.

@@ -31,8 +31,8 @@ bool is_collapsed(const core::Tet& t) {
 constexpr std::size_t tets_at_once =
     1 << 10; ///< few enough that their corners are still near when cut ones are fetched
 
-/// Adds up the flags of each tet's corners. False when a number has no flags, and so is no point; numbers that have none are
-/// masked before they are looked up.
+/// Adds up the flags of each tet's corners. False when a number has no flags, and so is no point; numbers that have
+/// none are masked before they are looked up.
 template <class Index>
 bool add_up_sides(const Sides& sides, const Index* corners, std::size_t tets, std::uint16_t* sums) {
     using Unsigned = std::make_unsigned_t<Index>; // a negative number becomes one that is too large

@@ -13,8 +13,8 @@ namespace isotet::cpu::brute {
 
 namespace {
 
-/// The polygon of a tet with its corners ascending: from which to which corner each of its edges goes. The fourth repeats
-/// the third when there are three.
+/// The polygon of a tet with its corners ascending: from which to which corner each of its edges goes. The fourth
+/// repeats the third when there are three.
 struct SortedPolygon {
     std::array<std::uint8_t, 4> lower{}, higher{};
     std::uint8_t triangles = 0;
@@ -184,8 +184,8 @@ void Cutter<Point>::cut() {
     if (tets) chunk_->pieces.push_back({tets, new_edges, polygons, triangles, cells, found});
 }
 
-/// The polygon of a tet that the batch leaves open, with equal edges at a tied point; the fourth repeats the third when there
-/// is one triangle. Returns the number of triangles.
+/// The polygon of a tet that the batch leaves open, with equal edges at a tied point; the fourth repeats the third when
+/// there is one triangle. Returns the number of triangles.
 template <class Point>
 unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<CrossedEdge<Point>, 4>& polygon) {
     std::uint8_t code = codes_[tet];
@@ -220,7 +220,8 @@ unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<CrossedEdge<
     return 1;
 }
 
-/// Whether the stored form of a flat tet, which keeps the order of the file or mirrors it, has its last two corners exchanged.
+/// Whether the stored form of a flat tet, which keeps the order of the file or mirrors it, has its last two corners
+/// exchanged.
 template <class Point>
 bool Cutter<Point>::is_mirrored_flat(std::size_t tet) {
     bool odd = false; // the order of the file, against ascending

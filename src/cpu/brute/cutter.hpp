@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// From tets with corners on both sides to polygons whose corners are edges, numbered as they are found: one thread's part
-// of the pass over the cells, and what it leaves for welding.
+// From tets with corners on both sides to polygons whose corners are edges, numbered as they are found: one thread's
+// part of the pass over the cells, and what it leaves for welding.
 #pragma once
 
 #include <array>
@@ -23,11 +23,13 @@ struct CrossedEdge {
         else return a.lower == b.lower && a.higher == b.higher;
     }
     /// A number whose highest bits are as good as drawn.
-    std::uint64_t mixed() const { return lower * std::uint64_t{0x9e3779b97f4a7c15} + higher * std::uint64_t{0xc2b2ae3d27d4eb4f}; }
+    std::uint64_t mixed() const {
+        return lower * std::uint64_t{0x9e3779b97f4a7c15} + higher * std::uint64_t{0xc2b2ae3d27d4eb4f};
+    }
 };
 
-/// What a batch of cut tets leaves. Edges are numbered within the chunk; one that was found by another chunk, or too long
-/// ago to be remembered, is found again.
+/// What a batch of cut tets leaves. Edges are numbered within the chunk; one that was found by another chunk, or too
+/// long ago to be remembered, is found again.
 template <class Point>
 struct Piece {
     std::uint32_t tets = 0, edges = 0;
@@ -129,7 +131,8 @@ private:
     // The batch: row k holds corner k of all tets.
     std::size_t pending_ = 0;
     alignas(64) std::array<std::array<Point, batch>, 4> corners_;
-    alignas(64) std::array<std::array<Point, batch>, 4> sorted_; ///< twice the point, plus 1 when it is above; ascending
+    alignas(64) std::array<std::array<Point, batch>, 4> sorted_; ///< twice the point, plus 1 when it is above;
+                                                                 ///< ascending
     alignas(64) std::array<std::uint8_t, batch> codes_;
     std::array<std::uint32_t, batch> cells_;
 };

@@ -33,7 +33,8 @@ public:
             for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = core::store_coordinate<Real>(user[axis], 0);
         } else {
             const double* const user = input_->grid.points.as<double>().data() + 3 * point;
-            for (std::size_t axis = 0; axis < 3; ++axis) stored[axis] = core::store_coordinate<Real>(user[axis], origin_[axis]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                stored[axis] = core::store_coordinate<Real>(user[axis], origin_[axis]);
         }
         return stored;
     }
@@ -61,12 +62,13 @@ struct EmitOptions {
 
 /// Bytes of what emit() makes, and beside it while it works.
 template <class Real, class Point>
-std::uint64_t emitting_memory(std::uint64_t vertices, std::uint64_t triangles, std::uint64_t edges, const EmitOptions& options);
+std::uint64_t emitting_memory(std::uint64_t vertices, std::uint64_t triangles, std::uint64_t edges,
+                              const EmitOptions& options);
 
 /// Positions, triangles, and what else is wanted, but no normals.
 /// Errors   cancelled
 template <class Real, class Point>
-Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Point>& cut, Welded<Point> welded, const EmitOptions& options,
-                             const Progress& progress);
+Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Point>& cut, Welded<Point> welded,
+                             const EmitOptions& options, const Progress& progress);
 
 } // namespace isotet::cpu::brute

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic on a batch of cut tets: corners sorted, cases, signs of volumes. Plain loops over rows, which the compiler
-// turns into vectors of whatever the caller is compiled for; nothing depends on which.
+// The arithmetic on a batch of cut tets: corners sorted, cases, signs of volumes. Plain loops over rows, which the
+// compiler turns into vectors of whatever the caller is compiled for; nothing depends on which.
 #pragma once
 
 #include <array>
@@ -38,7 +38,8 @@ inline void sort_corners(Rows& rows, Codes& codes, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         const auto a = rows[0][i], b = rows[1][i], c = rows[2][i], d = rows[3][i];
         const bool same = ((a ^ b) < 2) | ((b ^ c) < 2) | ((c ^ d) < 2);
-        codes[i] |= static_cast<std::uint8_t>((a & 1) | (b & 1) << 1 | (c & 1) << 2 | (d & 1) << 3 | (same ? tet_code::collapsed : 0));
+        codes[i] |= static_cast<std::uint8_t>((a & 1) | (b & 1) << 1 | (c & 1) << 2 | (d & 1) << 3 |
+                                              (same ? tet_code::collapsed : 0));
     }
 }
 
@@ -59,7 +60,8 @@ inline void sign_volumes(const Coordinates& xyz, Codes& codes, std::size_t count
         constexpr double epsilon = 0x1p-53;
         const double bound = (7.0 + 56.0 * epsilon) * epsilon * permanent;
         const bool sure = (std::abs(determinant) > bound) & (bound > 0x1p-900);
-        codes[i] |= static_cast<std::uint8_t>((determinant < 0 ? tet_code::negative : 0) | (sure ? 0 : tet_code::unsure));
+        codes[i] |=
+            static_cast<std::uint8_t>((determinant < 0 ? tet_code::negative : 0) | (sure ? 0 : tet_code::unsure));
     }
 }
 

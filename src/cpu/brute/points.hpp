@@ -1,9 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // What the pass over the cells needs to know of points: a byte each.
 //
-// How values and coordinates are stored depends on the points that tets use, but which those are is only known after the
-// pass. So it is assumed that all points are used. Those that decide (the ends of a range, say) are watched; when some of
-// them have not been seen in the end, survey_points() is asked again without them: the same answer proves the assumption.
+// How values and coordinates are stored depends on the points that tets use, but which those are is only known after
+// the pass. So it is assumed that all points are used. Those that decide (the ends of a range, say) are watched; when
+// some of them have not been seen in the end, survey_points() is asked again without them: the same answer proves the
+// assumption.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +22,8 @@
 
 namespace isotet::cpu::brute {
 
-/// Flags of a point at one isovalue. Of the sum over the four corners of a tet the low four bits tell how many are above; from
-/// 16 on some corner needs attention.
+/// Flags of a point at one isovalue. Of the sum over the four corners of a tet the low four bits tell how many are
+/// above; from 16 on some corner needs attention.
 namespace side {
 constexpr std::uint8_t above = 0x01;
 constexpr std::uint8_t watched = 0x10; ///< it matters whether a tet uses the point, and none was seen yet
@@ -31,9 +32,9 @@ constexpr std::uint8_t no_data = 0x40;
 constexpr std::uint8_t unsound = 0x80; ///< coordinates that are not finite or 2^91 or more: no cell may use the point
 } // namespace side
 
-/// The flags of all points. The pass over the cells takes `watched` away, from many threads: hence the atomics, which cost
-/// nothing more than plain bytes. Numbers that are no points up to the next power of two have flags, too, `unsound`: so a
-/// number that was masked can be looked up before it is known to be a point.
+/// The flags of all points. The pass over the cells takes `watched` away, from many threads: hence the atomics, which
+/// cost nothing more than plain bytes. Numbers that are no points up to the next power of two have flags, too,
+/// `unsound`: so a number that was masked can be looked up before it is known to be a point.
 class Sides {
 public:
     Sides() = default;
@@ -110,12 +111,12 @@ struct SidesFound {
 /// The flags of all points.
 /// `isovalue`  as the user gave it, and as stored
 template <class Real>
-SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, Ties ties, Watch watch,
-                      Sides& sides);
+SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, Ties ties,
+                      Watch watch, Sides& sides);
 
 /// Counts tied points that were seen, and what else ExtractReport says of ties.
 template <class Real>
-void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, SidesFound found,
-                 const Sides& sides, ops::BruteSurface& surface);
+void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored,
+                 SidesFound found, const Sides& sides, ops::BruteSurface& surface);
 
 } // namespace isotet::cpu::brute

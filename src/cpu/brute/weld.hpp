@@ -32,8 +32,8 @@ std::uint64_t welding_memory(std::uint64_t edges) {
     return edges * sizeof(FoundEdge<Point>);
 }
 
-/// Counts the chunks up, so that their numbers count from the beginning of the grid, and welds. The order in which equal edges
-/// stand depends on the threads; nothing else does.
+/// Counts the chunks up, so that their numbers count from the beginning of the grid, and welds. The order in which
+/// equal edges stand depends on the threads; nothing else does.
 /// Cost   two moves of each edge
 template <class Point>
 Welded<Point> weld(CutCells<Point>& cut, const Ranges& ranges);

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// CGNS in ADF or HDF5; zones are pieces. VTK glues VelocityX, VelocityY and VelocityZ into Velocity; here they come apart
-// again, so that fields have the names of the file.
+// CGNS in ADF or HDF5; zones are pieces. VTK glues VelocityX, VelocityY and VelocityZ into Velocity; here they come
+// apart again, so that fields have the names of the file.
 #include <array>
 
 #include <vtkCGNSReader.h>

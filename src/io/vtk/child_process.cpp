@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// posix_spawn (which does not copy the parent's address space: a parent with a grid of 100 GB can start a child), then a
-// loop over its two pipes. Limits on memory are set by the child itself before it looks at the file.
+// posix_spawn (which does not copy the parent's address space: a parent with a grid of 100 GB can start a child), then
+// a loop over its two pipes. Limits on memory are set by the child itself before it looks at the file.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined by
-// the global numbers of their nodes.
+// Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined
+// by the global numbers of their nodes.
 #include <algorithm>
 
 #include <fmt/format.h>

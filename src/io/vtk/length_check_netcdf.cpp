@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// netCDF classic: its header tells where each variable begins and how large it is, so the length that the file must have is
-// known. (The library itself returns zeros beyond the end.) Format: NetCDF Classic Format Specification, Unidata.
+// netCDF classic: its header tells where each variable begins and how large it is, so the length that the file must
+// have is known. (The library itself returns zeros beyond the end.) Format: NetCDF Classic Format Specification,
+// Unidata.
 #include <algorithm>
 #include <optional>
 #include <vector>

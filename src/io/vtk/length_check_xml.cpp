@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTK XML: the header (everything before the raw data) is parsed, then every appended block's own length is compared with
-// what the file holds.
+// VTK XML: the header (everything before the raw data) is parsed, then every appended block's own length is compared
+// with what the file holds.
 #include <algorithm>
 #include <bit>
 #include <cstring>

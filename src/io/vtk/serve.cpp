@@ -75,8 +75,8 @@ std::optional<std::uint64_t> size_of_grid(const Request& request) {
     return std::nullopt;
 }
 
-/// Processor time by the size of the file, some fifty times what the slowest encoding takes: on some broken files the CGNS
-/// library never comes to an end.
+/// Processor time by the size of the file, some fifty times what the slowest encoding takes: on some broken files the
+/// CGNS library never comes to an end.
 void limit_processor_time(const Request& request) {
     const auto size = size_of_grid(request);
     if (!size) return;

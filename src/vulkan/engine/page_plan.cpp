@@ -125,7 +125,8 @@ public:
     }
 
 private:
-    /// Page-local; turns places among the neighbour's own points into places in its part of the halo where it is elsewhere.
+    /// Page-local; turns places among the neighbour's own points into places in its part of the halo where it is
+    /// elsewhere.
     std::uint32_t first_point(const core::Neighbour& neighbour, std::uint8_t* places) const {
         const std::uint64_t first = packed_.headers[neighbour.cluster].first_point;
         if (neighbour.cluster >= page_.first_cluster)
