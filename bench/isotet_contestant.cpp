@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include "bench/arrays.hpp"
 #include "bench/copy_bandwidth.hpp"
 #include "bench/grid_arrays.hpp"
 #include "bench/must_move.hpp"
+#include "core/level.hpp"
 
 namespace isotet::bench {
 
@@ -36,6 +38,15 @@ Reply describe(const Extraction& extraction, double seconds) {
         .count("transient_bytes", extraction.report.transient_bytes);
     return reply;
 }
+
+/// Less than the processor can do, for as long as this lives.
+class LowerLevel {
+public:
+    explicit LowerLevel(core::Level level) { core::force_level(level); }
+    ~LowerLevel() { core::force_level({}); }
+    LowerLevel(const LowerLevel&) = delete;
+    LowerLevel& operator=(const LowerLevel&) = delete;
+};
 
 [[noreturn]] void refuse(const std::string& what, const std::string& name) {
     throw std::invalid_argument("no such " + what + ": '" + name + "'");
@@ -72,7 +83,11 @@ Reply IsotetContestant::open(const std::string& folder, int threads) {
     negative_.name = "negative";
     negative_.values = negated(field_.values);
     const std::uint64_t bytes = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
-    return Reply().count("points", grid_.points.tuples()).count("tets", tets).count("input_bytes", bytes);
+    return Reply()
+        .count("points", grid_.points.tuples())
+        .count("tets", tets)
+        .count("input_bytes", bytes)
+        .text("level", std::string(core::name_of(core::best_level())));
 }
 
 PackOptions IsotetContestant::pack_options() const {
@@ -118,12 +133,16 @@ Reply IsotetContestant::extract_from(const std::string& name, double isovalue, c
     const PackedGrid& from = packed(name);
     ExtractOptions options;
     options.threads = threads_;
+    std::optional<LowerLevel> lower;
     for (const std::string& attribute : attributes) {
         if (attribute == "gradient_normals") options.normals = Normals::gradient;
         else if (attribute == "face_normals") options.normals = Normals::face;
         else if (attribute == "point_field") options.point_fields = {{"negative", negative_.values}};
         else if (attribute == "source_cells") options.source_cells = true;
         else if (attribute == "edge_ends") options.edge_ends = true;
+        else if (attribute == "avx2" && core::best_level() > core::Level::avx2) lower.emplace(core::Level::avx2);
+        else if (attribute == "portable" && core::best_level() > core::Level::portable)
+            lower.emplace(core::Level::portable);
         else refuse("attribute", attribute);
     }
     const Stopwatch watch;

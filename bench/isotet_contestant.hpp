@@ -18,7 +18,8 @@ namespace isotet::bench {
 
 /// Commands: open FOLDER THREADS; pack NAME [gradients|source_cells]...; extract NAME ISOVALUE [ATTRIBUTE]...;
 /// once ISOVALUE; set_field NAME; copy THREADS; arrays SOURCE FIELD FOLDER THREADS. NAME is that of a packed grid:
-/// several may be kept. ATTRIBUTE: gradient_normals, face_normals, point_field, source_cells, edge_ends.
+/// several may be kept. ATTRIBUTE: gradient_normals, face_normals, point_field, source_cells, edge_ends;
+/// or what the processor shall do without, where it has better: avx2, portable.
 class IsotetContestant {
 public:
     Reply answer(const Words& words);

@@ -59,6 +59,7 @@ class Race:
         self.result = CaseResult(case)
         self.entrants, self.plan, self.threads, self.say = entrants, plan, plan.threads, say
         self.tied: dict[float, int] = {}  # isovalue -> tied points
+        self.level = ""  # SIMD that isotet finds
 
     def run(self) -> CaseResult:
         with ExitStack() as stack:
@@ -69,6 +70,7 @@ class Race:
                 contestants = {entrant.name: running.enter_context(entrant.start_with(folder, self.threads))
                                for entrant in self.entrants}
                 self.result.rivals = {name: one.facts for name, one in contestants.items() if "version" in one.facts}
+                self.level = contestants["isotet"].facts["level"]
                 methods = [method for method in METHODS if self.takes_part(method)]
                 self.prepare(contestants, methods)
                 for number in range(self.plan.rounds):
@@ -80,7 +82,8 @@ class Race:
 
     def takes_part(self, method: Method) -> bool:
         here = any(entrant.name == method.contestant for entrant in self.entrants)
-        return here and (method.most_tets is None or self.result.tets <= method.most_tets)
+        able = method.levels is None or self.level in method.levels
+        return here and able and (method.most_tets is None or self.result.tets <= method.most_tets)
 
     def middle(self) -> float:
         return self.result.isovalues[len(self.result.isovalues) // 2]

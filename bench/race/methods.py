@@ -14,10 +14,11 @@ class Method:
     command: tuple[str, ...]  # "{isovalue}" is replaced
     per_isovalue: bool = True  # else once a round, at the middle isovalue
     most_tets: int | None = None
+    levels: tuple[str, ...] | None = None  # what isotet's processor must be able to do; None: anything
 
 
-def _surface(key: str, contestant: str, label: str, *command: str, most_tets: int | None = None) -> Method:
-    return Method(key, contestant, label, command, most_tets=most_tets)
+def _surface(key: str, contestant: str, label: str, *command: str, **limits) -> Method:
+    return Method(key, contestant, label, command, **limits)
 
 
 def _once_a_round(key: str, contestant: str, label: str, *command: str) -> Method:
@@ -26,6 +27,10 @@ def _once_a_round(key: str, contestant: str, label: str, *command: str) -> Metho
 
 METHODS = [
     _surface("clusters", "isotet", "isotet, packed before", "extract", "main", "{isovalue}"),
+    _surface("clusters_avx2", "isotet", "isotet, packed before, with AVX2 only",
+             "extract", "main", "{isovalue}", "avx2", levels=("AVX-512",)),
+    _surface("clusters_portable", "isotet", "isotet, packed before, portable code only",
+             "extract", "main", "{isovalue}", "portable", levels=("AVX-512", "AVX2")),
     _surface("once", "isotet", "isotet, from arrays, nothing kept", "once", "{isovalue}"),
     _surface("face_normals", "isotet", "isotet, face normals", "extract", "main", "{isovalue}", "face_normals"),
     _surface("gradient_normals", "isotet", "isotet, gradient normals",

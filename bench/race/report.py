@@ -69,6 +69,7 @@ def table(header: list[str], rows: list[list[str]]) -> str:
 def tables(results: list[CaseResult], lines: list[Line], facts: dict) -> str:
     parts = [conditions_table(results, facts),
              "### One surface after another\n", speed_table(results, lines), exponents(lines),
+             "### On processors that can do less\n", levels_table(results, lines),
              "### Packing, new fields, and everything once\n", steps_table(results, lines),
              "### What normals and attributes cost\n", attributes_table(results, lines),
              "### Memory\n", memory_table(results),
@@ -118,11 +119,25 @@ def speed_table(results: list[CaseResult], lines: list[Line]) -> str:
     for result in results:
         of = by_method(lines, result.case.name)
         ours = of["clusters"]
-        ratio = f"{ours.speedup_best:.1f} x, {ours.speedup_median:.1f} x" if ours.speedup_best else ""
         rivals = [three(of.get(key)) for key in ("vtk_merged", "wheel_merged", "vtk_span_space")]
-        rows.append([result.case.name, f"{result.tets:,}", f"{ours.triangles:,.0f}", three(ours), *rivals, ratio])
+        rows.append([result.case.name, f"{result.tets:,}", f"{ours.triangles:,.0f}", three(ours), *rivals, times_faster(ours)])
     return table(["grid", "tetrahedra", "triangles", "isotet, packed before", "VTK merged", "VTK wheel, merged",
                   "VTK merged, span space", "faster than the faster merged VTK (best, median)"], rows)
+
+
+def times_faster(line: Line | None) -> str:
+    return f"{line.speedup_best:.1f} x, {line.speedup_median:.1f} x" if line and line.speedup_best else ""
+
+
+def levels_table(results: list[CaseResult], lines: list[Line]) -> str:
+    rows = []
+    for result in results:
+        of = by_method(lines, result.case.name)
+        columns = [(three(of.get(key)), times_faster(of.get(key))) for key in ("clusters_avx2", "clusters_portable")]
+        rows.append([result.case.name, *(text for column in columns for text in column)])
+    than = "faster than the faster merged VTK (best, median)"
+    return ("isotet, packed before, as it would be without AVX-512, and without AVX2 too.\n\n" +
+            table(["grid", "with AVX2 only", than, "portable code only", than], rows))
 
 
 def exponents(lines: list[Line]) -> str:
