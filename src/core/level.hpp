@@ -11,7 +11,7 @@ namespace isotet::core {
 enum class Level : std::uint8_t {
     portable, ///< what the compiler may use anyway (SSE2 on x86-64)
     avx2,     ///< x86-64 with AVX2, BMI2
-    avx512,   ///< x86-64 with AVX-512 F, BW, VL, VBMI
+    avx512,   ///< x86-64 with AVX-512 F, BW, VL, VBMI, VBMI2; BMI2
 };
 
 /// The best level of this machine, or the forced one.

@@ -50,7 +50,12 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     parallel_each(blocks_at_once(count), 1, [&](std::size_t) {
         for (std::size_t b = next_block++; b < block_count; b = next_block++) {
             if (progress.cancelled()) return;
-            blocks[b] = grow_block(order.tets, b * tets_a_block, std::min(tets_a_block, count - b * tets_a_block));
+            try {
+                blocks[b] = grow_block(order.tets, b * tets_a_block, std::min(tets_a_block, count - b * tets_a_block));
+            } catch (...) {
+                next_block = block_count; // nobody begins another one
+                throw;
+            }
             const std::size_t done = ++finished;
             if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
                 progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));

@@ -35,8 +35,8 @@ struct Draft {
     std::size_t local_count(std::size_t cluster) const { return first_local[cluster + 1] - first_local[cluster]; }
 };
 
-/// How many blocks of tets are grown at the same time: all threads, but at most a fifth of the blocks, since growing
-/// takes some 45 bytes for each tet of a block beside what the tets themselves take.
+/// How many blocks of tets are grown at the same time: all threads, but at most a fifth of the blocks, or four of
+/// them, since growing takes some 45 bytes for each tet of a block beside what the tets themselves take.
 std::size_t blocks_at_once(std::uint64_t tets);
 
 /// Grows clusters block by block. Fills headers (tets, first_group), tets (corners as positions among the cluster's

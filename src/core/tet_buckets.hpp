@@ -2,9 +2,9 @@
 // All tets of a grid, in buckets by their lowest rank. One pass over the cells deals them out, although nobody knows
 // then how many each bucket gets: tets lie in pages, and pages are added where they are wanted.
 //
-//   writer 0 ─┬─ bucket 0: ▓▓▓▓▓▓▓▓ ▓▓▓▓▓░░░     a writer deals out the tets of some cells, one after another, into
-//   pages of
-//             └─ bucket 1: ▓▓▓░░░░░              its own: so a bucket can be read in the order of the cells
+//   writer 0 ─┬─ bucket 0: ▓▓▓▓▓▓▓▓ ▓▓▓▓▓░░░     a writer deals out the tets of some cells, in order, into
+//             └─ bucket 1: ▓▓▓░░░░░              pages of its own: so a bucket can be read in the order of
+//                                                the cells
 //   writer 1 ─┬─ bucket 0: ▓▓▓▓▓░░░
 //             └─ bucket 1: ▓▓▓▓▓▓▓▓ ▓▓░░░░░░
 //

@@ -84,9 +84,10 @@ void deal_out(const PointReader& points, const CellReader& cells, std::size_t be
         writer.put(tet, lowest_rank(tet), waiting.origin);
     };
     cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
-        const bool cell_negative = !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(points, pieces) < 0;
+        const bool cell_negative =
+            !cells.only_tets() && !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(points, pieces) < 0;
         for (const Tet& corners : pieces) {
-            for (const std::uint64_t corner : corners) __builtin_prefetch(&rank_of[corner]);
+            for (const std::uint64_t corner : corners) prefetch(&rank_of[corner]);
             Waiting& place = queue[arrived % most];
             if (arrived++ >= most) deal(place);
             place = {corners, TetOrigin::make(cell, cell_negative)};

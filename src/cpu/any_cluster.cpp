@@ -164,10 +164,11 @@ private:
         record.lists_seams = false;
         Portable::cross(s_.listed.data(), record.listed, s_.above.data(), s_.values.data(), isovalue_, s_.ends.data(),
                         s_.weights.data());
-        write_vertices<Portable>(packed_, s_, record);
+        ask_for_positions(packed_, s_, record);
         with_numbers(s_, record, [&](const auto* numbers, auto* corners) {
             write_triangles(numbers, corners, record.has_tets ? record.tets() : nullptr);
         });
+        write_vertices<Portable>(packed_, s_, record);
         return &record;
     }
 

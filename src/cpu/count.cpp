@@ -80,7 +80,8 @@ Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Sele
     const Cutting<Real> cutting{packed, wanted, selection, masks};
     const Counter<Real> counter(cutting, keep, out);
     using Memory = CutScratch<Real>;
-    tbb::enumerable_thread_specific<std::shared_ptr<Memory>> scratch([] { return std::make_shared<Memory>(); });
+    tbb::enumerable_thread_specific<std::shared_ptr<Memory>> scratch(
+        [] { return std::shared_ptr<Memory>(new Memory); });
     core::parallel_ranges(selection.size(), 16, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
         Memory& memory = *scratch.local();

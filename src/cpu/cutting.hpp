@@ -8,21 +8,18 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
-#include <vector>
 
 #include "core/arithmetic.hpp"
 #include "core/local_values.hpp"
+#include "cpu/prefetch.hpp"
 #include "cpu/record.hpp"
 #include "cpu/simd_portable.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {
-
-constexpr std::size_t max_cluster_edges = core::max_cluster_points * (core::max_cluster_points - 1) / 2;
 
 constexpr VertexKey point_key(std::size_t local) {
     return static_cast<VertexKey>(local * (core::max_cluster_points + 1));
@@ -41,10 +38,9 @@ public:
     const T* data() const { return elements_.data(); }
     const T* begin() const { return data(); }
     const T* end() const { return data() + size_; }
-    const T& operator[](std::size_t i) const { return elements_[i]; }
 
 private:
-    std::array<T, most> elements_{};
+    std::array<T, most> elements_;
     std::size_t size_ = 0;
 };
 
@@ -61,7 +57,7 @@ struct Cutting {
 template <class Real>
 struct CutScratch {
     static constexpr std::size_t points = core::max_cluster_points;
-    static constexpr std::size_t most_vertices = max_cluster_edges + points, padded = most_vertices + 128;
+    static constexpr std::size_t padded = most_vertices + 128; ///< SIMD code writes more than it counts
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
     std::size_t cluster = none, next_cluster = none;
@@ -81,8 +77,7 @@ struct CutScratch {
     std::array<Real, padded> weights;
     ShortList<SharedVertex, most_vertices> shared;
     ShortList<VertexKey, most_vertices> shared_keys;
-    std::array<std::uint8_t, points * points> numbers; ///< local, by key; only where one was written
-    std::array<std::uint16_t, points * points> wide_numbers;
+    std::array<std::uint16_t, points * points> numbers; ///< see with_numbers()
     Arena arena;
     std::size_t record_bytes = 0; ///< of all records made
 
@@ -94,7 +89,7 @@ struct CutScratch {
 };
 
 /// Calls f(numbers, corners) with a table of local vertex numbers by key, and where the record has such numbers for the
-/// corners of triangles: bytes where they suffice.
+/// corners of triangles: bytes where they suffice, which are nearer in the cache.
 template <class Real, class F>
 void with_numbers(CutScratch<Real>& s, const Record<Real>& record, F&& f) {
     const auto call = [&](auto* numbers) {
@@ -104,8 +99,8 @@ void with_numbers(CutScratch<Real>& s, const Record<Real>& record, F&& f) {
         for (const VertexKey key : s.shared_keys) numbers[key] = static_cast<Number>(number++);
         f(static_cast<const Number*>(numbers), static_cast<Number*>(record.corners()));
     };
-    if (record.wide()) call(s.wide_numbers.data());
-    else call(s.numbers.data());
+    if (record.wide()) call(s.numbers.data());
+    else call(reinterpret_cast<std::uint8_t*>(s.numbers.data()));
 }
 
 /// A record that holds what was shared; its triangles and listed vertices are yet to come.
@@ -113,7 +108,8 @@ template <class Real>
 Record<Real>& begin_record(const Wanted<Real>& wanted, std::size_t triangles, CutScratch<Real>& s) {
     using Made = Record<Real>;
     // Positions are what emit will want; but triangles that share few vertices have too many of them to keep.
-    const bool has_ends = wanted.ends || s.listed.size() > 2 * triangles;
+    const std::size_t kept = 12 * s.listed.size() + sizeof(SharedVertex) * s.shared.size();
+    const bool has_ends = wanted.ends || kept > 24 * triangles;
     const std::size_t bytes = Made::bytes(s.listed.size(), s.shared.size(), triangles, has_ends, wanted.source_cells);
     Made& record = *new (s.arena.take(bytes)) Made;
     record.listed = static_cast<std::uint16_t>(s.listed.size());
@@ -134,6 +130,17 @@ void write_vertices(const Packed& packed, const CutScratch<Real>& s, Record<Real
     } else {
         Simd::place(s.ends.data(), s.weights.data(), record.listed, *s.local, packed.as<Real>().positions.data(),
                     record.positions());
+    }
+}
+
+/// So that they are there a little later, for write_vertices().
+template <class Real>
+void ask_for_positions(const Packed& packed, const CutScratch<Real>& s, const Record<Real>& record) {
+    if (record.has_ends) return;
+    const Real* const positions = packed.as<Real>().positions.data();
+    for (std::size_t i = 0; i < record.listed; ++i) {
+        prefetch(positions + 3 * (*s.local)[s.ends[i].below]);
+        prefetch(positions + 3 * (*s.local)[s.ends[i].above]);
     }
 }
 

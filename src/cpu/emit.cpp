@@ -21,7 +21,7 @@ namespace isotet::cpu {
 
 namespace {
 
-constexpr std::size_t max_vertices =
+constexpr std::size_t most_vertices =
     core::max_cluster_points * (core::max_cluster_points + 1) / 2; ///< edges and points
 
 /// The local points of a cluster, found once.
@@ -48,12 +48,12 @@ struct OwnVertices {
 template <class Real>
 struct Scratch {
     std::array<FoundPoints, 2> found;
-    FoundPoints* points = &found[0];        ///< of the cluster at hand, where its ends are looked at
-    FoundPoints* next = &found[1];          ///< of the one after it
-    std::array<EndPair, max_vertices> ends; ///< of vertices that only masks know
-    std::array<Real, max_vertices> weights;
-    std::array<std::uint32_t, max_vertices> numbers; ///< of vertices, by local number
-    std::array<std::uint64_t, max_vertices> wide_numbers;
+    FoundPoints* points = &found[0];         ///< of the cluster at hand, where its ends are looked at
+    FoundPoints* next = &found[1];           ///< of the one after it
+    std::array<EndPair, most_vertices> ends; ///< of vertices that only masks know
+    std::array<Real, most_vertices> weights;
+    std::array<std::uint32_t, most_vertices> numbers; ///< of vertices, by local number
+    std::array<std::uint64_t, most_vertices> wide_numbers;
 };
 
 template <class Real>
@@ -72,23 +72,35 @@ public:
     template <class Simd>
     void emit_places(std::size_t begin, std::size_t end, Scratch<Real>& s) const {
         for (std::size_t place = begin; place < end; ++place) {
+            if (needs_points(*counted_.records[place])) find_points(selection_.clusters[place], s);
             ask_ahead(place, s);
             emit_place<Simd>(place, s);
         }
     }
 
 private:
+    /// Whether ends of edges are looked at, as local points.
+    static bool needs_points(const Record<Real>& record) { return record.has_ends || !record.lists_seams; }
+
+    void find_points(std::uint32_t cluster, Scratch<Real>& s) const {
+        if (s.points->cluster == cluster) return;
+        std::swap(s.points, s.next);
+        s.points->find(packed_, cluster);
+    }
+
     /// Asks for what the places to come will read, while this one is worked on.
     void ask_ahead(std::size_t place, Scratch<Real>& s) const {
         const std::size_t left = selection_.size() - place;
-        if (left > 3 && wanted_.ends) prefetch(&packed_.headers[selection_.clusters[place + 3]]);
-        if (left > 3) prefetch(counted_.records[place + 3]);
-        if (left > 2) {
-            const Record<Real>* const record = counted_.records[place + 2];
-            prefetch_bytes(record, record->bytes());
-            if (record->has_ends) ask_for_links(selection_.clusters[place + 2]);
+        if (left > 3) {
+            prefetch(&packed_.headers[selection_.clusters[place + 3]]);
+            prefetch(counted_.records[place + 3]);
         }
-        if (left > 1 && counted_.records[place + 1]->has_ends) ask_for_positions(place + 1, s);
+        if (left > 2) {
+            const Record<Real>& record = *counted_.records[place + 2];
+            prefetch_bytes(&record, record.bytes());
+            if (needs_points(record)) ask_for_links(selection_.clusters[place + 2]);
+        }
+        if (left > 1) ask_for_positions(place + 1, s);
     }
 
     void ask_for_links(std::uint32_t cluster) const {
@@ -98,20 +110,15 @@ private:
     }
 
     void ask_for_positions(std::size_t place, Scratch<Real>& s) const {
-        const std::uint32_t cluster = selection_.clusters[place];
-        if (s.points->cluster != cluster) s.next->find(packed_, cluster);
-        const core::LocalPoints& points = s.points->cluster == cluster ? s.points->packed : s.next->packed;
         const Record<Real>& record = *counted_.records[place];
-        for (std::size_t i = 0; i < record.listed; ++i) {
-            prefetch(&reals_.positions[3 * points[record.ends()[i].below]]);
-            prefetch(&reals_.positions[3 * points[record.ends()[i].above]]);
+        if (!needs_points(record)) return;
+        const std::uint32_t cluster = selection_.clusters[place];
+        FoundPoints& found = s.points->cluster == cluster ? *s.points : *s.next;
+        found.find(packed_, cluster);
+        for (std::size_t i = 0; record.has_ends && i < record.listed; ++i) {
+            prefetch(&reals_.positions[3 * found.packed[record.ends()[i].below]]);
+            prefetch(&reals_.positions[3 * found.packed[record.ends()[i].above]]);
         }
-    }
-
-    void find_points(std::uint32_t cluster, Scratch<Real>& s) const {
-        if (s.points->cluster == cluster) return;
-        std::swap(s.points, s.next);
-        s.points->find(packed_, cluster);
     }
 
     template <class Simd>
@@ -120,7 +127,6 @@ private:
         const Target<Real>& target = targets_[selection_.isovalues[place]];
         const Start start = counted_.starts[place];
         std::uint64_t vertex = start.vertex;
-        if (!record.lists_seams || record.has_ends) find_points(selection_.clusters[place], s);
         if (!record.lists_seams) {
             const OwnVertices<Real> masked = find_masked(place, s);
             write_vertices(masked, vertex, target, s);
@@ -274,7 +280,7 @@ void emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& sel
           const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress) {
     const Emitter<Real> emitter(packed, wanted, selection, masks, counted, targets);
     tbb::enumerable_thread_specific<std::unique_ptr<Scratch<Real>>> scratch(
-        [] { return std::make_unique<Scratch<Real>>(); });
+        [] { return std::unique_ptr<Scratch<Real>>(new Scratch<Real>); });
     core::parallel_ranges(selection.size(), 64, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
         emit_places(emitter, begin, end, *scratch.local());

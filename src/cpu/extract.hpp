@@ -8,7 +8,7 @@ namespace isotet::cpu {
 
 /// Guarantees   the same bytes for any thread count
 /// Cost         O(C + V + F). Transient memory: 4 bytes a cluster; for each cluster and isovalue that selects it about
-///              85, with the masks of its seam edges (one bit each); about 11 bytes a triangle, at most 33; 0.5 MB a
+///              100, with the masks of its seam edges (one bit each); about 10 bytes a triangle, at most 40; 0.7 MB a
 ///              thread
 /// Errors       out_of_memory, before records and surfaces take any; invalid_argument when isovalues select clusters
 ///              2^32 times or more; cancelled

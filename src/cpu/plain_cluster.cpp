@@ -5,7 +5,6 @@
 
 #include "cpu/cutting.hpp"
 #include "cpu/level.hpp"
-#include "cpu/prefetch.hpp"
 #include "cpu/simd_avx2.hpp"
 #include "cpu/simd_avx512.hpp"
 
@@ -73,15 +72,6 @@ void write_triangles(const Scratch& s, const Number* numbers, Number* out, std::
     }
 }
 
-/// So that they are there once triangles have been written.
-void ask_for_positions(const Packed& packed, const Scratch& s) {
-    const float* const positions = packed.as<float>().positions.data();
-    for (std::size_t i = 0; i < s.listed.size(); ++i) {
-        prefetch(positions + 3 * (*s.local)[s.ends[i].below]);
-        prefetch(positions + 3 * (*s.local)[s.ends[i].above]);
-    }
-}
-
 template <class Simd>
 const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place, Scratch& s, Start& count) {
     static constexpr Record<float> nothing;
@@ -107,7 +97,7 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     Record<float>& record = begin_record(cutting.wanted, triangles, s);
     Simd::cross(s.listed.data(), record.listed, s.above.data(), s.values.data(), isovalue, s.ends.data(),
                 s.weights.data());
-    if (!record.has_ends) ask_for_positions(cutting.packed, s);
+    ask_for_positions(cutting.packed, s, record);
     with_numbers(s, record, [&](const auto* numbers, auto* corners) {
         write_triangles(s, numbers, corners, record.has_tets ? record.tets() : nullptr);
     });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/block.hpp"
+#include "core/packed.hpp"
 
 namespace isotet::cpu {
 
@@ -16,6 +17,9 @@ namespace isotet::cpu {
 struct EndPair {
     std::uint8_t below, above;
 };
+
+/// Of a cluster: those at its points, and those on edges, of which a tet crosses at most four.
+constexpr std::size_t most_vertices = 4 * core::max_cluster_tets + core::max_cluster_points;
 
 /// A vertex that a cluster uses and a mask of its owner knows: on a seam edge, or at a tied point.
 struct SharedVertex {

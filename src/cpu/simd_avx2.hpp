@@ -60,21 +60,26 @@ struct Avx2 {
                                                    std::uint64_t* mask, VertexKey* out) {
         const __m256i table = table_of(above);
         std::fill_n(mask, core::words_of_bits(seams.size()), std::uint64_t{0});
-        const auto* const edges = reinterpret_cast<const std::uint8_t*>(seams.data());
-        std::size_t k = 0;
+        std::size_t count = 0, k = 0;
         for (; k + 16 <= seams.size(); k += 16) {
-            const __m256i sides = look_up(table, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(edges + 2 * k)));
+            const __m256i edges = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(seams.data() + k));
+            const __m256i sides = look_up(table, edges);
             const __m256i differ =
                 _mm256_and_si256(_mm256_xor_si256(sides, _mm256_srli_epi16(sides, 8)), _mm256_set1_epi16(1));
             const __m128i bytes = _mm_packus_epi16(_mm256_castsi256_si128(differ), _mm256_extracti128_si256(differ, 1));
-            const auto bits = static_cast<std::uint64_t>(_mm_movemask_epi8(_mm_slli_epi16(bytes, 7)));
-            mask[k / 64] |= bits << k % 64;
+            const auto bits = static_cast<unsigned>(_mm_movemask_epi8(_mm_slli_epi16(bytes, 7)));
+            mask[k / 64] |= std::uint64_t{bits} << k % 64;
+            const __m256i lower = _mm256_and_si256(edges, _mm256_set1_epi16(0xff));
+            const __m256i keys = _mm256_or_si256(_mm256_slli_epi16(lower, 7), _mm256_srli_epi16(edges, 8));
+            count += compress(_mm256_castsi256_si128(keys), bits & 0xff, out + count);
+            count += compress(_mm256_extracti128_si256(keys, 1), bits >> 8, out + count);
         }
-        for (; k < seams.size(); ++k)
-            mask[k / 64] |= std::uint64_t(above[seams[k].lower] ^ above[seams[k].higher]) << k % 64;
-        std::size_t count = 0;
-        core::for_bits(mask, core::words_of_bits(seams.size()),
-                       [&](std::size_t i) { out[count++] = edge_key(seams[i]); });
+        for (; k < seams.size(); ++k) {
+            const std::uint64_t crossed = above[seams[k].lower] ^ above[seams[k].higher];
+            mask[k / 64] |= crossed << k % 64;
+            out[count] = edge_key(seams[k]);
+            count += crossed;
+        }
         return count;
     }
 
@@ -82,21 +87,24 @@ struct Avx2 {
                                                        std::span<const core::ForeignSeam> seams, core::ForeignSeam* out,
                                                        std::uint16_t* places) {
         const __m256i table = table_of(above);
-        std::size_t count = 0;
-        const auto add = [&](std::size_t k) {
-            out[count] = seams[k];
-            places[count++] = static_cast<std::uint16_t>(k);
-        };
-        std::size_t k = 0;
+        std::size_t count = 0, k = 0;
         for (; k + 8 <= seams.size(); k += 8) {
-            const __m256i sides =
-                look_up(table, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(seams.data() + k)));
+            const __m256i found = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(seams.data() + k));
+            const __m256i sides = look_up(table, found);
             const __m256i differ = _mm256_slli_epi32(_mm256_xor_si256(sides, _mm256_srli_epi32(sides, 8)), 31);
-            auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(differ)));
-            for (; bits; bits &= bits - 1) add(k + static_cast<std::size_t>(std::countr_zero(bits)));
+            const auto crossed = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(differ)));
+            const __m128i lanes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of[crossed].data()));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + count),
+                                _mm256_permutevar8x32_epi32(found, _mm256_cvtepu8_epi32(lanes)));
+            const __m128i place = _mm_add_epi16(_mm_cvtepu8_epi16(lanes), _mm_set1_epi16(static_cast<short>(k)));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(places + count), place);
+            count += static_cast<std::size_t>(_mm_popcnt_u32(crossed));
         }
-        for (; k < seams.size(); ++k)
-            if (above[seams[k].edge.lower] != above[seams[k].edge.higher]) add(k);
+        for (; k < seams.size(); ++k) {
+            out[count] = seams[k];
+            places[count] = static_cast<std::uint16_t>(k);
+            count += above[seams[k].edge.lower] ^ above[seams[k].edge.higher];
+        }
         return count;
     }
 
@@ -128,7 +136,9 @@ struct Avx2 {
         const __m256i table = table_of(above);
         for (std::size_t i = 0; i < n; i += 8) {
             const __m256i key = _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(edges + i)));
-            const __m256i a = _mm256_srli_epi32(key, 7), b = _mm256_and_si256(key, _mm256_set1_epi32(127));
+            // Behind the last edge stand numbers that are none: they must not be looked up outside of the table.
+            const __m256i a = _mm256_and_si256(_mm256_srli_epi32(key, 7), _mm256_set1_epi32(127));
+            const __m256i b = _mm256_and_si256(key, _mm256_set1_epi32(127));
             const __m256i a_is_above =
                 _mm256_cmpeq_epi32(_mm256_and_si256(look_up(table, a), _mm256_set1_epi32(1)), _mm256_set1_epi32(1));
             const __m256i below = _mm256_blendv_epi8(a, b, a_is_above),
@@ -182,6 +192,15 @@ private:
         return lanes;
     }();
 
+    /// Writes those of eight keys that the mask has, and more behind them; returns how many it has.
+    ISOTET_AVX2 static std::size_t compress(__m128i keys, unsigned mask, VertexKey* out) {
+        const __m128i lanes =
+            _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of[mask].data())));
+        // From lanes of two bytes to bytes: 2 * lane, then 2 * lane + 1.
+        const __m128i bytes = _mm_add_epi16(_mm_mullo_epi16(lanes, _mm_set1_epi16(0x0202)), _mm_set1_epi16(0x0100));
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_shuffle_epi8(keys, bytes));
+        return static_cast<std::size_t>(_mm_popcnt_u32(mask));
+    }
     /// The lower halves of eight numbers below 2^15.
     ISOTET_AVX2 static __m128i halves(__m256i x) {
         return _mm_packs_epi32(_mm256_castsi256_si128(x), _mm256_extracti128_si256(x, 1));

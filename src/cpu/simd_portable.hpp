@@ -181,7 +181,7 @@ struct Portable {
     }
 
     /// Numbers of a surface's vertices from local ones: `first` + those below `listed`; `numbers` holds those of
-    /// others, by local number, and has room for all.
+    /// others, by local number. Before these it has room for `listed` more, which may be written.
     template <class Local, class Index>
     static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first, Index* numbers,
                        Index* out) {

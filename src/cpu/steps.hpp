@@ -138,7 +138,7 @@ std::vector<Total> scan(const Selection& selection, const Masks& masks, std::siz
 /// `targets`  one for each isovalue
 template <class Real>
 void emit(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, const Masks& masks,
-                 const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress);
+          const Counted<Real>& counted, std::span<const Target<Real>> targets, const Progress& progress);
 
 /// Bytes of a thread while it counts, without records, and while it emits.
 template <class Real>

@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The same bytes from portable code, AVX2 and AVX-512: as far as the machine goes, which the test prints.
+#include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -51,23 +53,59 @@ TEST(InstructionLevels, GiveTheSameBytes) {
     }
 }
 
-/// Noise cuts half of all edges, and clusters have more vertices than a byte can number.
+/// With and without what records keep for it.
+void expect_equal_levels_of_all(const PackedGrid& packed, double isovalue) {
+    for (const Ties ties : {Ties::merge, Ties::keep})
+        for (const bool extras : {false, true}) {
+            ExtractOptions options;
+            options.ties = ties;
+            options.edge_ends = options.source_cells = extras;
+            expect_equal_levels(packed, isovalue, options);
+        }
+}
+
+/// Noise cuts half of all edges, and clusters have more vertices than a byte can number: one alone, and among others.
 TEST(InstructionLevels, GiveTheSameBytesOfNoise) {
-    Grid grid = make_grid({.shape = "kuhn", .side = 12}).value();
-    std::mt19937 random(1);
-    std::vector<float> noise(grid.points.tuples());
-    for (float& value : noise) value = std::uniform_real_distribution<float>(-1, 1)(random);
-    PointField field;
-    field.values = Array::own(std::move(noise));
-    const PackedGrid packed = pack(grid, field).value();
-    const Extraction made = extract(packed, 0).value();
-    ASSERT_GT(made.surface.positions.tuples(), 200 * made.report.selected_clusters)
-        << "own ones only: shared ones come on top";
-    ExtractOptions with_ends;
-    with_ends.edge_ends = true;
-    expect_equal_levels(packed, 0, {});
-    expect_equal_levels(packed, 0, with_ends);
-    expect_equal_levels(packed, 0.99, {});
+    for (const std::uint64_t side : {4, 12}) {
+        const Grid grid = make_grid({.shape = "kuhn", .side = side}).value();
+        std::mt19937 random(1);
+        std::vector<float> noise(grid.points.tuples());
+        for (float& value : noise) value = std::uniform_real_distribution<float>(-1, 1)(random);
+        PointField field;
+        field.values = Array::own(std::move(noise));
+        const PackedGrid packed = pack(grid, field, {.source_cells = true}).value();
+        if (side == 4) {
+            ASSERT_EQ(packed.report().clusters, 1u);
+            ASSERT_GT(extract(packed, 0).value().surface.positions.tuples(), 256u);
+        }
+        expect_equal_levels_of_all(packed, 0);
+        expect_equal_levels_of_all(packed, 0.99);
+    }
+}
+
+/// A fan round one edge: from each of its ends edges go to nearly all points of the cluster.
+TEST(InstructionLevels, GiveTheSameBytesOfAFan) {
+    constexpr std::uint32_t rim = 126;
+    Grid grid;
+    std::vector<float> points{0, 0, -1, 0, 0, 1};
+    std::vector<std::uint32_t> tets;
+    for (std::uint32_t k = 0; k < rim; ++k) {
+        const double angle = 2 * std::numbers::pi * k / rim;
+        points.insert(points.end(), {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
+        tets.insert(tets.end(), {0, 1, 2 + k, 2 + (k + 1) % rim});
+    }
+    grid.points = Array::own(std::move(points), 3);
+    grid.cells.connectivity = Array::own(std::move(tets));
+    for (const bool both : {false, true}) { // ends of the edge below
+        std::vector<float> values(2 + rim, 1);
+        values[0] = -1;
+        if (both) values[1] = -2;
+        PointField field;
+        field.values = Array::own(std::move(values));
+        const PackedGrid packed = pack(grid, field, {.source_cells = true}).value();
+        ASSERT_EQ(packed.report().clusters, 1u);
+        expect_equal_levels_of_all(packed, 0);
+    }
 }
 
 TEST(InstructionLevels, StoreTheSameFields) {
