@@ -201,12 +201,29 @@ TEST(WriteStl, TakesTheNormalsOfFacesWhereThereAreAny) {
 }
 
 TEST(WriteStl, SaysWhatItLeftOut) {
-    Surface surface = rich_surface();
+    const Folder folder;
+    EXPECT_TRUE(has_note(write(rich_surface(), folder / "out.stl"), "\"pressure\""));
+}
+
+TEST(WriteStl, AddsTheOrigin) {
+    Surface surface = bare_surface();
     surface.origin = {4300000, 0, 0.5};
     const Folder folder;
     const auto report = write(surface, folder / "out.stl");
-    EXPECT_TRUE(has_note(report, "the origin (4300000, 0, 0.5) was left out"));
-    EXPECT_TRUE(has_note(report, "\"pressure\""));
+    EXPECT_FALSE(has_note(report, "left out"));
+    const auto back = read_surface(folder / "out.stl");
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->surface.positions.at(1, 0), 4300001);
+    EXPECT_EQ(back->surface.positions.at(1, 2), static_cast<float>(surface.positions.at(1, 2) + 0.5));
+}
+
+/// At 4e8 float32 has steps of 32.
+TEST(WriteStl, LeavesTheOriginOutWhereTrianglesWouldCollapse) {
+    Surface surface = bare_surface();
+    surface.origin = {400000000, 400000000, 400000000};
+    const Folder folder;
+    const auto report = write(surface, folder / "out.stl");
+    EXPECT_TRUE(has_note(report, "the origin (400000000, 400000000, 400000000) was left out"));
     const auto back = read_surface(folder / "out.stl");
     ASSERT_TRUE(back);
     EXPECT_EQ(back->surface.positions.at(1, 0), 1);

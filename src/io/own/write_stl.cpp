@@ -20,12 +20,31 @@ using Vector = std::array<float, 3>;
 constexpr std::size_t header_bytes = 80;
 constexpr std::size_t facet_bytes = 50; // normal, three corners, two bytes that nobody uses
 
-/// Relative to the origin.
-Vector position(const Surface& surface, std::uint64_t vertex) {
+using Origin = std::array<double, 3>;
+
+Vector position(const Surface& surface, std::uint64_t vertex, const Origin& origin) {
     return surface.positions.visit([&](auto values) {
-        return Vector{static_cast<float>(values[3 * vertex]), static_cast<float>(values[3 * vertex + 1]),
-                      static_cast<float>(values[3 * vertex + 2])};
+        Vector out;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            out[axis] = static_cast<float>(static_cast<double>(values[3 * vertex + axis]) + origin[axis]);
+        return out;
     });
+}
+
+/// Whether adding the origin, in float32, brings corners of a triangle together that are apart without it.
+bool origin_collapses_triangles(const Surface& surface) {
+    constexpr std::size_t at_once = 1 << 16;
+    for (std::size_t begin = 0; begin < surface.triangle_count(); begin += at_once) {
+        const auto corners = corners_of(surface.triangles, begin, std::min(begin + at_once, surface.triangle_count()));
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const auto from = static_cast<std::uint64_t>(corners[i]);
+            const auto to = static_cast<std::uint64_t>(corners[i % 3 == 2 ? i - 2 : i + 1]);
+            if (position(surface, from, surface.origin) == position(surface, to, surface.origin) &&
+                position(surface, from, {}) != position(surface, to, {}))
+                return true;
+        }
+    }
+    return false;
 }
 
 /// Of unit length, or zero where the triangle has no area.
@@ -50,11 +69,11 @@ void put(const Vector& vector, char* out) {
 }
 
 /// How far float32 is from the given coordinates at most.
-double largest_rounding(const Array& positions) {
+double largest_rounding(const Array& positions, const Origin& origin) {
     double largest = 0;
     positions.visit([&](auto values) {
-        for (const auto value : values) {
-            const double exact = static_cast<double>(value);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double exact = static_cast<double>(values[i]) + origin[i % 3];
             if (const double error = std::abs(exact - static_cast<double>(static_cast<float>(exact))); error > largest)
                 largest = error;
         }
@@ -71,16 +90,15 @@ Result<WriteReport> write_stl(const SurfaceToWrite& input) {
         return Error{ErrorCode::invalid_argument,
                      fmt::format("the surface has {} triangles, but STL holds at most 4294967295", triangles)};
     }
-    const auto& origin = surface.origin;
-    if (origin != std::array<double, 3>{}) {
-        input.notes.push_back(
-            fmt::format("STL holds float32: the origin ({}, {}, {}) was left out", origin[0], origin[1], origin[2]));
+    Origin origin = surface.origin;
+    if (origin != Origin{} && origin_collapses_triangles(surface)) {
+        input.notes.push_back(fmt::format("STL holds float32, and so far from 0 triangles would collapse: the origin "
+                                          "({}, {}, {}) was left out",
+                                          origin[0], origin[1], origin[2]));
+        origin = {};
     }
-    if (surface.positions.type() == ScalarType::float64) {
-        if (const double error = largest_rounding(surface.positions); error > 0) {
-            input.notes.push_back(fmt::format("STL holds float32: coordinates were rounded by up to {:.3g}", error));
-        }
-    }
+    if (const double error = largest_rounding(surface.positions, origin); error > 0)
+        input.notes.push_back(fmt::format("STL holds float32: coordinates were rounded by up to {:.3g}", error));
     note_left_out(input, "STL", {&input.columns.edges, &input.columns.point_fields, &input.columns.cell_fields});
 
     const std::uint64_t expected = header_bytes + sizeof(std::uint32_t) + std::uint64_t{triangles} * facet_bytes;
@@ -97,7 +115,7 @@ Result<WriteReport> write_stl(const SurfaceToWrite& input) {
             for (std::size_t i = 0; i < end - begin; ++i, facet += facet_bytes) {
                 std::array<Vector, 4> vectors{};
                 for (std::size_t k = 0; k < 3; ++k)
-                    vectors[k + 1] = position(surface, static_cast<std::uint64_t>(corners[3 * i + k]));
+                    vectors[k + 1] = position(surface, static_cast<std::uint64_t>(corners[3 * i + k]), origin);
                 if (input.columns.cell_normals) {
                     for (std::size_t k = 0; k < 3; ++k)
                         vectors[0][k] = static_cast<float>(surface.normals.at(begin + i, k));
