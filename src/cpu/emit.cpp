@@ -21,9 +21,6 @@ namespace isotet::cpu {
 
 namespace {
 
-constexpr std::size_t most_vertices =
-    core::max_cluster_points * (core::max_cluster_points + 1) / 2; ///< edges and points
-
 /// The local points of a cluster, found once.
 struct FoundPoints {
     std::size_t cluster = std::numeric_limits<std::size_t>::max();
