@@ -11,6 +11,7 @@ option(ISOTET_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_BENCH "Build the benchmarks" OFF)
 option(ISOTET_FUZZ "Build the fuzz targets (clang with libFuzzer)" OFF)
 option(ISOTET_WERROR "Warnings are errors" OFF)
+option(ISOTET_UNITY "Compile the library in groups of files: half the work; OFF: file by file, for work on it" ON)
 set(ISOTET_TEST_KINDS "" CACHE STRING "Folders of tests/ to build; empty: all")
 set(ISOTET_TEST_PREFIX "" CACHE STRING "What the names of all tests begin with, such as thread.")
 set(ISOTET_FUZZ_SECONDS 20 CACHE STRING "How long ctest runs each fuzz target")
@@ -56,10 +57,22 @@ function(isotet_target target)
             PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
             PRIVATE ${PROJECT_SOURCE_DIR}/src)
-        set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+        set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+            UNITY_BUILD ${ISOTET_UNITY} UNITY_BUILD_MODE GROUP)
+        if(ISOTET_UNITY)
+            # g++ takes what is private to an included file for shared.
+            target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+        endif()
     else()
         target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
     endif()
+endfunction()
+
+# isotet_sources(TARGET GROUP FILES...): adds files, which ISOTET_UNITY compiles as one. So names that are private to a
+# file must differ from those of the other files of its group.
+function(isotet_sources target group)
+    target_sources(${target} PRIVATE ${ARGN})
+    set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
 endfunction()
 
 # Facts of the build for `isotet --version`.

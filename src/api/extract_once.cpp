@@ -5,6 +5,7 @@
 
 #include "api/finish.hpp"
 #include "core/cells.hpp"
+#include "core/errors.hpp"
 #include "core/guard.hpp"
 #include "core/parallel.hpp"
 #include "cpu/brute/brute.hpp"
@@ -14,25 +15,23 @@ namespace isotet {
 
 namespace {
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 /// Fields against the grid; the contoured one in the words of pack().
 Result<void> check_fields(const Grid& grid, const PointField& field, const ExtractOptions& options) {
     const std::size_t points = grid.points.tuples(), cells = grid.cells.count();
     if (field.values.components() != 1 && !field.values.empty())
-        return wrong(fmt::format("field '{}' has {} components, but the contoured field must have 1", field.name,
-                                 field.values.components()));
+        return invalid_argument(fmt::format("field '{}' has {} components, but the contoured field must have 1",
+                                            field.name, field.values.components()));
     if (field.values.tuples() != points)
-        return wrong(fmt::format("field '{}' has {} values, but the grid has {} points", field.name,
-                                 field.values.tuples(), points));
+        return invalid_argument(fmt::format("field '{}' has {} values, but the grid has {} points", field.name,
+                                            field.values.tuples(), points));
     for (const Field& carried : options.point_fields)
         if (carried.values.tuples() != points)
-            return wrong(fmt::format("point field '{}' has {} tuples, but the grid has {} points", carried.name,
-                                     carried.values.tuples(), points));
+            return invalid_argument(fmt::format("point field '{}' has {} tuples, but the grid has {} points",
+                                                carried.name, carried.values.tuples(), points));
     for (const Field& carried : options.cell_fields)
         if (carried.values.tuples() != cells)
-            return wrong(fmt::format("cell field '{}' has {} tuples, but the grid has {} cells", carried.name,
-                                     carried.values.tuples(), cells));
+            return invalid_argument(fmt::format("cell field '{}' has {} tuples, but the grid has {} cells",
+                                                carried.name, carried.values.tuples(), cells));
     return {};
 }
 

@@ -6,15 +6,16 @@
 #include <fmt/format.h>
 
 #include "api/attributes.hpp"
+#include "core/errors.hpp"
 
 namespace isotet::api {
 
 Result<void> check_isovalues(std::span<const double> isovalues) {
-    const auto wrong = [](std::string message) { return Error{ErrorCode::invalid_argument, std::move(message)}; };
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         if (std::isfinite(isovalues[i])) continue;
-        if (isovalues.size() == 1) return wrong(fmt::format("the isovalue is {}, but must be finite", isovalues[i]));
-        return wrong(fmt::format("isovalues[{}] is {}, but must be finite", i, isovalues[i]));
+        if (isovalues.size() == 1)
+            return invalid_argument(fmt::format("the isovalue is {}, but must be finite", isovalues[i]));
+        return invalid_argument(fmt::format("isovalues[{}] is {}, but must be finite", i, isovalues[i]));
     }
     return {};
 }

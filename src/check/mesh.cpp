@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet::checking {
@@ -31,20 +32,19 @@ std::size_t lowest_bad(std::size_t count, const Test& is_bad) {
     return lowest.load();
 }
 
-Error invalid(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
-
 } // namespace
 
 Result<Mesh> Mesh::open(const Surface& surface) {
     const Array& positions = surface.positions;
     const Array& triangles = surface.triangles;
     if (!positions.empty() && (!is_floating(positions.type()) || positions.components() != 3))
-        return invalid(fmt::format("positions are {} with {} components, but must be float32 or float64 with 3",
-                                   name_of(positions.type()), positions.components()));
+        return invalid_data(fmt::format("positions are {} with {} components, but must be float32 or float64 with 3",
+                                        name_of(positions.type()), positions.components()));
     const bool integral = !is_floating(triangles.type()) && size_of(triangles.type()) >= 4;
     if (!triangles.empty() && (!integral || triangles.components() != 3))
-        return invalid(fmt::format("triangles are {} with {} components, but must be 32- or 64-bit integers with 3",
-                                   name_of(triangles.type()), triangles.components()));
+        return invalid_data(
+            fmt::format("triangles are {} with {} components, but must be 32- or 64-bit integers with 3",
+                        name_of(triangles.type()), triangles.components()));
     Mesh mesh;
     mesh.positions_ = core::PointReader(positions);
     mesh.indices_ = core::IndexColumn(triangles);
@@ -54,15 +54,15 @@ Result<Mesh> Mesh::open(const Surface& surface) {
 
     const auto is_far = [&](std::size_t i) { return mesh.indices_[i] >= mesh.vertices_; };
     if (const std::size_t i = lowest_bad(3 * mesh.triangles_, is_far); i != nothing)
-        return invalid(fmt::format("triangles[{}] has vertex {}, but the surface has {} vertices", i / 3,
-                                   static_cast<std::int64_t>(mesh.indices_[i]), mesh.vertices_));
+        return invalid_data(fmt::format("triangles[{}] has vertex {}, but the surface has {} vertices", i / 3,
+                                        static_cast<std::int64_t>(mesh.indices_[i]), mesh.vertices_));
     const auto is_not_finite = [&](std::size_t vertex) {
         const core::Point p = mesh.positions_[vertex];
         return !std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]);
     };
     if (const std::size_t vertex = lowest_bad(mesh.vertices_, is_not_finite); vertex != nothing) {
         const core::Point p = mesh.positions_[vertex];
-        return invalid(
+        return invalid_data(
             fmt::format("vertex {} is at ({}, {}, {}), but positions must be finite", vertex, p[0], p[1], p[2]));
     }
     return mesh;

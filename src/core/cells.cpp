@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet {
@@ -121,17 +122,16 @@ void CellReader::split(std::size_t cell, CellTets& out) const {
 }
 
 Result<CellReader> CellReader::open(const Grid& grid) {
-    const auto invalid = [](std::string message) { return Error{ErrorCode::invalid_data, std::move(message)}; };
     const auto is_index = [](const Array& array) {
         return array.type() == ScalarType::int32 || array.type() == ScalarType::uint32 ||
                array.type() == ScalarType::int64 || array.type() == ScalarType::uint64;
     };
     const Cells& cells = grid.cells;
     if (!is_floating(grid.points.type()) || grid.points.components() != 3)
-        return invalid(fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
-                                   name_of(grid.points.type()), grid.points.components()));
+        return invalid_data(fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
+                                        name_of(grid.points.type()), grid.points.components()));
     if (!is_index(cells.connectivity) || (!cells.connectivity.empty() && cells.connectivity.components() != 1))
-        return invalid(
+        return invalid_data(
             fmt::format("the connectivity is {} with {} components, but must be 32- or 64-bit integers with 1",
                         name_of(cells.connectivity.type()), cells.connectivity.components()));
     CellReader reader;
@@ -142,27 +142,27 @@ Result<CellReader> CellReader::open(const Grid& grid) {
     reader.uniform_corners_ = static_cast<std::uint64_t>(corners_of(reader.uniform_type_));
     if (!cells.types.empty()) {
         if (cells.types.type() != ScalarType::uint8 || cells.types.components() != 1)
-            return invalid(
+            return invalid_data(
                 fmt::format("the cell types are {}, but must be uint8 with 1 component", name_of(cells.types.type())));
         if (cells.offsets.empty())
-            return invalid("there are cell types but no offsets, and cells of several types need offsets");
+            return invalid_data("there are cell types but no offsets, and cells of several types need offsets");
         reader.types_ = cells.types.as<std::uint8_t>().data();
     } else if (reader.uniform_corners_ == 0) {
-        return invalid(fmt::format("all cells are of type {}, which cannot be contoured", reader.uniform_type_));
+        return invalid_data(fmt::format("all cells are of type {}, which cannot be contoured", reader.uniform_type_));
     }
     if (!cells.offsets.empty()) {
         if (!is_index(cells.offsets) || cells.offsets.components() != 1)
-            return invalid(fmt::format("the offsets are {}, but must be 32- or 64-bit integers with 1 component",
-                                       name_of(cells.offsets.type())));
+            return invalid_data(fmt::format("the offsets are {}, but must be 32- or 64-bit integers with 1 component",
+                                            name_of(cells.offsets.type())));
         if (reader.types_ && cells.offsets.tuples() != cells.types.tuples() + 1)
-            return invalid(fmt::format("there are {} offsets for {} cells, but there must be one more than cells",
-                                       cells.offsets.tuples(), cells.types.tuples()));
+            return invalid_data(fmt::format("there are {} offsets for {} cells, but there must be one more than cells",
+                                            cells.offsets.tuples(), cells.types.tuples()));
         reader.offsets_ = IndexColumn(cells.offsets);
         reader.has_offsets_ = true;
     } else if (reader.connectivity_size_ % reader.uniform_corners_ != 0) {
-        return invalid(fmt::format("the connectivity has {} entries, but must be a multiple of {} for {} cells",
-                                   reader.connectivity_size_, reader.uniform_corners_,
-                                   name_of_cell_type(reader.uniform_type_)));
+        return invalid_data(fmt::format("the connectivity has {} entries, but must be a multiple of {} for {} cells",
+                                        reader.connectivity_size_, reader.uniform_corners_,
+                                        name_of_cell_type(reader.uniform_type_)));
     }
     reader.count_ = cells.count();
     reader.only_tets_ = !reader.types_ && reader.uniform_type_ == tetrahedron;

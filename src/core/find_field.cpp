@@ -8,6 +8,7 @@
 
 #include "core/average_to_points.hpp"
 #include "core/cells.hpp"
+#include "core/errors.hpp"
 #include "core/guard.hpp"
 #include "core/parallel.hpp"
 #include "core/scalar_of.hpp"
@@ -17,8 +18,6 @@ namespace isotet {
 namespace {
 
 using Prefer = FindFieldOptions::Prefer;
-
-Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 /// Names of point and cell fields, each once, in the order of the grid.
 std::vector<std::string> names_of(const Grid& grid) {
@@ -43,21 +42,23 @@ const Field* find(const std::vector<Field>& fields, std::string_view name) {
 Result<core::Scalar> choose_scalar(const Field& field, const std::optional<std::string>& component) {
     const std::size_t components = field.values.components();
     if (!component && components != 1)
-        return invalid(
+        return invalid_argument(
             fmt::format("the field '{}' has {} components, but one is needed: ask for '{}:x', '{}:0' or '{}:mag'",
                         field.name, components, field.name, field.name, field.name));
     if (!component) return core::Scalar{};
     const auto scalar = core::parse_scalar(*component);
     if (!scalar || scalar->component >= components)
-        return invalid(fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)",
-                                   *component, field.name, components));
+        return invalid_argument(
+            fmt::format("component '{}' of the field '{}' is asked for, but it has {} (counted from 0)", *component,
+                        field.name, components));
     return *scalar;
 }
 
 Result<void> check_length(const Field& field, std::string_view what, std::size_t expected) {
     if (field.values.tuples() == expected && field.values.components() > 0) return {};
-    return invalid(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s", what,
-                               field.name, field.values.tuples(), field.values.components(), expected, what));
+    return invalid_argument(fmt::format("the {} field '{}' has {} tuples of {} components, but the grid has {} {}s",
+                                        what, field.name, field.values.tuples(), field.values.components(), expected,
+                                        what));
 }
 
 Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar) {
@@ -81,15 +82,15 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer 
     const std::vector<std::string> names = names_of(grid);
     if (name.empty()) {
         if (names.size() != 1)
-            return invalid(names.empty() ? "no field is named, and the grid has none"
-                                         : fmt::format("no field is named, but the grid has {}: {}", names.size(),
-                                                       in_quotes(names)));
+            return invalid_argument(names.empty() ? "no field is named, and the grid has none"
+                                                  : fmt::format("no field is named, but the grid has {}: {}",
+                                                                names.size(), in_quotes(names)));
         name = names[0];
     }
     const auto match = match_field_name(name, names);
     if (!match && (name == "x" || name == "y" || name == "z")) return coordinate(grid, name);
     if (!match)
-        return invalid(
+        return invalid_argument(
             names.empty()
                 ? fmt::format("the field is '{}', but the grid has none, only the coordinates x, y, z", name)
                 : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));

@@ -2,6 +2,7 @@
 // The stages of packing, in the order in which they run, and what they hand on. docs/inside/packing.md draws them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "core/tet_order.hpp"
 
 namespace isotet::core {
+
+inline constexpr std::size_t clusters_a_task = 64; // of the stages that run over clusters
 
 /// A point by the cluster that owns it and its place among that cluster's own points. Ordered as packed points are.
 struct PointRef {

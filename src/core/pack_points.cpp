@@ -10,8 +10,6 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t clusters_a_task = 64;
-
 /// The lowest-numbered cluster that holds each point, by rank.
 Buffer<std::uint32_t> find_owners(const Draft& draft) {
     Buffer<std::uint32_t> owners(draft.point_of.size());

@@ -14,7 +14,6 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t clusters_a_task = 64;
 constexpr std::size_t words_a_row = max_cluster_points / 64;
 
 /// A set of local points.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "render/send.hpp"
 #include "render_shaders.hpp"
 
@@ -16,23 +17,22 @@ namespace {
 constexpr std::uint32_t corners_a_line = 6;
 constexpr std::size_t most_lines = std::numeric_limits<std::uint32_t>::max() / corners_a_line;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 } // namespace
 
 Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines& pipelines, const Space& space,
                                 const DrawnLines& drawn, std::uint32_t samples) {
     if (!(drawn.width > 0 && std::isfinite(drawn.width)))
-        return wrong(fmt::format("lines {} pixels wide, but the width must be positive", drawn.width));
+        return invalid_argument(fmt::format("lines {} pixels wide, but the width must be positive", drawn.width));
     if (drawn.lines.size() > most_lines)
-        return wrong(fmt::format("{} lines, but {} can be drawn at most", drawn.lines.size(), most_lines));
+        return invalid_argument(fmt::format("{} lines, but {} can be drawn at most", drawn.lines.size(), most_lines));
     core::Buffer<float> ends(drawn.lines.size() * 6);
     for (std::size_t i = 0; i < drawn.lines.size(); ++i) {
         for (std::size_t end = 0; end < 2; ++end) {
             const std::array<double, 3> place = space.place(drawn.lines[i][end]);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 ends[6 * i + 3 * end + axis] = static_cast<float>(place[axis]);
-                if (!std::isfinite(place[axis])) return wrong(fmt::format("line {} has an end that is not finite", i));
+                if (!std::isfinite(place[axis]))
+                    return invalid_argument(fmt::format("line {} has an end that is not finite", i));
             }
         }
     }

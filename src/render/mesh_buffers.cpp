@@ -11,6 +11,7 @@
 #include <isotet/camera.hpp>
 
 #include "core/buffer.hpp"
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "render/send.hpp"
 
@@ -20,8 +21,6 @@ namespace {
 
 constexpr std::size_t grain = std::size_t{1} << 16;
 constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max() / 3; // three corners each have a 32-bit number
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 /// The smallest number of which `is_wrong` holds; `count` when there is none.
 template <class Test>
@@ -39,14 +38,16 @@ std::size_t first_of(std::size_t count, const Test& is_wrong) {
 
 Result<void> check_shapes(const Surface& surface) {
     if (surface.positions.components() != 3 || surface.triangles.components() != 3) {
-        return wrong(fmt::format("a surface whose positions have {} components and whose triangles {}, but both need 3",
-                                 surface.positions.components(), surface.triangles.components()));
+        return invalid_argument(
+            fmt::format("a surface whose positions have {} components and whose triangles {}, but both need 3",
+                        surface.positions.components(), surface.triangles.components()));
     }
     if (!is_floating(surface.positions.type()) || is_floating(surface.triangles.type()))
-        return wrong("a surface needs positions of float32 or float64, and triangles of whole numbers");
+        return invalid_argument("a surface needs positions of float32 or float64, and triangles of whole numbers");
     if (surface.vertices() > most || surface.triangle_count() > most) {
-        return wrong(fmt::format("a surface of {} vertices and {} triangles, but of each {} can be drawn at most",
-                                 surface.vertices(), surface.triangle_count(), most));
+        return invalid_argument(
+            fmt::format("a surface of {} vertices and {} triangles, but of each {} can be drawn at most",
+                        surface.vertices(), surface.triangle_count(), most));
     }
     return {};
 }

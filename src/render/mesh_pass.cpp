@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "render_shaders.hpp"
 #include "vulkan/engine/surface_buffers.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 using vulkan::address_of;
 using vulkan::Buffer;
 using vulkan::draws_from;
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 bool by_corner(std::uint32_t coloring) { return coloring == layout::by_triangle || coloring == layout::by_grid_tet; }
 
@@ -42,17 +41,17 @@ Result<void> take_mesh(MeshDraw& draw, const MeshBuffers& mesh, const FieldBuffe
     if (!colors) return {};
     const bool of_triangles = colors->coloring == layout::by_triangle;
     if (colors->coloring != layout::by_vertex && !of_triangles)
-        return wrong("colours of a grid were given to a mesh that was uploaded");
+        return invalid_argument("colours of a grid were given to a mesh that was uploaded");
     const std::uint64_t needed = of_triangles ? mesh.triangle_count : mesh.vertices;
     if (colors->count == needed) return {};
-    return wrong(fmt::format("{} values shall colour a mesh with {} {}", colors->count, needed,
-                             of_triangles ? "triangles" : "vertices"));
+    return invalid_argument(fmt::format("{} values shall colour a mesh with {} {}", colors->count, needed,
+                                        of_triangles ? "triangles" : "vertices"));
 }
 
 Result<void> take_surface(MeshDraw& draw, const vulkan::SurfaceBuffers& surface, const FieldBuffer* colors) {
     if (surface.triangle_count() > std::numeric_limits<std::uint32_t>::max() / 3)
-        return wrong(fmt::format("a surface of {} triangles, but their corners must have 32-bit numbers",
-                                 surface.triangle_count()));
+        return invalid_argument(fmt::format("a surface of {} triangles, but their corners must have 32-bit numbers",
+                                            surface.triangle_count()));
     use(draw, draw.mesh.positions, surface.positions);
     use(draw, draw.mesh.triangles, surface.triangles);
     if (surface.parts().normals == Normals::gradient) use(draw, draw.mesh.normals, surface.normals);
@@ -64,15 +63,16 @@ Result<void> take_surface(MeshDraw& draw, const vulkan::SurfaceBuffers& surface,
     if (!colors) return {};
     if (colors->coloring == layout::by_grid_point) {
         if (!surface.parts().ends)
-            return wrong("a surface that is coloured by points of the grid must be extracted with edge_ends");
+            return invalid_argument(
+                "a surface that is coloured by points of the grid must be extracted with edge_ends");
         use(draw, draw.mesh.ends, surface.ends);
         use(draw, draw.mesh.weights, surface.weights);
         return {};
     }
     if (colors->coloring != layout::by_grid_tet)
-        return wrong("colours of a mesh were given to a surface that was extracted on the device");
+        return invalid_argument("colours of a mesh were given to a surface that was extracted on the device");
     if (!surface.parts().sources)
-        return wrong("a surface that is coloured by cells of the grid must be extracted with source_cells");
+        return invalid_argument("a surface that is coloured by cells of the grid must be extracted with source_cells");
     use(draw, draw.mesh.sources, surface.sources);
     return {};
 }
@@ -91,7 +91,7 @@ void take_colors(MeshDraw& draw, const FieldBuffer& colors) {
 Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
                                 const MeshBuffers* mesh, const FieldBuffer* colors) {
     if (!(drawn.opacity >= 0 && drawn.opacity <= 1))
-        return wrong(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
+        return invalid_argument(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
     MeshDraw draw;
     place(draw, space, mesh ? mesh->origin : drawn.surface->origin());
     const Result<void> taken =

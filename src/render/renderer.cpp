@@ -8,6 +8,7 @@
 #include <isotet/draw_tets.hpp>
 #include <isotet/render.hpp>
 
+#include "core/errors.hpp"
 #include "core/guard.hpp"
 #include "core/packed.hpp"
 #include "render/field_buffer.hpp"
@@ -21,33 +22,34 @@ namespace {
 
 constexpr std::uint32_t most_pixels_an_axis = 32768, most_samples = 8;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 Result<void> check_camera(const Camera& camera) {
     const auto is_unit = [](const std::array<double, 3>& v) { return std::abs(render::dot(v, v) - 1) < 1e-6; };
     if (!is_unit(camera.direction) || !is_unit(camera.up) || std::abs(render::dot(camera.direction, camera.up)) > 1e-6)
-        return wrong("a camera whose direction and up are not unit vectors at right angles");
+        return invalid_argument("a camera whose direction and up are not unit vectors at right angles");
     if (!std::ranges::all_of(camera.target, [](double x) { return std::isfinite(x); }))
-        return wrong("a camera whose target is not finite");
+        return invalid_argument("a camera whose target is not finite");
     const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
     if (camera.projection == Projection::parallel) {
         if (positive(camera.height)) return {};
-        return wrong(fmt::format("a camera that shows a height of {}, but it must be positive", camera.height));
+        return invalid_argument(
+            fmt::format("a camera that shows a height of {}, but it must be positive", camera.height));
     }
     if (!positive(camera.distance))
-        return wrong(fmt::format("a camera at a distance of {}, but it must be positive", camera.distance));
+        return invalid_argument(fmt::format("a camera at a distance of {}, but it must be positive", camera.distance));
     if (camera.angle >= 0.1 && camera.angle <= 170) return {};
-    return wrong(fmt::format("a camera with an angle of {} degrees, but it must be from 0.1 to 170", camera.angle));
+    return invalid_argument(
+        fmt::format("a camera with an angle of {} degrees, but it must be from 0.1 to 170", camera.angle));
 }
 
 Result<void> check_options(const PictureOptions& options) {
     for (const std::uint32_t pixels : {options.width, options.height}) {
         if (pixels >= 1 && pixels <= most_pixels_an_axis) continue;
-        return wrong(fmt::format("a picture of {} x {} pixels, but each must be from 1 to {}", options.width,
-                                 options.height, most_pixels_an_axis));
+        return invalid_argument(fmt::format("a picture of {} x {} pixels, but each must be from 1 to {}", options.width,
+                                            options.height, most_pixels_an_axis));
     }
     if (options.samples < 1 || options.samples > most_samples)
-        return wrong(fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, most_samples));
+        return invalid_argument(
+            fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, most_samples));
     return check_camera(options.camera);
 }
 
@@ -100,10 +102,10 @@ Result<DeviceColors> DeviceColors::of_grid(const Device& device, const PackedGri
         const bool of_points = association == Association::point;
         const std::uint64_t needed = of_points ? data.user_points : data.user_cells;
         if (values.tuples() != needed)
-            return wrong(fmt::format("{} values shall colour a grid of {} {}", values.tuples(), needed,
-                                     of_points ? "points" : "cells"));
+            return invalid_argument(fmt::format("{} values shall colour a grid of {} {}", values.tuples(), needed,
+                                                of_points ? "points" : "cells"));
         if (!of_points && !data.has_cell_ids())
-            return wrong("a grid that is coloured by its cells must be packed with source_cells");
+            return invalid_argument("a grid that is coloured by its cells must be packed with source_cells");
         const std::uint64_t count = of_points ? data.points() : data.cell_ids.size() + data.wide_cell_ids.size();
         const auto number = [&](std::uint64_t i) { return of_points ? data.user_point(i) : data.user_cell(i); };
         const std::uint32_t coloring = of_points ? render::layout::by_grid_point : render::layout::by_grid_tet;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "core/normal_code.hpp"
 #include "core/parallel.hpp"
@@ -22,8 +23,6 @@ using vulkan::Buffer;
 using vulkan::Memory;
 using vulkan::Where;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 bool has_textures(DrawMethod method) { return method == DrawMethod::textures || method == DrawMethod::mesh; }
 
 Result<void> check_options(const vulkan::Context& context, const core::Packed& packed, DrawMethod method,
@@ -34,9 +33,10 @@ Result<void> check_options(const vulkan::Context& context, const core::Packed& p
                                  context.info().name)};
     if (!options.gradients) return {};
     if (!has_textures(method))
-        return wrong(fmt::format("the method {} was asked for gradients, but only textures and mesh keep them",
-                                 name_of(method)));
-    if (packed.gradients.empty()) return wrong("shading by gradients needs a grid that was packed with gradients");
+        return invalid_argument(fmt::format(
+            "the method {} was asked for gradients, but only textures and mesh keep them", name_of(method)));
+    if (packed.gradients.empty())
+        return invalid_argument("shading by gradients needs a grid that was packed with gradients");
     return {};
 }
 

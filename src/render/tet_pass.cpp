@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "render/send.hpp"
 #include "render_shaders.hpp"
 
@@ -11,8 +12,6 @@ namespace isotet::render {
 namespace {
 
 constexpr std::uint32_t corners_a_quad = 6, vertices_a_quad = 4;
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 } // namespace
 
@@ -27,9 +26,9 @@ Result<vulkan::Buffer> make_quad_corners(vulkan::Context& context) {
 Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
                            const ChosenTets& tets, const vulkan::Buffer& quad_corners, std::vector<TetDraw>& draws) {
     if (!(drawn.opacity >= 0 && drawn.opacity <= 1))
-        return wrong(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
+        return invalid_argument(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
     if (drawn.colors)
-        return wrong("tets that are cut while they are drawn have one colour: a field cannot colour them");
+        return invalid_argument("tets that are cut while they are drawn have one colour: a field cannot colour them");
     TetDraw draw;
     draw.translucent = drawn.opacity < 1;
     const bool by_groups = tets.store().method == DrawMethod::mesh;

@@ -12,7 +12,7 @@ namespace isotet::cpu::brute {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 14;
+constexpr std::size_t side_grain = 1 << 14;
 
 /// The value that the field's type has nearest to the isovalue, where that is another one.
 std::optional<double> nearest_value(const Array& values, double isovalue) {
@@ -84,7 +84,7 @@ void watch_field(const Array& values, const StoredField& field, Sides& sides) {
     if (field.storage.unchanged && field.storage.scale == 1) return; // whatever the used points are
     const std::size_t components = values.components();
     values.visit([&](auto typed) {
-        core::parallel_each(values.tuples(), grain, [&](std::size_t point) {
+        core::parallel_each(values.tuples(), side_grain, [&](std::size_t point) {
             bool deciding = false;
             for (std::size_t k = 0; k < components; ++k) {
                 const auto value = static_cast<double>(typed[point * components + k]);
@@ -101,7 +101,7 @@ void watch_field(const Array& values, const StoredField& field, Sides& sides) {
 template <class F>
 void add_flags(const Array& points, Sides& sides, const F& f) {
     points.visit([&](auto coordinates) {
-        core::parallel_each(points.tuples(), grain, [&](std::size_t point) {
+        core::parallel_each(points.tuples(), side_grain, [&](std::size_t point) {
             const auto at = [&](std::size_t axis) { return static_cast<double>(coordinates[3 * point + axis]); };
             sides.flags()[point] |= f(core::Point{at(0), at(1), at(2)});
         });
@@ -117,7 +117,7 @@ SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, d
     std::atomic<bool> tied{false}, near{false};
     values.visit([&]<class T>(std::span<const T> typed) {
         const SideFinder<Real, T> finder(survey.field, stored, nearest_value(values, isovalue), ties, watch);
-        core::parallel_ranges(values.tuples(), grain, [&](std::size_t begin, std::size_t end) {
+        core::parallel_ranges(values.tuples(), side_grain, [&](std::size_t begin, std::size_t end) {
             const SidesFound found = finder.find(typed.data() + begin, end - begin, sides.flags().data() + begin);
             if (found.tied) tied.store(true, std::memory_order_relaxed);
             if (found.near) near.store(true, std::memory_order_relaxed);
@@ -154,7 +154,7 @@ void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double
     std::atomic<std::uint64_t> tied{0}, exact{0};
     std::atomic<bool> near{false};
     values.visit([&](auto typed) {
-        core::parallel_each(values.tuples(), grain, [&](std::size_t point) {
+        core::parallel_each(values.tuples(), side_grain, [&](std::size_t point) {
             if (sides.is_unseen(point)) return;
             if (core::store_value<Real>(static_cast<double>(typed[point]), survey.field.storage) == stored) {
                 tied.fetch_add(1, std::memory_order_relaxed);

@@ -15,7 +15,7 @@ namespace isotet::cpu::brute {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 15;
+constexpr std::size_t survey_grain = 1 << 15;
 
 /// Of all values of the points [begin, end) that count.
 template <class T>
@@ -44,7 +44,7 @@ core::ValueSummary summarize(std::span<const T> values, std::size_t components, 
 core::ValueSummary summarize(const Array& values, const Sides* seen, double offset) {
     return values.visit([&]<class T>(std::span<const T> typed) {
         return tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, values.tuples(), grain), core::ValueSummary{},
+            tbb::blocked_range<std::size_t>(0, values.tuples(), survey_grain), core::ValueSummary{},
             [&](const tbb::blocked_range<std::size_t>& range, core::ValueSummary summary) {
                 summary.combine(summarize(typed, values.components(), seen, range.begin(), range.end(), offset));
                 return summary;
@@ -61,7 +61,7 @@ template <class Real>
 std::uint64_t count_flushed(const Array& values, const Sides* seen, const core::Storage& storage) {
     return values.visit([&](auto typed) {
         return tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, values.tuples(), grain), std::uint64_t{0},
+            tbb::blocked_range<std::size_t>(0, values.tuples(), survey_grain), std::uint64_t{0},
             [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t count) {
                 for (std::size_t point = range.begin(); point < range.end(); ++point) {
                     const auto value = static_cast<double>(typed[point]);
@@ -104,7 +104,7 @@ bool all_are_sound(const T* coordinates, std::size_t count) {
 Bounds bounds_of(const Array& array, const Sides* seen, bool wanted) {
     const core::PointReader points(array);
     return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, array.tuples(), grain), Bounds{},
+        tbb::blocked_range<std::size_t>(0, array.tuples(), survey_grain), Bounds{},
         [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
             const bool sound = array.type() == ScalarType::float32
                                    ? all_are_sound(array.as<float>().data() + 3 * range.begin(), 3 * range.size())

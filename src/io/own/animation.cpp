@@ -9,6 +9,7 @@
 
 #include <isotet/animation.hpp>
 
+#include "core/errors.hpp"
 #include "io/own/output_file.hpp"
 
 namespace isotet {
@@ -17,8 +18,6 @@ namespace {
 
 constexpr std::uint32_t largest_side = WEBP_MAX_DIMENSION;
 constexpr float quality = 90; // of 100
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 struct DeleteEncoder {
     void operator()(WebPAnimEncoder* encoder) const noexcept { WebPAnimEncoderDelete(encoder); }
@@ -76,9 +75,9 @@ Animation::~Animation() = default;
 
 Result<Animation> Animation::begin(const std::string& path, double pictures_per_second) {
     if (!path.ends_with(".webp"))
-        return wrong(fmt::format("{} does not end in .webp, but animations are written as WebP", path));
+        return invalid_argument(fmt::format("{} does not end in .webp, but animations are written as WebP", path));
     if (!(pictures_per_second > 0 && pictures_per_second <= 100))
-        return wrong(
+        return invalid_argument(
             fmt::format("{} pictures a second, but they must be above 0 and at most 100", pictures_per_second));
     auto encoder = std::make_unique<Encoder>();
     encoder->path = path;
@@ -90,12 +89,12 @@ Result<void> Animation::add(const Picture& picture) {
     Encoder& to = *encoder_;
     if (picture.width == 0 || picture.height == 0 || picture.width > largest_side || picture.height > largest_side ||
         picture.pixels.size() != std::size_t{picture.width} * picture.height)
-        return wrong(fmt::format(
+        return invalid_argument(fmt::format(
             "a picture of {} x {} with {} pixels, but pictures of an animation have 1 to {} in a row and a column",
             picture.width, picture.height, picture.pixels.size(), largest_side));
     if (to.count > 0 && (picture.width != to.width || picture.height != to.height))
-        return wrong(fmt::format("a picture of {} x {}, but those before it are {} x {}", picture.width, picture.height,
-                                 to.width, to.height));
+        return invalid_argument(fmt::format("a picture of {} x {}, but those before it are {} x {}", picture.width,
+                                            picture.height, to.width, to.height));
     const Error no_memory{ErrorCode::out_of_memory,
                           fmt::format("no memory left for picture {} of {}", to.count + 1, to.path)};
     if (!to.pictures) {
@@ -120,7 +119,8 @@ Result<void> Animation::add(const Picture& picture) {
 
 Result<std::uint64_t> Animation::finish() {
     Encoder& from = *encoder_;
-    if (!from.pictures) return wrong(fmt::format("{} has no picture, but an animation has one at least", from.path));
+    if (!from.pictures)
+        return invalid_argument(fmt::format("{} has no picture, but an animation has one at least", from.path));
     if (!WebPAnimEncoderAdd(from.pictures.get(), nullptr, from.milliseconds(), nullptr))
         return from.failed(); // when the last one ends
     WebPData data;

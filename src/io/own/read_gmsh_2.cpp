@@ -22,7 +22,7 @@ bool skip_parameters(Source& source) {
 }
 
 template <class Source>
-Result<void> read_nodes(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
+Result<void> read_nodes_2(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
     const bool parametric = section.name == "ParametricNodes";
     std::int64_t count = 0;
     if (!source.count_line(count)) return broken(section, "has no number of nodes, at " + source.where());
@@ -63,7 +63,7 @@ bool read_block_header(Source& source, ElementBlock& block) {
 }
 
 template <class Source>
-Result<void> read_elements(const Section& section, Source& source, const Wants& wants, Mesh& mesh, Pace& pace) {
+Result<void> read_elements_2(const Section& section, Source& source, const Wants& wants, Mesh& mesh, Pace& pace) {
     std::int64_t count = 0;
     if (!source.count_line(count)) return broken(section, "has no number of elements, at " + source.where());
     const std::uint64_t most = source.records_left(0, 2, 0);
@@ -137,11 +137,11 @@ Result<Mesh> read_mesh_2(const File& file, const Wants& wants, Pace& pace) {
     if (!elements) return elements.error();
 
     Mesh mesh;
-    auto read = with_source(file, **nodes, [&](auto& source) { return read_nodes(**nodes, source, mesh, pace); });
+    auto read = with_source(file, **nodes, [&](auto& source) { return read_nodes_2(**nodes, source, mesh, pace); });
     if (!read) return read.error();
     mesh.cells = CellList(mesh.nodes.size());
     read = with_source(file, **elements,
-                       [&](auto& source) { return read_elements(**elements, source, wants, mesh, pace); });
+                       [&](auto& source) { return read_elements_2(**elements, source, wants, mesh, pace); });
     if (!read) return read.error();
     return mesh;
 }

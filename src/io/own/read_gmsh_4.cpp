@@ -122,7 +122,7 @@ Result<Block> read_block(const Section& section, Source& source, const Counts& c
 }
 
 template <class Source>
-Result<void> read_nodes(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
+Result<void> read_nodes_4(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
     const auto counts = read_counts(section, source, "node", 1, 3);
     if (!counts) return counts.error();
     mesh.points.reserve(3 * static_cast<std::size_t>(counts->total));
@@ -158,8 +158,8 @@ Result<void> read_nodes(const Section& section, Source& source, Mesh& mesh, Pace
 }
 
 template <class Source>
-Result<void> read_elements(const Section& section, Source& source, const Wants& wants, const PhysicalGroups& groups,
-                           Mesh& mesh, Pace& pace) {
+Result<void> read_elements_4(const Section& section, Source& source, const Wants& wants, const PhysicalGroups& groups,
+                             Mesh& mesh, Pace& pace) {
     const auto counts = read_counts(section, source, "element", 2, 0);
     if (!counts) return counts.error();
     mesh.cells.reserve(4 * static_cast<std::uint64_t>(counts->total));
@@ -223,11 +223,11 @@ Result<Mesh> read_mesh_4(const File& file, const Wants& wants, Pace& pace) {
     if (!groups) return groups.error();
 
     Mesh mesh;
-    auto read = with_source(file, **nodes, [&](auto& source) { return read_nodes(**nodes, source, mesh, pace); });
+    auto read = with_source(file, **nodes, [&](auto& source) { return read_nodes_4(**nodes, source, mesh, pace); });
     if (!read) return read.error();
     mesh.cells = CellList(mesh.nodes.size());
     read = with_source(file, **elements,
-                       [&](auto& source) { return read_elements(**elements, source, wants, *groups, mesh, pace); });
+                       [&](auto& source) { return read_elements_4(**elements, source, wants, *groups, mesh, pace); });
     if (!read) return read.error();
     return mesh;
 }

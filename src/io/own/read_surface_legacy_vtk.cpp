@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/surface_parts.hpp"
 #include "io/own/surface_scalars.hpp"
@@ -18,8 +19,6 @@ namespace {
 
 constexpr std::uint64_t most_components = 1U << 20U;
 constexpr int first_version_with_offsets = 5;
-
-Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
 
 struct TypeName {
     std::string_view name;
@@ -80,7 +79,7 @@ public:
             if (keyword.empty()) break;
             if (auto section = read_section(keyword); !section) return section.error();
         }
-        if (!has_points_) return wrong("the file has no POINTS");
+        if (!has_points_) return invalid_data("the file has no POINTS");
         return finish();
     }
 
@@ -89,16 +88,17 @@ private:
 
     Result<void> read_header() {
         constexpr std::string_view start = "# vtk DataFile Version ";
-        if (!content_.starts_with(start)) return wrong("the file does not start with \"# vtk DataFile Version\"");
+        if (!content_.starts_with(start))
+            return invalid_data("the file does not start with \"# vtk DataFile Version\"");
         scanner_.seek(start.size());
         const auto version = scanner_.word_of_line();
         if (!parse_number(version.substr(0, version.find('.')), version_))
-            return wrong(fmt::format("the version {} is not a number", in_quotes(version)));
+            return invalid_data(fmt::format("the version {} is not a number", in_quotes(version)));
         scanner_.next_line(); // the rest of the version
         scanner_.next_line(); // the title
         const auto form = lower(scanner_.word());
         if (form != "ascii" && form != "binary")
-            return wrong(fmt::format("the third line is {}, not ASCII or BINARY", in_quotes(form)));
+            return invalid_data(fmt::format("the third line is {}, not ASCII or BINARY", in_quotes(form)));
         binary_ = form == "binary";
         return {};
     }
@@ -119,14 +119,14 @@ private:
     Result<void> read_dataset() {
         const auto kind = lower(scanner_.word());
         if (kind != "polydata")
-            return wrong(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
+            return invalid_data(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
         is_polydata_ = true;
         return {};
     }
 
     Result<std::uint64_t> read_count(std::string_view what) {
         std::uint64_t count = 0;
-        if (!scanner_.number(count)) return wrong(fmt::format("{}: {} is not a count", scanner_.where(), what));
+        if (!scanner_.number(count)) return invalid_data(fmt::format("{}: {} is not a count", scanner_.where(), what));
         return count;
     }
 
@@ -134,20 +134,21 @@ private:
         const auto name = lower(scanner_.word());
         const auto* known = std::ranges::find(type_names, name, &TypeName::name);
         if (known == type_names.end())
-            return wrong(fmt::format("before {}: {} is not a type that is read", scanner_.where(), in_quotes(name)));
+            return invalid_data(
+                fmt::format("before {}: {} is not a type that is read", scanner_.where(), in_quotes(name)));
         return known->type;
     }
 
     /// Scalars from the next line on, in binary files big endian.
     Result<Array> read_scalars(ScalarType type, std::uint64_t tuples, std::uint64_t components, std::string_view what) {
         if (components == 0 || components > most_components)
-            return wrong(fmt::format("{} has {} components, not 1 to {}", what, components, most_components));
+            return invalid_data(fmt::format("{} has {} components, not 1 to {}", what, components, most_components));
         if (!binary_) return scan_scalars(scanner_, type, tuples, components, what, progress_);
         scanner_.next_line();
         const auto bytes = bytes_needed(type, tuples, components, scanner_.left());
         if (!bytes) {
-            return wrong(fmt::format("{}: {} x {} {} were announced, but only {} bytes are left", what, tuples,
-                                     components, name_of(type), scanner_.left()));
+            return invalid_data(fmt::format("{}: {} x {} {} were announced, but only {} bytes are left", what, tuples,
+                                            components, name_of(type), scanner_.left()));
         }
         auto array = decode_scalars(type, scanner_.rest().substr(0, *bytes), static_cast<std::size_t>(components),
                                     std::endian::big);
@@ -156,8 +157,8 @@ private:
     }
 
     Result<void> read_points() {
-        if (!is_polydata_) return wrong("POINTS before DATASET POLYDATA");
-        if (has_points_) return wrong(fmt::format("{}: POINTS occurs twice", scanner_.where()));
+        if (!is_polydata_) return invalid_data("POINTS before DATASET POLYDATA");
+        if (has_points_) return invalid_data(fmt::format("{}: POINTS occurs twice", scanner_.where()));
         const auto count = read_count("the number of points");
         if (!count) return count.error();
         const auto type = read_type();
@@ -179,8 +180,8 @@ private:
     };
 
     Result<void> read_cells(CellList& cells, std::string_view keyword) {
-        if (!is_polydata_) return wrong(fmt::format("{} before DATASET POLYDATA", keyword));
-        if (!cells.ends.empty()) return wrong(fmt::format("{}: {} occurs twice", scanner_.where(), keyword));
+        if (!is_polydata_) return invalid_data(fmt::format("{} before DATASET POLYDATA", keyword));
+        if (!cells.ends.empty()) return invalid_data(fmt::format("{}: {} occurs twice", scanner_.where(), keyword));
         const auto first = read_count("the number of cells"), second = read_count("the size of the cells");
         if (!first) return first.error();
         if (!second) return second.error();
@@ -196,7 +197,7 @@ private:
         std::size_t at = 0;
         for (std::uint64_t i = 0; i < count; ++i) {
             if (at >= numbers.size() || numbers[at] > numbers.size() - at - 1) {
-                return wrong(
+                return invalid_data(
                     fmt::format("{}: cell {} of {} does not fit into the {} numbers", keyword, i, count, size));
             }
             const auto corners = std::span(numbers).subspan(at + 1, static_cast<std::size_t>(numbers[at]));
@@ -215,11 +216,12 @@ private:
         for (std::size_t i = 0; i < 2; ++i) {
             if (count == 0) return {};
             if (const auto word = lower(scanner_.word()); word != names[i]) {
-                return wrong(fmt::format("{}: {} where {} was expected", keyword, in_quotes(word), names[i]));
+                return invalid_data(fmt::format("{}: {} where {} was expected", keyword, in_quotes(word), names[i]));
             }
             const auto type = read_type();
             if (!type) return type.error();
-            if (is_floating(*type)) return wrong(fmt::format("{}: {} of type {}", keyword, names[i], name_of(*type)));
+            if (is_floating(*type))
+                return invalid_data(fmt::format("{}: {} of type {}", keyword, names[i], name_of(*type)));
             const auto values = read_scalars(*type, counts[i], 1, keyword);
             if (!values) return values.error();
             numbers[i] = as_indices(*values);
@@ -227,12 +229,12 @@ private:
         const auto& offsets = numbers[0];
         for (std::size_t i = 0; i < offsets.size(); ++i) {
             if (offsets[i] > size || offsets[i] < (i == 0 ? 0 : offsets[i - 1])) {
-                return wrong(fmt::format("{}: offsets[{}] is {}, outside 0 to {} or lower than before", keyword, i,
-                                         static_cast<std::int64_t>(offsets[i]), size));
+                return invalid_data(fmt::format("{}: offsets[{}] is {}, outside 0 to {} or lower than before", keyword,
+                                                i, static_cast<std::int64_t>(offsets[i]), size));
             }
         }
         if (offsets.front() != 0)
-            return wrong(fmt::format("{}: the first offset is {}, not 0", keyword, offsets.front()));
+            return invalid_data(fmt::format("{}: the first offset is {}, not 0", keyword, offsets.front()));
         cells.corners = std::move(numbers[1]);
         cells.ends.assign(offsets.begin() + 1, offsets.end());
         return {};
@@ -256,7 +258,7 @@ private:
     Result<void> read_attribute(std::string_view keyword) {
         if (keyword == "field") return read_field();
         if (data_ == Data::none)
-            return wrong(
+            return invalid_data(
                 fmt::format("before {}: {} is not a section of polydata", scanner_.where(), in_quotes(keyword)));
         if (keyword == "scalars") return read_scalar_attribute();
         if (keyword == "lookup_table") return read_lookup_table();
@@ -267,7 +269,7 @@ private:
         if (keyword == "global_ids" || keyword == "pedigree_ids" || keyword == "edge_flags")
             return read_named(1, false);
         if (keyword == "texture_coordinates") return read_texture_coordinates();
-        return wrong(
+        return invalid_data(
             fmt::format("before {}: {} is not an attribute that is read", scanner_.where(), in_quotes(keyword)));
     }
 
@@ -292,7 +294,7 @@ private:
         if (!type) return type.error();
         std::uint64_t components = 1;
         if (!scanner_.at_line_end() && !scanner_.number_of_line(components))
-            return wrong(fmt::format("{}: not a number of components", scanner_.where()));
+            return invalid_data(fmt::format("{}: not a number of components", scanner_.where()));
         const auto before = scanner_.position();
         if (lower(scanner_.word()) == "lookup_table") scanner_.word_of_line(); // its name; it is optional
         else scanner_.seek(before);
@@ -347,7 +349,7 @@ private:
                 if (auto skipped = skip_metadata(); !skipped) return skipped;
                 name = scanner_.word();
             }
-            if (name.empty()) return wrong(fmt::format("the file ends before array {} of {}", i, *count));
+            if (name.empty()) return invalid_data(fmt::format("the file ends before array {} of {}", i, *count));
             if (name == "NULL_ARRAY") continue;
             const auto components = read_count("the number of components"), tuples = read_count("the number of tuples");
             if (!components) return components.error();
@@ -378,9 +380,9 @@ private:
         scanner_.word();
         scanner_.next_line();
         if (components == 0 || tuples > scanner_.left() / components)
-            return wrong(fmt::format("{} x {} strings do not fit into the file", tuples, components));
+            return invalid_data(fmt::format("{} x {} strings do not fit into the file", tuples, components));
         for (std::uint64_t i = 0; i < tuples * components; ++i) {
-            if (scanner_.left() == 0) return wrong("the file ends inside an array of strings");
+            if (scanner_.left() == 0) return invalid_data("the file ends inside an array of strings");
             if (!binary_) {
                 scanner_.next_line();
                 continue;
@@ -389,10 +391,10 @@ private:
             const auto first = static_cast<unsigned char>(rest[0]);
             const std::size_t length_bytes = std::size_t{1} << (3U - (first >> 6U));
             std::uint64_t length = first & 0x3FU;
-            if (rest.size() < length_bytes) return wrong("the file ends inside an array of strings");
+            if (rest.size() < length_bytes) return invalid_data("the file ends inside an array of strings");
             for (std::size_t k = 1; k < length_bytes; ++k)
                 length = (length << 8U) | static_cast<unsigned char>(rest[k]);
-            if (length > rest.size() - length_bytes) return wrong("the file ends inside an array of strings");
+            if (length > rest.size() - length_bytes) return invalid_data("the file ends inside an array of strings");
             scanner_.seek(scanner_.position() + length_bytes + static_cast<std::size_t>(length));
         }
         return {};

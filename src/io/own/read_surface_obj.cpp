@@ -5,14 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/surface_parts.hpp"
 #include "io/own/surface_scalars.hpp"
 
 namespace isotet::io {
 namespace {
-
-Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
 
 class ObjReader {
 public:
@@ -27,7 +26,7 @@ public:
             else if (keyword == "vn") line = read_vector(normals_);
             else if (keyword == "f") line = read_face();
             else if (keyword == "call" || keyword == "csh")
-                line = wrong(fmt::format("{}: other files and commands are not followed", in_quotes(keyword)));
+                line = invalid_data(fmt::format("{}: other files and commands are not followed", in_quotes(keyword)));
             if (!line) return line.error();
             // What stands behind the numbers (a weight, colours) and all other keywords say nothing of the surface.
             skip_line();
@@ -52,7 +51,7 @@ private:
         for (int i = 0; i < 3; ++i) {
             double value = 0;
             if (!scanner_.number_of_line(value))
-                return wrong(fmt::format("{}: three numbers were expected", scanner_.where()));
+                return invalid_data(fmt::format("{}: three numbers were expected", scanner_.where()));
             vectors.push_back(value);
         }
         return {};
@@ -80,7 +79,8 @@ private:
                 first_slash == std::string_view::npos ? first_slash : word.find('/', first_slash + 1);
             std::int64_t vertex = 0, normal = 0;
             if (!parse_number(word.substr(0, first_slash), vertex) || vertex == 0) {
-                return wrong(fmt::format("before {}: {} is not a corner of a face", scanner_.where(), in_quotes(word)));
+                return invalid_data(
+                    fmt::format("before {}: {} is not a corner of a face", scanner_.where(), in_quotes(word)));
             }
             corners_.push_back(resolve(vertex, positions_.size() / 3));
             if (second_slash == std::string_view::npos) {
@@ -88,7 +88,8 @@ private:
                 continue;
             }
             if (!parse_number(word.substr(second_slash + 1), normal) || normal == 0) {
-                return wrong(fmt::format("before {}: {} is not a corner of a face", scanner_.where(), in_quotes(word)));
+                return invalid_data(
+                    fmt::format("before {}: {} is not a corner of a face", scanner_.where(), in_quotes(word)));
             }
             const auto index = resolve(normal, normals_.size() / 3);
             normals_of_corners = normals_of_corners && index == corners_.back();
@@ -96,7 +97,7 @@ private:
             one_normal = one_normal && index == face_normal;
         }
         if (corners_.size() < 3)
-            return wrong(fmt::format("before {}: a face with {} corners", scanner_.where(), corners_.size()));
+            return invalid_data(fmt::format("before {}: a face with {} corners", scanner_.where(), corners_.size()));
         normals_of_vertices_ = normals_of_vertices_ && normals_of_corners;
         normals_of_faces_ = normals_of_faces_ && one_normal && face_normal == parts_.cells.cells();
         parts_.cells.add_polygon(corners_);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "io/own/byte_reader.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/surface_parts.hpp"
@@ -38,8 +39,6 @@ struct Header {
     std::size_t end = 0; ///< where the data starts
 };
 
-Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
-
 std::optional<ScalarType> type_of(std::string_view name) {
     struct Name {
         std::string_view name;
@@ -65,15 +64,16 @@ Result<Property> read_property(TextScanner& scanner) {
         word = scanner.word_of_line();
         property.count_type = type();
         if (!property.count_type || is_floating(*property.count_type)) {
-            return wrong(fmt::format("{}: a list is counted by integers, not by {}", scanner.where(), in_quotes(word)));
+            return invalid_data(
+                fmt::format("{}: a list is counted by integers, not by {}", scanner.where(), in_quotes(word)));
         }
         word = scanner.word_of_line();
     }
     const auto value_type = type();
-    if (!value_type) return wrong(fmt::format("{}: {} is not a type of PLY", scanner.where(), in_quotes(word)));
+    if (!value_type) return invalid_data(fmt::format("{}: {} is not a type of PLY", scanner.where(), in_quotes(word)));
     property.type = *value_type;
     property.name = scanner.word_of_line();
-    if (property.name.empty()) return wrong(fmt::format("{}: a property without a name", scanner.where()));
+    if (property.name.empty()) return invalid_data(fmt::format("{}: a property without a name", scanner.where()));
     return property;
 }
 
@@ -83,7 +83,7 @@ Result<Header> read_header(std::string_view content) {
     bool has_format = false;
     scanner.next_line(); // "ply"
     for (;; scanner.next_line()) {
-        if (scanner.left() == 0) return wrong("the header has no end_header");
+        if (scanner.left() == 0) return invalid_data("the header has no end_header");
         const auto keyword = scanner.word_of_line();
         if (keyword == "end_header") break;
         if (keyword == "format") {
@@ -91,24 +91,26 @@ Result<Header> read_header(std::string_view content) {
             if (name == "ascii") header.encoding = Encoding::ascii;
             else if (name == "binary_little_endian") header.encoding = Encoding::little;
             else if (name == "binary_big_endian") header.encoding = Encoding::big;
-            else return wrong(fmt::format("{}: the format {} is not known", scanner.where(), in_quotes(name)));
+            else return invalid_data(fmt::format("{}: the format {} is not known", scanner.where(), in_quotes(name)));
             has_format = true;
         } else if (keyword == "element") {
             Element element;
             element.name = scanner.word_of_line();
             if (!scanner.number_of_line(element.count))
-                return wrong(fmt::format("{}: not a count of elements", scanner.where()));
+                return invalid_data(fmt::format("{}: not a count of elements", scanner.where()));
             header.elements.push_back(std::move(element));
         } else if (keyword == "property") {
-            if (header.elements.empty()) return wrong(fmt::format("{}: a property of no element", scanner.where()));
+            if (header.elements.empty())
+                return invalid_data(fmt::format("{}: a property of no element", scanner.where()));
             auto property = read_property(scanner);
             if (!property) return property.error();
             header.elements.back().properties.push_back(std::move(*property));
         } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-            return wrong(fmt::format("{}: {} does not belong into a header", scanner.where(), in_quotes(keyword)));
+            return invalid_data(
+                fmt::format("{}: {} does not belong into a header", scanner.where(), in_quotes(keyword)));
         }
     }
-    if (!has_format) return wrong("the header has no format");
+    if (!has_format) return invalid_data("the header has no format");
     scanner.next_line();
     header.end = scanner.position();
     return header;
@@ -190,8 +192,9 @@ private:
         for (const auto& property : element_.properties)
             row += reader_.least(property.count_type.value_or(property.type));
         if (element_.count > 0 && (row == 0 || element_.count > reader_.left() / row)) {
-            return wrong(fmt::format("{} elements \"{}\" of at least {} bytes are announced, but {} bytes are left",
-                                     element_.count, element_.name, row, reader_.left()));
+            return invalid_data(
+                fmt::format("{} elements \"{}\" of at least {} bytes are announced, but {} bytes are left",
+                            element_.count, element_.name, row, reader_.left()));
         }
         return {};
     }
@@ -236,8 +239,9 @@ private:
     }
 
     Error failure(std::uint64_t row, const Property& property) const {
-        return wrong(fmt::format("{}: the property {} of element {} number {} of {} cannot be read", reader_.where(),
-                                 in_quotes(property.name), in_quotes(element_.name), row, element_.count));
+        return invalid_data(fmt::format("{}: the property {} of element {} number {} of {} cannot be read",
+                                        reader_.where(), in_quotes(property.name), in_quotes(element_.name), row,
+                                        element_.count));
     }
 
     const Element& element_;
@@ -287,26 +291,27 @@ Result<Surface> parse_ply(std::string_view content, const Progress& progress) {
     for (const auto& element : header->elements) {
         const bool vertices = element.name == "vertex", faces = element.name == "face";
         if ((vertices && has_vertices) || (faces && has_faces))
-            return wrong(fmt::format("the element {} occurs twice", in_quotes(element.name)));
+            return invalid_data(fmt::format("the element {} occurs twice", in_quotes(element.name)));
         auto attributes = ElementReader(element, reader, progress).read(faces ? &parts.cells : nullptr);
         if (!attributes) return attributes.error();
         has_strips = has_strips || element.name == "tristrips";
         if (vertices) {
             has_vertices = true;
             parts.positions = take_vector(*attributes, {"x", "y", "z"});
-            if (parts.positions.components() != 3) return wrong("the vertices have no properties x, y and z");
+            if (parts.positions.components() != 3) return invalid_data("the vertices have no properties x, y and z");
             take_normals(*attributes);
             parts.point_data = std::move(*attributes);
         } else if (faces) {
             has_faces = true;
-            if (parts.cells.cells() != element.count) return wrong("the faces have no list vertex_indices, or several");
+            if (parts.cells.cells() != element.count)
+                return invalid_data("the faces have no list vertex_indices, or several");
             take_normals(*attributes);
             parts.cell_data = std::move(*attributes);
         }
     }
-    if (!has_vertices) return wrong("the file has no element vertex");
+    if (!has_vertices) return invalid_data("the file has no element vertex");
     if (!has_faces && has_strips)
-        return wrong("the file holds triangle strips (tristrips), which are not read from PLY: only faces are");
+        return invalid_data("the file holds triangle strips (tristrips), which are not read from PLY: only faces are");
     return assemble(std::move(parts));
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/byte_reader.hpp"
 #include "io/own/surface_parts.hpp"
@@ -18,8 +19,6 @@ namespace {
 
 constexpr std::size_t header_bytes = 80;
 constexpr std::size_t facet_bytes = 50;
-
-Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
 
 Surface soup(std::vector<float> positions, std::vector<float> normals) {
     Surface surface;
@@ -50,8 +49,8 @@ Result<Surface> parse_binary(std::string_view content, const Progress& progress)
     const std::uint64_t count = binary_count(content);
     const std::uint64_t expected = header_bytes + sizeof(std::uint32_t) + count * facet_bytes;
     if (content.size() != expected) {
-        return wrong(fmt::format("{} triangles make {} bytes of binary STL, but the file has {}", count, expected,
-                                 content.size()));
+        return invalid_data(fmt::format("{} triangles make {} bytes of binary STL, but the file has {}", count,
+                                        expected, content.size()));
     }
     std::vector<float> positions(static_cast<std::size_t>(count) * 9), normals(static_cast<std::size_t>(count) * 3);
     ByteReader reader(content, std::endian::native != std::endian::little);
@@ -95,12 +94,12 @@ public:
             } else if (is_word(word, "facet") && inside) {
                 if (auto facet = read_facet(); !facet) return facet.error();
             } else {
-                return wrong(fmt::format("{} before {}: facet or {} was expected", in_quotes(word), scanner_.where(),
-                                         inside ? "endsolid" : "solid"));
+                return invalid_data(fmt::format("{} before {}: facet or {} was expected", in_quotes(word),
+                                                scanner_.where(), inside ? "endsolid" : "solid"));
             }
             if (!pace_.goes_on(scanner_.position())) return Pace::cancelled();
         }
-        if (inside) return wrong("the file ends before endsolid");
+        if (inside) return invalid_data("the file ends before endsolid");
         return soup(std::move(positions_), std::move(normals_));
     }
 
@@ -117,7 +116,7 @@ private:
     Result<void> expect_words(std::initializer_list<std::string_view> words) {
         for (const auto word : words) {
             if (!is_word(scanner_.word(), word))
-                return wrong(fmt::format("before {}: \"{}\" was expected", scanner_.where(), word));
+                return invalid_data(fmt::format("before {}: \"{}\" was expected", scanner_.where(), word));
         }
         return {};
     }
@@ -127,7 +126,7 @@ private:
         if (auto found = expect_words(words); !found) return found;
         for (int i = 0; i < 3; ++i) {
             float value = 0;
-            if (!read_scalar(scanner_, value)) return wrong(fmt::format("{}: not a number", scanner_.where()));
+            if (!read_scalar(scanner_, value)) return invalid_data(fmt::format("{}: not a number", scanner_.where()));
             numbers.push_back(value);
         }
         return {};

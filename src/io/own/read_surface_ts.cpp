@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "io/own/number_map.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/surface_parts.hpp"
@@ -14,13 +15,11 @@
 namespace isotet::io {
 namespace {
 
-constexpr std::size_t most_components = 1U << 16U;
+constexpr std::size_t most_property_components = 1U << 16U;
 // Values that are not there, for each byte of the file: else a small file could fill any memory.
 constexpr std::uint64_t most_absent = 8;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
-
-struct Property {
+struct PointProperty {
     std::string name;
     std::size_t components = 1;
     bool has_no_data = false;
@@ -36,7 +35,7 @@ public:
 
     Result<Surface> read() {
         for (;;) {
-            if (scanner_.at_end()) return wrong("the file ends before END");
+            if (scanner_.at_end()) return invalid_data("the file ends before END");
             const auto keyword = scanner_.word_of_line();
             if (keyword == "END") break;
             if (auto line = read_line(keyword); !line) return line.error();
@@ -61,11 +60,11 @@ private:
 
     Result<void> read_properties() {
         if (numbers_.size() > 0)
-            return wrong(fmt::format("{}: properties are announced after the first vertex", scanner_.where()));
+            return invalid_data(fmt::format("{}: properties are announced after the first vertex", scanner_.where()));
         properties_.clear();
         while (!scanner_.at_line_end()) {
             const auto name = scanner_.quoted_of_line();
-            if (name.empty()) return wrong(fmt::format("{}: a property without a name", scanner_.where()));
+            if (name.empty()) return invalid_data(fmt::format("{}: a property without a name", scanner_.where()));
             properties_.emplace_back().name = name;
         }
         return {};
@@ -73,11 +72,12 @@ private:
 
     Result<void> read_sizes() {
         if (numbers_.size() > 0)
-            return wrong(fmt::format("{}: sizes of properties after the first vertex", scanner_.where()));
+            return invalid_data(fmt::format("{}: sizes of properties after the first vertex", scanner_.where()));
         for (auto& property : properties_) {
             if (!scanner_.number_of_line(property.components) || property.components == 0 ||
-                property.components > most_components) {
-                return wrong(fmt::format("{}: not the size of a property, 1 to {}", scanner_.where(), most_components));
+                property.components > most_property_components) {
+                return invalid_data(
+                    fmt::format("{}: not the size of a property, 1 to {}", scanner_.where(), most_property_components));
             }
         }
         return {};
@@ -87,7 +87,7 @@ private:
         for (auto& property : properties_) {
             property.has_no_data = scanner_.number_of_line(property.no_data);
             if (!property.has_no_data && !scanner_.at_line_end())
-                return wrong(fmt::format("{}: not a number", scanner_.where()));
+                return invalid_data(fmt::format("{}: not a number", scanner_.where()));
         }
         return {};
     }
@@ -95,7 +95,7 @@ private:
     Result<void> read_number_of_vertex() {
         std::int64_t number = 0;
         if (!scanner_.number_of_line(number))
-            return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
+            return invalid_data(fmt::format("{}: not the number of a vertex", scanner_.where()));
         numbers_.add(number);
         return {};
     }
@@ -106,7 +106,7 @@ private:
             const std::uint64_t wanted = vertices * property.components, there = property.values.size();
             if (wanted <= there) continue;
             if (wanted - there > absent_left_)
-                return wrong(fmt::format("{}: too many vertices have no values", scanner_.where()));
+                return invalid_data(fmt::format("{}: too many vertices have no values", scanner_.where()));
             absent_left_ -= wanted - there;
             property.values.resize(static_cast<std::size_t>(wanted), std::numeric_limits<double>::quiet_NaN());
         }
@@ -121,7 +121,7 @@ private:
             for (std::size_t i = 0; i < property.components && !scanner_.at_line_end(); ++i) {
                 double value = 0;
                 if (!scanner_.number_of_line(value)) {
-                    return wrong(
+                    return invalid_data(
                         fmt::format("{}: not a value of property {}", scanner_.where(), in_quotes(property.name)));
                 }
                 const bool none = property.has_no_data && value == property.no_data;
@@ -135,7 +135,8 @@ private:
         if (auto number = read_number_of_vertex(); !number) return number;
         for (int axis = 0; axis < 3; ++axis) {
             double value = 0;
-            if (!scanner_.number_of_line(value)) return wrong(fmt::format("{}: not a coordinate", scanner_.where()));
+            if (!scanner_.number_of_line(value))
+                return invalid_data(fmt::format("{}: not a coordinate", scanner_.where()));
             positions_.push_back(axis == 2 ? z_sign_ * value : value);
         }
         return keyword == "PVRTX" ? read_values() : Result<void>();
@@ -146,7 +147,7 @@ private:
         if (auto number = read_number_of_vertex(); !number) return number;
         std::int64_t place = 0;
         if (!scanner_.number_of_line(place))
-            return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
+            return invalid_data(fmt::format("{}: not the number of a vertex", scanner_.where()));
         atoms_.push_back({numbers_.size() - 1, place});
         positions_.insert(positions_.end(), 3, 0.0);
         return keyword == "PATOM" ? read_values() : Result<void>();
@@ -156,7 +157,7 @@ private:
         for (int i = 0; i < 3; ++i) {
             std::int64_t number = 0;
             if (!scanner_.number_of_line(number))
-                return wrong(fmt::format("{}: not the number of a vertex", scanner_.where()));
+                return invalid_data(fmt::format("{}: not the number of a vertex", scanner_.where()));
             corners_.push_back(number);
         }
         return {};
@@ -167,7 +168,7 @@ private:
         for (const auto& [atom, number] : atoms_) {
             const auto place = numbers_.find(number);
             if (place == NumberMap::none || place >= atom)
-                return wrong(fmt::format("an atom is at vertex {}, which is not there before it", number));
+                return invalid_data(fmt::format("an atom is at vertex {}, which is not there before it", number));
             for (std::size_t axis = 0; axis < 3; ++axis) positions_[3 * atom + axis] = positions_[3 * place + axis];
         }
         SurfaceParts parts;
@@ -176,7 +177,8 @@ private:
             for (std::size_t k = 0; k < 3; ++k) {
                 corners[k] = numbers_.find(corners_[i + k]);
                 if (corners[k] == NumberMap::none) {
-                    return wrong(fmt::format("triangle {} has vertex {}, which is not there", i / 3, corners_[i + k]));
+                    return invalid_data(
+                        fmt::format("triangle {} has vertex {}, which is not there", i / 3, corners_[i + k]));
                 }
             }
             parts.cells.add_polygon(corners);
@@ -202,7 +204,7 @@ private:
     std::vector<double> positions_;
     std::vector<std::int64_t> corners_;
     std::vector<Atom> atoms_;
-    std::vector<Property> properties_;
+    std::vector<PointProperty> properties_;
     bool has_values_ = false;   ///< some vertex has
     std::uint64_t absent_left_; ///< how many values may still be missing
 };
@@ -217,15 +219,15 @@ Result<Surface> parse_ts(std::string_view content, const Progress& progress) {
         const auto first = scanner.word_of_line();
         const auto kind = scanner.word_of_line();
         if (first != "GOCAD" || kind != "TSurf") {
-            return wrong(fmt::format("before {}: {} {} stands where GOCAD TSurf was expected", scanner.where(),
-                                     in_quotes(first), in_quotes(kind)));
+            return invalid_data(fmt::format("before {}: {} {} stands where GOCAD TSurf was expected", scanner.where(),
+                                            in_quotes(first), in_quotes(kind)));
         }
         scanner.next_line();
         auto surface = ObjectReader(scanner, pace).read();
         if (!surface) return surface;
         surfaces.push_back(std::move(*surface));
     }
-    if (surfaces.empty()) return wrong("the file holds no GOCAD TSurf");
+    if (surfaces.empty()) return invalid_data("the file holds no GOCAD TSurf");
     if (surfaces.size() == 1) return std::move(surfaces.front());
     return join(surfaces, {});
 }

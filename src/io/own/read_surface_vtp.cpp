@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/surface_parts.hpp"
 #include "io/own/surface_scalars.hpp"
@@ -38,8 +39,6 @@ struct Header {
     std::string compressor;
 };
 
-Error wrong(std::string message) { return {ErrorCode::invalid_data, std::move(message)}; }
-
 /// Walks the elements down to the arrays, or to where the appended data starts.
 class HeaderReader {
 public:
@@ -49,7 +48,7 @@ public:
         for (;;) {
             auto tag = scanner_.next();
             if (!tag) return tag.error();
-            if (tag->name.empty()) return wrong("the file ends before </VTKFile>");
+            if (tag->name.empty()) return invalid_data("the file ends before </VTKFile>");
             if (tag->name == "VTKFile" && tag->end) return std::move(header_);
             if (tag->name == "AppendedData") {
                 if (auto found = find_appended(*tag); !found) return found.error();
@@ -62,7 +61,8 @@ public:
 private:
     Result<void> take(const XmlTag& tag) {
         if (tag.name == "VTKFile") return take_file(tag);
-        if (!is_polydata_) return wrong(fmt::format("the first element is {}, not VTKFile", in_quotes(tag.name)));
+        if (!is_polydata_)
+            return invalid_data(fmt::format("the first element is {}, not VTKFile", in_quotes(tag.name)));
         if (tag.name == "Piece" && !tag.end) return take_piece(tag);
         if (tag.name == "DataArray" && !tag.end) return take_array(tag);
         const auto section = std::ranges::find(section_names, tag.name);
@@ -77,14 +77,15 @@ private:
     Result<void> take_file(const XmlTag& tag) {
         const auto type = tag.get("type");
         if (type != "PolyData")
-            return wrong(fmt::format("this is a VTK file of type {}, not a surface (PolyData)", in_quotes(type)));
+            return invalid_data(
+                fmt::format("this is a VTK file of type {}, not a surface (PolyData)", in_quotes(type)));
         is_polydata_ = true;
         header_.compressor = tag.get("compressor");
         const auto order = tag.get("byte_order", "LittleEndian"), size = tag.get("header_type", "UInt32");
         if (order != "LittleEndian" && order != "BigEndian")
-            return wrong(fmt::format("the byte order {} is not known", in_quotes(order)));
+            return invalid_data(fmt::format("the byte order {} is not known", in_quotes(order)));
         if (size != "UInt32" && size != "UInt64")
-            return wrong(fmt::format("the header type {} is not UInt32 or UInt64", in_quotes(size)));
+            return invalid_data(fmt::format("the header type {} is not UInt32 or UInt64", in_quotes(size)));
         header_.encoding.order = order == "BigEndian" ? std::endian::big : std::endian::little;
         header_.encoding.wide_header = size == "UInt64";
         return {};
@@ -96,7 +97,7 @@ private:
             if (count_names[i].empty()) continue;
             const auto count = tag.get(count_names[i], "0");
             if (!parse_number(count, piece.counts[i]))
-                return wrong(fmt::format("{} is {}, not a count", count_names[i], in_quotes(count)));
+                return invalid_data(fmt::format("{} is {}, not a count", count_names[i], in_quotes(count)));
         }
         return {};
     }
@@ -113,11 +114,11 @@ private:
         if (tag.end || tag.closed) return {};
         const auto encoding = tag.get("encoding");
         if (encoding != "raw" && encoding != "base64")
-            return wrong(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
+            return invalid_data(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
         header_.encoding.appended_raw = encoding == "raw";
         TextScanner rest(content_.substr(scanner_.position()));
         if (rest.at_end() || rest.rest().front() != '_')
-            return wrong("the appended data does not start with an underscore");
+            return invalid_data("the appended data does not start with an underscore");
         header_.encoding.appended = rest.rest().substr(1);
         return {};
     }
@@ -163,7 +164,8 @@ private:
         auto values = load_array(array, encoding_, progress_);
         if (!values || array.form != XmlArray::Form::appended) return values;
         if (values->bytes() > appended_left_) {
-            return wrong(fmt::format("the array {} shares appended data with other arrays", in_quotes(array.name)));
+            return invalid_data(
+                fmt::format("the array {} shares appended data with other arrays", in_quotes(array.name)));
         }
         appended_left_ -= values->bytes();
         return values;
@@ -177,12 +179,13 @@ private:
             return {};
         }
         if (arrays.empty())
-            return wrong(fmt::format("{} points are announced, but there is no array of points", count));
+            return invalid_data(fmt::format("{} points are announced, but there is no array of points", count));
         auto positions = load(arrays[0]);
         if (!positions) return positions.error();
         if (positions->components() != 3 || positions->tuples() != count || !is_floating(positions->type())) {
-            return wrong(fmt::format("the points are {} tuples of {} {}, not {} of 3 floating ones",
-                                     positions->tuples(), positions->components(), name_of(positions->type()), count));
+            return invalid_data(fmt::format("the points are {} tuples of {} {}, not {} of 3 floating ones",
+                                            positions->tuples(), positions->components(), name_of(positions->type()),
+                                            count));
         }
         parts_.positions = std::move(*positions);
         return {};
@@ -192,13 +195,15 @@ private:
                                                     std::optional<std::uint64_t> count) {
         const auto section_name = section_names[static_cast<std::size_t>(section)];
         const auto* array = find_array(piece_.of(section), name);
-        if (!array) return wrong(fmt::format("{} has no array \"{}\"", section_name, name));
+        if (!array) return invalid_data(fmt::format("{} has no array \"{}\"", section_name, name));
         auto values = load(*array);
         if (!values) return values.error();
         if (is_floating(values->type()))
-            return wrong(fmt::format("{} \"{}\" is {}, not integers", section_name, name, name_of(values->type())));
+            return invalid_data(
+                fmt::format("{} \"{}\" is {}, not integers", section_name, name, name_of(values->type())));
         if (count && values->size() != *count) {
-            return wrong(fmt::format("{} \"{}\" has {} entries, not {}", section_name, name, values->size(), *count));
+            return invalid_data(
+                fmt::format("{} \"{}\" has {} entries, not {}", section_name, name, values->size(), *count));
         }
         return as_indices(*values);
     }
@@ -213,9 +218,9 @@ private:
         for (std::size_t i = 0; i < offsets->size(); ++i) {
             const std::uint64_t end = (*offsets)[i];
             if (end < begin || end > connectivity->size()) {
-                return wrong(fmt::format("{} offsets[{}] is {} after {}, and there are {} corners",
-                                         section_names[static_cast<std::size_t>(section)], i,
-                                         static_cast<std::int64_t>(end), begin, connectivity->size()));
+                return invalid_data(fmt::format("{} offsets[{}] is {} after {}, and there are {} corners",
+                                                section_names[static_cast<std::size_t>(section)], i,
+                                                static_cast<std::int64_t>(end), begin, connectivity->size()));
             }
             const auto corners = std::span(*connectivity).subspan(begin, end - begin);
             if (section == Section::polys) parts_.cells.add_polygon(corners);
@@ -256,9 +261,9 @@ Result<Surface> parse_vtp(std::string_view content, const Progress& progress, st
     if (!header) return header.error();
     if (!header->compressor.empty()) {
         compressed = header->compressor;
-        return wrong(fmt::format("the data is compressed ({}), which only VTK can read", in_quotes(compressed)));
+        return invalid_data(fmt::format("the data is compressed ({}), which only VTK can read", in_quotes(compressed)));
     }
-    if (header->pieces.empty()) return wrong("the file has no Piece");
+    if (header->pieces.empty()) return invalid_data("the file has no Piece");
     std::vector<Surface> surfaces;
     std::uint64_t appended_left = header->encoding.appended.size();
     for (const auto& piece : header->pieces) {

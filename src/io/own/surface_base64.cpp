@@ -21,7 +21,7 @@ constexpr std::array<std::uint8_t, 256> make_digits() {
     }
     return digits;
 }
-constexpr auto digits = make_digits();
+constexpr auto digit_of = make_digits();
 
 } // namespace
 
@@ -33,7 +33,7 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t most
     for (const char c : text) {
         if (result.size() >= most) break;
         if (is_space(c)) continue;
-        const auto digit = digits[static_cast<unsigned char>(c)];
+        const auto digit = digit_of[static_cast<unsigned char>(c)];
         if (c == '=') {
             if (count < 2) return std::nullopt;
             ++padding;

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "io/own/write_names.hpp"
 
@@ -29,18 +30,18 @@ std::string misfit(std::string_view name, const Array& array, std::size_t tuples
 }
 
 Result<void> check_shapes(const Surface& surface) {
-    const auto wrong = [](std::string message) { return Error{ErrorCode::invalid_argument, std::move(message)}; };
     const std::size_t vertices = surface.vertices(), triangles = surface.triangle_count();
     if (!is_floating(surface.positions.type())) {
-        return wrong(fmt::format("the surface's positions are {}, not floating", name_of(surface.positions.type())));
+        return invalid_argument(
+            fmt::format("the surface's positions are {}, not floating", name_of(surface.positions.type())));
     }
     if (triangles && !holds_indices(surface.triangles.type())) {
-        return wrong(fmt::format("the surface's triangles are {}, not 32- or 64-bit integers",
-                                 name_of(surface.triangles.type())));
+        return invalid_argument(fmt::format("the surface's triangles are {}, not 32- or 64-bit integers",
+                                            name_of(surface.triangles.type())));
     }
     for (const auto* numbers : {&surface.edge_ends, &surface.source_cells}) {
         if (!numbers->empty() && is_floating(numbers->type())) {
-            return wrong(
+            return invalid_argument(
                 fmt::format("the surface's edge ends or source cells are {}, not integers", name_of(numbers->type())));
         }
     }
@@ -54,7 +55,7 @@ Result<void> check_shapes(const Surface& surface) {
     if (triangles) parts.push_back({"triangles", &surface.triangles, triangles, 3});
     if (surface.normals_kind != Normals::none) {
         const bool of_triangles = surface.normals_kind == Normals::face;
-        if (!is_floating(surface.normals.type())) return wrong("the surface's normals are not floating");
+        if (!is_floating(surface.normals.type())) return invalid_argument("the surface's normals are not floating");
         if (const std::size_t tuples = of_triangles ? triangles : vertices; tuples) {
             parts.push_back({"normals", &surface.normals, tuples, 3});
         }
@@ -70,7 +71,7 @@ Result<void> check_shapes(const Surface& surface) {
     }
     for (const auto& part : parts) {
         if (auto message = misfit(part.name, *part.array, part.tuples, part.components); !message.empty())
-            return wrong(message);
+            return invalid_argument(message);
     }
     return {};
 }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "io/own/write_formats.hpp"
 
@@ -18,9 +19,7 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t grain = std::size_t{1} << 18U;
 constexpr std::uint8_t polyhedron = 42;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
-std::size_t corners_of(CellType type) {
+std::size_t corners_of_type(CellType type) {
     switch (type) {
     case CellType::tetrahedron: return 4;
     case CellType::pyramid: return 5;
@@ -71,33 +70,37 @@ Result<void> check_offsets(const Cells& cells) {
 Result<void> check_cells(const Cells& cells, std::size_t points) {
     const auto& [connectivity, offsets, types, uniform_type] = cells;
     if (!connectivity.empty() && (!holds_indices(connectivity.type()) || connectivity.components() != 1)) {
-        return wrong(fmt::format("the connectivity is {} with {} components, not one of 32- or 64-bit integers",
-                                 name_of(connectivity.type()), connectivity.components()));
+        return invalid_argument(
+            fmt::format("the connectivity is {} with {} components, not one of 32- or 64-bit integers",
+                        name_of(connectivity.type()), connectivity.components()));
     }
     if (offsets.empty()) {
-        if (!types.empty()) return wrong(fmt::format("the grid has {} cell types but no offsets", types.size()));
-        if (connectivity.size() % corners_of(uniform_type) != 0) {
-            return wrong(fmt::format("the connectivity has {} entries, not a multiple of {}, the corners of a {}",
-                                     connectivity.size(), corners_of(uniform_type),
-                                     name_of_cell_type(static_cast<std::uint8_t>(uniform_type))));
+        if (!types.empty())
+            return invalid_argument(fmt::format("the grid has {} cell types but no offsets", types.size()));
+        if (connectivity.size() % corners_of_type(uniform_type) != 0) {
+            return invalid_argument(fmt::format(
+                "the connectivity has {} entries, not a multiple of {}, the corners of a {}", connectivity.size(),
+                corners_of_type(uniform_type), name_of_cell_type(static_cast<std::uint8_t>(uniform_type))));
         }
     } else {
         if (!holds_indices(offsets.type()) || offsets.components() != 1) {
-            return wrong(fmt::format("the offsets are {} with {} components, not one of 32- or 64-bit integers",
-                                     name_of(offsets.type()), offsets.components()));
+            return invalid_argument(
+                fmt::format("the offsets are {} with {} components, not one of 32- or 64-bit integers",
+                            name_of(offsets.type()), offsets.components()));
         }
         if (auto checked = check_offsets(cells); !checked) return checked;
     }
     if (!types.empty()) {
         if (types.type() != ScalarType::uint8 || types.size() + 1 != offsets.size()) {
-            return wrong(fmt::format(
+            return invalid_argument(fmt::format(
                 "the grid has {} cell types of {} for {} offsets: one uint8 a cell is needed, and one more offset",
                 types.size(), name_of(types.type()), offsets.size()));
         }
         const auto values = types.as<std::uint8_t>();
         if (const auto at = first_where(values.size(), [&](std::size_t i) { return values[i] == polyhedron; });
             at != none) {
-            return wrong(fmt::format("cells[{}] is a polyhedron, whose faces are not known: it cannot be written", at));
+            return invalid_argument(
+                fmt::format("cells[{}] is a polyhedron, whose faces are not known: it cannot be written", at));
         }
     }
     if (const auto bad = first_bad_index(connectivity, points)) {
@@ -134,8 +137,8 @@ Result<std::vector<Column>> field_columns(const std::vector<Field>& fields, std:
     Names names;
     for (const auto& field : fields) {
         if (field.values.tuples() != tuples) {
-            return wrong(fmt::format("the {} field \"{}\" has {} tuples, not {}", what, field.name,
-                                     field.values.tuples(), tuples));
+            return invalid_argument(fmt::format("the {} field \"{}\" has {} tuples, not {}", what, field.name,
+                                                field.values.tuples(), tuples));
         }
         columns.push_back(column_of(take_field_name(field.name, names, notes), field.values));
     }
@@ -159,14 +162,14 @@ std::uint64_t GridColumns::bytes() const {
 Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes) {
     const auto& cells = grid.cells;
     if (!is_floating(grid.points.type()) || (!grid.points.empty() && grid.points.components() != 3)) {
-        return wrong(fmt::format("the points are {} with {} components, not 3 floating ones",
-                                 name_of(grid.points.type()), grid.points.components()));
+        return invalid_argument(fmt::format("the points are {} with {} components, not 3 floating ones",
+                                            name_of(grid.points.type()), grid.points.components()));
     }
     const std::size_t points = grid.points.tuples();
     if (auto checked = check_cells(cells, points); !checked) return checked.error();
 
     const bool uniform = cells.offsets.empty();
-    const std::size_t corners = corners_of(cells.uniform_type);
+    const std::size_t corners = corners_of_type(cells.uniform_type);
     const std::uint64_t start = uniform ? 0 : index_at(cells.offsets, 0);
     const std::uint64_t used =
         uniform ? cells.connectivity.size() : index_at(cells.offsets, cells.offsets.size() - 1) - start;

@@ -11,11 +11,11 @@
 namespace isotet::io::vtk {
 namespace {
 
-struct Type {
+struct TypeName {
     std::string_view name;
     ScalarType type;
 };
-constexpr Type types[] = {
+constexpr TypeName type_names[] = {
     {"float", ScalarType::float32},
     {"double", ScalarType::float64},
     {"int", ScalarType::int32},
@@ -41,7 +41,7 @@ std::string lower(std::string_view word) {
 
 std::optional<ScalarType> type_of(std::string_view word) {
     const std::string name = lower(word);
-    for (const Type& type : types)
+    for (const TypeName& type : type_names)
         if (type.name == name) return type.type;
     return std::nullopt;
 }

@@ -1,6 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // XDMF 2 and 3: unstructured uniform grids, in collections over time and space.
-#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -14,10 +13,6 @@
 
 namespace isotet::io::vtk {
 namespace {
-
-bool same(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return (x | 32) == (y | 32); });
-}
 
 struct Element {
     std::string_view name;
@@ -77,8 +72,8 @@ private:
 
     Result<void> read_points(pugi::xml_node geometry) {
         const std::string_view type = attribute(geometry, "GeometryType", "Type");
-        const bool flat = same(type, "XY");
-        if (!type.empty() && !same(type, "XYZ") && !flat)
+        const bool flat = same_word(type, "XY");
+        if (!type.empty() && !same_word(type, "XYZ") && !flat)
             return broken(path_, fmt::format("geometry of type \"{}\" is not read: XYZ and XY are", escaped(type)));
         auto values = data_.read(geometry.child("DataItem"), depth_);
         if (!values) return values.error();
@@ -110,14 +105,14 @@ private:
         if (!values) return values.error();
         if (depth_ == Depth::arrays && topology.attribute("BaseOffset").as_llong() != 0)
             return broken(path_, "a topology with a BaseOffset is not read");
-        if (same(type, "Mixed")) {
+        if (same_word(type, "Mixed")) {
             if (!counted) return broken(path_, "a mixed topology does not state its NumberOfElements");
             cells_ = count;
             return depth_ == Depth::description ? Result<void>() : mixed_cells(values->values, count);
         }
         const Element* element = nullptr;
         for (const Element& known : elements)
-            if (same(known.name, type)) element = &known;
+            if (same_word(known.name, type)) element = &known;
         if (!element) return broken(path_, fmt::format("topology of type \"{}\" is not read", escaped(type)));
         const std::uint64_t corners =
             element->corners != 0 ? element->corners : topology.attribute("NodesPerElement").as_uint();
@@ -196,8 +191,8 @@ private:
     Result<void> read_field(pugi::xml_node field) {
         const std::string field_name = field.attribute("Name").as_string();
         const std::string_view center = field.attribute("Center").as_string("Node");
-        const bool on_points = same(center, "Node");
-        if (!on_points && !same(center, "Cell")) return {}; // of the whole grid, of faces, of edges
+        const bool on_points = same_word(center, "Node");
+        if (!on_points && !same_word(center, "Cell")) return {}; // of the whole grid, of faces, of edges
         const Association association = on_points ? Association::point : Association::cell;
         const std::uint64_t tuples = on_points ? points_ : cells_;
         const bool want = depth_ == Depth::arrays && wanted(options_, association, field_name);

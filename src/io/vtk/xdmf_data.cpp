@@ -16,10 +16,6 @@
 namespace isotet::io::vtk {
 namespace {
 
-bool same(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return (x | 32) == (y | 32); });
-}
-
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
     while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
@@ -30,12 +26,13 @@ std::string_view trimmed(std::string_view text) {
 std::optional<ScalarType> stated_type(pugi::xml_node item) {
     std::string_view type = item.attribute("NumberType").as_string();
     if (type.empty()) type = item.attribute("DataType").as_string("Float");
-    const unsigned precision = item.attribute("Precision").as_uint(same(type, "Char") || same(type, "UChar") ? 1 : 4);
-    if (same(type, "Float")) return precision == 8 ? ScalarType::float64 : ScalarType::float32;
-    if (same(type, "Char")) return ScalarType::int8;
-    if (same(type, "UChar")) return ScalarType::uint8;
-    const bool is_signed = same(type, "Int");
-    if (!is_signed && !same(type, "UInt")) return std::nullopt;
+    const unsigned precision =
+        item.attribute("Precision").as_uint(same_word(type, "Char") || same_word(type, "UChar") ? 1 : 4);
+    if (same_word(type, "Float")) return precision == 8 ? ScalarType::float64 : ScalarType::float32;
+    if (same_word(type, "Char")) return ScalarType::int8;
+    if (same_word(type, "UChar")) return ScalarType::uint8;
+    const bool is_signed = same_word(type, "Int");
+    if (!is_signed && !same_word(type, "UInt")) return std::nullopt;
     switch (precision) {
     case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
     case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
@@ -70,23 +67,23 @@ Result<ShapedValues> XdmfData::read(pugi::xml_node stated, Depth depth) const {
     const pugi::xml_node item = document_.resolve(stated);
     if (!item) return failed("a DataItem is missing, or refers to nothing");
     const std::string_view kind = item.attribute("ItemType").as_string("Uniform");
-    if (same(kind, "HyperSlab")) return read_slab(item, depth);
-    if (!same(kind, "Uniform"))
+    if (same_word(kind, "HyperSlab")) return read_slab(item, depth);
+    if (!same_word(kind, "Uniform"))
         return failed(fmt::format("a DataItem of type \"{}\" is not read: Uniform and HyperSlab are", escaped(kind)));
     return read_uniform(item, {}, depth);
 }
 
 Result<ShapedValues> XdmfData::read_uniform(pugi::xml_node item, const Box& box, Depth depth) const {
     const std::string_view format = item.attribute("Format").as_string("XML");
-    if (same(format, "HDF")) return read_hdf5(item, box, depth);
+    if (same_word(format, "HDF")) return read_hdf5(item, box, depth);
     if (!box.count.empty()) return failed("a HyperSlab of something that is not in an HDF5 file is not read");
     const auto type = stated_type(item);
     const auto dimensions = stated_dimensions(item);
     if (!type || !dimensions) return failed("a DataItem without a number type and dimensions that are known");
     ShapedValues result{*dimensions, Array(*type, nullptr, 0, 1, nullptr)};
     if (depth == Depth::description) return result;
-    auto values = same(format, "XML") ? read_xml(item, *type, result.count())
-                  : same(format, "Binary")
+    auto values = same_word(format, "XML") ? read_xml(item, *type, result.count())
+                  : same_word(format, "Binary")
                       ? read_binary(item, *type, result.count())
                       : Result<Array>(failed(fmt::format("a DataItem of format \"{}\" is not read", escaped(format))));
     if (!values) return values.error();
@@ -144,8 +141,9 @@ Result<Array> XdmfData::read_binary(pugi::xml_node item, ScalarType type, std::u
         return broken(*path,
                       fmt::format("{} values from byte {} are wanted, but the file has {} bytes", count, seek, size));
     const std::string_view endian = item.attribute("Endian").as_string("Native");
-    const bool swap = same(endian, "Big") ? std::endian::native != std::endian::big
-                                          : same(endian, "Little") && std::endian::native != std::endian::little;
+    const bool swap = same_word(endian, "Big")
+                          ? std::endian::native != std::endian::big
+                          : same_word(endian, "Little") && std::endian::native != std::endian::little;
     return Array(type, nullptr, 0, 1, nullptr).visit([&](auto none) -> Result<Array> {
         std::vector<std::remove_const_t<typename decltype(none)::value_type>> values(count);
         std::memcpy(values.data(), file->text().data() + seek, count * sizeof values[0]);

@@ -59,10 +59,6 @@ std::string without_entities(std::string_view text) {
     return result;
 }
 
-bool same(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return (x | 32) == (y | 32); });
-}
-
 std::optional<double> time_of(pugi::xml_node grid) {
     double value = 0;
     const pugi::xml_node time = grid.child("Time");
@@ -76,7 +72,7 @@ std::vector<double> listed_times(pugi::xml_node collection, std::size_t count) {
     std::vector<double> values;
     TextScanner scanner(time.child("DataItem") ? time.child("DataItem").text().as_string() : time.text().as_string());
     for (double value = 0; scanner.number(value);) values.push_back(value);
-    if (same(time.attribute("TimeType").as_string(), "HyperSlab") && values.size() == 3) {
+    if (same_word(time.attribute("TimeType").as_string(), "HyperSlab") && values.size() == 3) {
         const double start = values[0], step = values[1];
         values.clear();
         for (std::size_t i = 0; i < count; ++i) values.push_back(start + static_cast<double>(i) * step);
@@ -85,6 +81,10 @@ std::vector<double> listed_times(pugi::xml_node collection, std::size_t count) {
 }
 
 } // namespace
+
+bool same_word(std::string_view a, std::string_view b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return (x | 32) == (y | 32); });
+}
 
 Result<XdmfDocument> XdmfDocument::open(const std::string& path) {
     auto file = MappedFile::open(path);
@@ -107,7 +107,7 @@ pugi::xml_node XdmfDocument::resolve(pugi::xml_node node) const {
     for (int depth = 0; depth < deepest && node; ++depth) {
         const std::string_view reference = node.attribute("Reference").as_string();
         if (reference.empty()) return node;
-        std::string_view query = same(reference, "XML") ? std::string_view(node.text().as_string()) : reference;
+        std::string_view query = same_word(reference, "XML") ? std::string_view(node.text().as_string()) : reference;
         while (!query.empty() && is_space(query.front())) query.remove_prefix(1);
         while (!query.empty() && is_space(query.back())) query.remove_suffix(1);
         try {
@@ -129,11 +129,11 @@ Result<void> XdmfDocument::gather(pugi::xml_node parent, int depth) {
                           fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
         const std::string_view type = grid.attribute("GridType").as_string("Uniform");
         const std::string_view collection = grid.attribute("CollectionType").as_string("Spatial");
-        if (same(type, "Collection") && same(collection, "Temporal")) {
+        if (same_word(type, "Collection") && same_word(collection, "Temporal")) {
             if (auto gathered = gather_temporal(grid, depth + 1); !gathered) return gathered;
-        } else if (same(type, "Collection") || same(type, "Tree")) {
+        } else if (same_word(type, "Collection") || same_word(type, "Tree")) {
             if (auto gathered = gather(grid, depth + 1); !gathered) return gathered;
-        } else if (same(type, "Uniform")) {
+        } else if (same_word(type, "Uniform")) {
             if (steps_.empty()) steps_.emplace_back();
             if (const auto time = time_of(grid); time && !steps_.back().has_time) {
                 steps_.back().time = *time;
@@ -164,7 +164,7 @@ Result<void> XdmfDocument::gather_temporal(pugi::xml_node collection, int depth)
         step.has_time = true;
         step.time = own ? *own : index < times.size() ? times[index] : static_cast<double>(index);
         ++index;
-        if (same(grid.attribute("GridType").as_string("Uniform"), "Uniform")) {
+        if (same_word(grid.attribute("GridType").as_string("Uniform"), "Uniform")) {
             step.grids.push_back(grid);
             continue;
         }

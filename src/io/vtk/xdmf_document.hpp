@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <pugixml.hpp>
@@ -10,6 +11,9 @@
 #include <isotet/result.hpp>
 
 namespace isotet::io::vtk {
+
+/// Names in XDMF are the same in upper and lower case.
+bool same_word(std::string_view a, std::string_view b);
 
 /// The uniform grids of one time.
 struct XdmfStep {

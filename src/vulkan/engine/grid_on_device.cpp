@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "core/memory.hpp"
 
 namespace isotet::vulkan {
@@ -28,15 +29,15 @@ GridNeeds needs_of(const core::Packed& packed, const std::vector<PlannedPage>& p
 }
 
 Result<void> check(const core::Packed& packed) {
-    const auto wrong = [](std::string message) { return Error{ErrorCode::invalid_argument, std::move(message)}; };
     if (!packed.single())
-        return wrong("the grid was packed in double precision, but the vulkan engine takes single precision only");
+        return invalid_argument(
+            "the grid was packed in double precision, but the vulkan engine takes single precision only");
     if (packed.points() >= limit_32)
-        return wrong(fmt::format("the packed grid has {} points, but the vulkan engine can number {}", packed.points(),
-                                 limit_32 - 1));
+        return invalid_argument(fmt::format("the packed grid has {} points, but the vulkan engine can number {}",
+                                            packed.points(), limit_32 - 1));
     if (packed.tets.size() >= limit_32)
-        return wrong(fmt::format("the packed grid has room for {} tets, but the vulkan engine can number {}",
-                                 packed.tets.size(), limit_32 - 1));
+        return invalid_argument(fmt::format("the packed grid has room for {} tets, but the vulkan engine can number {}",
+                                            packed.tets.size(), limit_32 - 1));
     return {};
 }
 

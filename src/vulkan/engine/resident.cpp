@@ -17,13 +17,13 @@ std::uint64_t pieces(std::uint64_t n, std::uint64_t size) { return (n + size - 1
 std::uint64_t mask_words_of(const core::ClusterHeader& h) { return layout::tied_words + pieces(h.own_seams, 32); }
 
 /// A resident array: where it is kept, and how large it is.
-struct Array {
+struct KeptArray {
     Buffer Resident::* buffer;
     const char* name;
     std::uint64_t bytes;
 };
 
-std::array<Array, 12> arrays(const ResidentSizes& sizes) {
+std::array<KeptArray, 12> arrays(const ResidentSizes& sizes) {
     const std::uint64_t c = sizes.clusters;
     return {{{&Resident::tables, "tables", sizeof(layout::Tables)},
              {&Resident::pages, "page table", sizes.pages * sizeof(layout::Page)},
@@ -56,12 +56,12 @@ ResidentSizes::ResidentSizes(const core::Packed& packed, std::size_t page_count)
 
 std::uint64_t ResidentSizes::cost() const {
     std::uint64_t sum = 0;
-    for (const Array& array : arrays(*this)) sum += Memory::cost(array.bytes);
+    for (const KeptArray& array : arrays(*this)) sum += Memory::cost(array.bytes);
     return sum;
 }
 
 Result<void> Resident::take(Context& context) {
-    for (const Array& array : arrays(sizes_)) {
+    for (const KeptArray& array : arrays(sizes_)) {
         auto buffer = context.memory().take(array.bytes, Where::device, array.name);
         if (!buffer) return std::move(buffer).error();
         this->*array.buffer = *std::move(buffer);
