@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -16,6 +17,7 @@ namespace isotet::core {
 namespace {
 
 constexpr std::size_t grain = 1 << 15;
+constexpr std::size_t block = 1 << 10; // values that are looked at together
 
 /// A pass over values at packed points.
 struct Pass {
@@ -42,69 +44,83 @@ std::uint64_t store_lanes(const typename SummaryLanes<Number>::Values& values, c
     return flushed;
 }
 
-/// Looks at the values of `ids` and, unless `out` is null, stores them.
-template <class Number, class Real, class T, class Id>
-Pass pass_over(std::span<const T> values, std::size_t components, std::span<const Id> ids, const Storage& storage,
+/// Values of packed points from `begin` on, one after another, into `out`: the only part that depends on their type.
+template <class Number>
+void gather(const Array& values, const Packed& packed, std::size_t begin, std::span<Number> out) {
+    const std::size_t components = values.components();
+    const auto with = [&](auto typed, const auto* ids) {
+        if (components == 1) {
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<Number>(typed[ids[i]]);
+            return;
+        }
+        for (std::size_t i = 0; i < out.size(); i += components, ++ids)
+            for (std::size_t k = 0; k < components; ++k) out[i + k] = static_cast<Number>(typed[*ids * components + k]);
+    };
+    const auto from = [&](auto typed) {
+        if (packed.wide_point_ids.empty()) with(typed, packed.point_ids.data() + begin);
+        else with(typed, packed.wide_point_ids.data() + begin);
+    };
+    if constexpr (std::is_same_v<Number, float>) from(values.as<float>());
+    else values.visit(from);
+}
+
+/// Looks at the values of the packed points [begin, end) and, unless `out` is null, stores them. Number: double, or
+/// float for float32 values that are not scaled.
+template <class Number, class Real>
+Pass pass_over(const Array& values, const Packed& packed, std::size_t begin, std::size_t end, const Storage& storage,
                Real* out) {
     constexpr std::size_t lanes = SummaryLanes<Number>::count;
+    const std::size_t components = std::max(values.components(), std::size_t{1});
+    const std::size_t points_at_once = std::max(block / components, std::size_t{1});
+    std::vector<Number> gathered(points_at_once * components);
+    SummaryLanes<Number> summary;
     Pass pass;
-    const auto one = [&](std::size_t i, std::size_t component) {
-        const double value = static_cast<double>(values[ids[i] * components + component]);
-        pass.summary.add(value, storage.offset);
-        if (!out) return;
-        out[i] = store_value<Real>(value, storage);
-        pass.flushed += out[i] == 0 && value != storage.offset;
-    };
-    std::size_t i = 0;
-    if (components == 1) {
-        SummaryLanes<Number> summary;
-        for (; i + lanes <= ids.size(); i += lanes) {
-            typename SummaryLanes<Number>::Values some;
-            for (std::size_t k = 0; k < lanes; ++k) some[k] = static_cast<Number>(values[ids[i + k]]);
-            const bool finite = summary.add(some, static_cast<Number>(storage.offset));
+    for (; begin < end; begin += points_at_once) {
+        const auto some = std::span(gathered).first(std::min(points_at_once, end - begin) * components);
+        gather(values, packed, begin, some);
+        std::size_t i = 0;
+        for (; i + lanes <= some.size(); i += lanes) {
+            typename SummaryLanes<Number>::Values side_by_side;
+            std::copy_n(some.begin() + i, lanes, side_by_side.begin());
+            const bool finite = summary.add(side_by_side, static_cast<Number>(storage.offset));
             if (!out) continue;
-            pass.flushed += store_lanes<Real, Number>(some, storage, out + i);
+            pass.flushed += store_lanes<Real, Number>(side_by_side, storage, out + begin + i);
             if (!finite) // what was made of infinities and NaN is wrong, but counted rightly: not as flushed
-                for (std::size_t k = 0; k < lanes; ++k)
-                    out[i + k] = store_value<Real>(static_cast<double>(some[k]), storage);
+                for (std::size_t k = i; k < i + lanes; ++k)
+                    out[begin + k] = store_value<Real>(static_cast<double>(some[k]), storage);
         }
-        pass.summary.combine(summary.summary());
+        for (; i < some.size(); ++i) {
+            const auto value = static_cast<double>(some[i]);
+            pass.summary.add(value, storage.offset);
+            if (!out) continue;
+            out[begin + i] = store_value<Real>(value, storage);
+            pass.flushed += out[begin + i] == 0 && value != storage.offset;
+        }
     }
-    for (; i < ids.size(); ++i)
-        for (std::size_t k = 0; k < components; ++k) one(i, k);
+    pass.summary.combine(summary.summary());
     return pass;
 }
 
 /// `out` may be null: then values are only looked at, and may have several components.
 template <class Real>
 Pass pass_over(const Array& values, const Packed& packed, const Storage& storage, const Progress& progress, Real* out) {
-    const std::size_t components = values.components();
-    return values.visit([&]<class T>(std::span<const T> typed) {
-        const auto of = [&](auto number, auto ids) {
-            return tbb::parallel_reduce(
-                tbb::blocked_range<std::size_t>(0, ids.size(), grain), Pass{},
-                [&](const tbb::blocked_range<std::size_t>& range, Pass pass) {
-                    if (progress.cancelled()) return pass;
-                    pass.combine(pass_over<decltype(number)>(typed, components,
-                                                             ids.subspan(range.begin(), range.size()), storage,
-                                                             out ? out + range.begin() : out));
-                    return pass;
-                },
-                [](Pass a, const Pass& b) {
-                    a.combine(b);
-                    return a;
-                });
-        };
-        const auto with = [&](auto number) {
-            if (packed.wide_point_ids.empty())
-                return of(number, std::span(packed.point_ids.data(), packed.point_ids.size()));
-            return of(number, std::span(packed.wide_point_ids.data(), packed.wide_point_ids.size()));
-        };
-        // Floats that are not scaled need no double.
-        if constexpr (std::is_same_v<T, float> && std::is_same_v<Real, float>)
-            if (storage.offset == 0 && storage.scale == 1) return with(float{});
-        return with(double{});
-    });
+    const auto with = [&](auto number) {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, packed.points(), grain), Pass{},
+            [&](const tbb::blocked_range<std::size_t>& range, Pass pass) {
+                if (progress.cancelled()) return pass;
+                pass.combine(pass_over<decltype(number)>(values, packed, range.begin(), range.end(), storage, out));
+                return pass;
+            },
+            [](Pass a, const Pass& b) {
+                a.combine(b);
+                return a;
+            });
+    };
+    // Floats that are not scaled need no double.
+    if constexpr (std::is_same_v<Real, float>)
+        if (values.type() == ScalarType::float32 && storage.offset == 0 && storage.scale == 1) return with(float{});
+    return with(double{});
 }
 
 /// Tries offset 0 and scale 1, which are mostly right, and passes over the values again when they are not.

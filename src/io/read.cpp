@@ -83,13 +83,14 @@ Result<void> displace(const std::string& name, ReadResult& result) {
                                  components)};
     }
     std::vector<double> moved(grid.points.size());
-    grid.points.visit([&](auto points) {
-        field->values.visit([&](auto steps) {
-            core::parallel_each(moved.size(), std::size_t{1} << 16U, [&](std::size_t i) {
-                moved[i] = static_cast<double>(points[i]) + static_cast<double>(steps[i]);
-            });
+    const auto for_each_coordinate = [&](const Array& array, const auto& put) {
+        array.visit([&](auto values) {
+            core::parallel_each(moved.size(), std::size_t{1} << 16U,
+                                [&](std::size_t i) { put(moved[i], static_cast<double>(values[i])); });
         });
-    });
+    };
+    for_each_coordinate(grid.points, [](double& sum, double coordinate) { sum = coordinate; });
+    for_each_coordinate(field->values, [](double& sum, double step) { sum += step; });
     grid.points = Array::own(std::move(moved), 3);
     result.notes.push_back(fmt::format("points are displaced by the field {}", in_quotes(name)));
     return {};

@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <unordered_map>
@@ -175,39 +177,59 @@ std::vector<Column> columns(const std::vector<Piece>& pieces, Fields which) {
     return result;
 }
 
-/// Copies one tuple, converted, at `to`.
-template <class To, class From>
-void copy_tuple(To* to, const From* from, std::size_t components) {
-    for (std::size_t c = 0; c < components; ++c) to[c] = static_cast<To>(from[c]);
-}
-
-template <class F>
-auto with_scalar(ScalarType type, F&& f) {
-    return Array(type, nullptr, 0, 1, nullptr).visit([&](auto values) {
-        return f(typename decltype(values)::value_type{});
+/// Copies scalars of `size` bytes, tuple by tuple. `tuples_of(visit)` calls visit(tuple in the piece, tuple in the
+/// result).
+template <std::size_t size, class TuplesOf>
+void copy_tuples(const std::byte* from, std::byte* to, std::size_t components, const TuplesOf& tuples_of) {
+    tuples_of([&](std::size_t in_piece, std::size_t in_result) {
+        for (std::size_t c = 0; c < components; ++c)
+            std::memcpy(to + (in_result * components + c) * size, from + (in_piece * components + c) * size, size);
     });
 }
 
-/// One field over all pieces. `tuples_of(p, visit)` calls visit(tuple in the piece, tuple in the result).
+/// Puts the tuples of a piece's field to their places in a column, which has its type or is of float64.
 template <class TuplesOf>
-Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& column, std::size_t tuples,
-                   TuplesOf tuples_of) {
-    return with_scalar(column.type, [&](auto zero) {
-        using T = decltype(zero);
+void place_tuples(const Array& field, const Column& column, void* to, const TuplesOf& tuples_of) {
+    const std::size_t components = column.components;
+    if (field.type() != column.type) {
+        auto* const doubles = static_cast<double*>(to);
+        field.visit([&](auto from) {
+            tuples_of([&](std::size_t in_piece, std::size_t in_result) {
+                for (std::size_t c = 0; c < components; ++c)
+                    doubles[in_result * components + c] = static_cast<double>(from[in_piece * components + c]);
+            });
+        });
+        return;
+    }
+    const auto* const bytes = static_cast<const std::byte*>(field.data());
+    auto* const places = static_cast<std::byte*>(to);
+    switch (size_of(column.type)) {
+    case 1: return copy_tuples<1>(bytes, places, components, tuples_of);
+    case 2: return copy_tuples<2>(bytes, places, components, tuples_of);
+    case 4: return copy_tuples<4>(bytes, places, components, tuples_of);
+    default: return copy_tuples<8>(bytes, places, components, tuples_of);
+    }
+}
+
+/// `tuples` x `components` scalars: NaN, or 0 of integers, before `fill(data)` writes to them.
+Array made_array(ScalarType type, std::size_t tuples, std::size_t components, const std::function<void(void*)>& fill) {
+    return Array(type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) {
         T missing{};
         if constexpr (std::is_floating_point_v<T>) missing = std::numeric_limits<T>::quiet_NaN();
-        std::vector<T> values(tuples * column.components, missing);
-        for (std::size_t p = 0; p < pieces.size(); ++p) {
-            const Field* field = find(pieces[p].grid.*which, column.name);
-            if (!field) continue;
-            field->values.visit([&](auto from) {
-                tuples_of(p, [&](std::size_t in_piece, std::size_t in_result) {
-                    copy_tuple(values.data() + in_result * column.components,
-                               from.data() + in_piece * column.components, column.components);
-                });
-            });
-        }
-        return Array::own(std::move(values), column.components);
+        std::vector<T> values(tuples * components, missing);
+        fill(static_cast<void*>(values.data()));
+        return Array::own(std::move(values), components);
+    });
+}
+
+/// One field over all pieces. `tuples_of(p, visit)` calls visit(tuple in piece p, tuple in the result).
+template <class TuplesOf>
+Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& column, std::size_t tuples,
+                   const TuplesOf& tuples_of) {
+    return made_array(column.type, tuples, column.components, [&](void* to) {
+        for (std::size_t p = 0; p < pieces.size(); ++p)
+            if (const Field* field = find(pieces[p].grid.*which, column.name))
+                place_tuples(field->values, column, to, [&](const auto& visit) { tuples_of(p, visit); });
     });
 }
 
@@ -223,7 +245,7 @@ void note_column(const Column& column, std::size_t pieces, std::string_view kind
 
 template <class TuplesOf>
 std::vector<Field> joined_fields(std::vector<Piece>& pieces, Fields which, std::string_view kind, std::size_t tuples,
-                                 TuplesOf tuples_of, std::vector<std::string>& notes) {
+                                 const TuplesOf& tuples_of, std::vector<std::string>& notes) {
     std::vector<Field> result;
     for (const Column& column : columns(pieces, which)) {
         note_column(column, pieces.size(), kind, notes);

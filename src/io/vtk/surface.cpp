@@ -28,24 +28,25 @@ std::vector<Attribute> attributes_of(vtkDataSetAttributes* attributes) {
 }
 
 /// Calls add(corners) for each cell. Offsets were not checked by VTK.
-template <class Add>
-bool each_cell(vtkCellArray* cells, Add add) {
-    const Array connectivity = shared_array(cells->GetConnectivityArray()),
-                offsets = shared_array(cells->GetOffsetsArray());
+template <class Index, class Add>
+bool each_cell(std::span<const Index> points, std::span<const Index> begins, const Add& add) {
     std::vector<std::uint64_t> corners;
-    return connectivity.visit([&](auto points) {
-        return offsets.visit([&](auto begins) {
-            for (std::size_t cell = 0; cell + 1 < begins.size(); ++cell) {
-                const auto begin = static_cast<std::uint64_t>(begins[cell]),
-                           end = static_cast<std::uint64_t>(begins[cell + 1]);
-                if (begin > end || end > points.size()) return false;
-                corners.assign(points.begin() + static_cast<std::ptrdiff_t>(begin),
-                               points.begin() + static_cast<std::ptrdiff_t>(end));
-                add(std::span<const std::uint64_t>(corners));
-            }
-            return true;
-        });
-    });
+    for (std::size_t cell = 0; cell + 1 < begins.size(); ++cell) {
+        const auto begin = static_cast<std::uint64_t>(begins[cell]), end = static_cast<std::uint64_t>(begins[cell + 1]);
+        if (begin > end || end > points.size()) return false;
+        corners.assign(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                       points.begin() + static_cast<std::ptrdiff_t>(end));
+        add(std::span<const std::uint64_t>(corners));
+    }
+    return true;
+}
+
+/// VTK keeps both arrays in the same type, int32 or int64.
+template <class Add>
+bool each_cell(vtkCellArray* cells, const Add& add) {
+    const Array points = shared_array(cells->GetConnectivityArray()), begins = shared_array(cells->GetOffsetsArray());
+    return cells->IsStorage64Bit() ? each_cell(points.as<std::int64_t>(), begins.as<std::int64_t>(), add)
+                                   : each_cell(points.as<std::int32_t>(), begins.as<std::int32_t>(), add);
 }
 
 } // namespace
