@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/extract_once.hpp>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "api/finish.hpp"
 #include "core/cells.hpp"

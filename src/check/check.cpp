@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "check/components.hpp"
 #include "check/grid_faces.hpp"

@@ -2,7 +2,7 @@
 // find_field(): which field a name means, and its values as one scalar a point.
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <isotet/grid.hpp>
 

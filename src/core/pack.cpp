@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "core/block_reuse.hpp"
 #include "core/field_storage.hpp"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <mutex>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "core/growth.hpp"
 #include "core/pack_draft.hpp"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "core/parallel.hpp"
 #include "cpu/steps.hpp"

@@ -2,7 +2,7 @@
 // "kuhn:64:gyroid,sphere" as MakeOptions. Names are judged by make_grid().
 #include <charconv>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <isotet/make.hpp>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <isotet/draw_tets.hpp>
 #include <isotet/render.hpp>

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace isotet::vulkan {
 

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "vulkan/failure.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace isotet::vulkan {
 

@@ -2,7 +2,7 @@
 #include "vulkan/loader.hpp"
 
 #include <dlfcn.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace isotet::vulkan {
 

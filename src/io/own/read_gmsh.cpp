@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/read_gmsh_parts.hpp"
 #include "io/reader.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // $Nodes, $ParametricNodes and $Elements of MSH 2.0 to 2.2, ascii and binary.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/read_gmsh_parts.hpp"
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // $NodeData and $ElementData of MSH files: headers are text, values text or binary, the same in all versions.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/read_gmsh_parts.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <png.h>
 
 #include "core/guard.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "core/errors.hpp"
 #include "io/own/byte_reader.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/text_scanner.hpp"
 

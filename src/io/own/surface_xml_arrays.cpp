@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/byte_reader.hpp"
 #include "io/own/pace.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/write_formats.hpp"
 #include "io/own/write_names.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Legacy VTK (.vtk), binary, version 5.1: the one that VTK 9 reads without turning the cells around.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/write_formats.hpp"
 #include "io/own/write_names.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace isotet::io {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/write_formats.hpp"
 #include "io/own/write_text.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/own/write_vtk_xml.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/write_names.hpp"
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // VTK XML PolyData (.vtp).
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/write_formats.hpp"
 #include "io/own/write_vtk_xml.hpp"

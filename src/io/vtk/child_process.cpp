@@ -13,7 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/vtk/child_process.hpp"
 #include "io/own/file_kind.hpp"

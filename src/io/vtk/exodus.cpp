@@ -3,7 +3,7 @@
 // by the global numbers of their nodes.
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/reader.hpp"
 #include "io/vtk/escape.hpp"

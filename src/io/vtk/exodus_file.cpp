@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <vtk_exodusII.h>
 
 #include "io/vtk/escape.hpp"

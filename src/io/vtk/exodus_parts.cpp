@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/vtk/escape.hpp"
 #include "io/vtk/exodus_parts.hpp"

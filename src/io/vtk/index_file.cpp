@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/vtk/escape.hpp"
 #include "io/vtk/index_file.hpp"

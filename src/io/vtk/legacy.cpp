@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Legacy VTK files, grids of any kind.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <vtkDataSet.h>
 #include <vtkDataSetReader.h>
 #include <vtkNew.h>

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // HDF5: the superblock states where the file ends. (The library checks this, too, but some readers ignore it.)
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/mapped_file.hpp"
 #include "io/vtk/length_check.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Grids whose cells are implied: their points and hexahedra are written out.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <vtkImageData.h>
 #include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>

@@ -2,7 +2,7 @@
 // Trees of blocks, and what all of VTK's readers are asked in the same way.
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <vtkAlgorithm.h>
 #include <vtkCellData.h>
 #include <vtkCompositeDataIterator.h>

@@ -2,7 +2,7 @@
 // XDMF 2 and 3: unstructured uniform grids, in collections over time and space.
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/reader.hpp"
 #include "io/own/text_scanner.hpp"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/mapped_file.hpp"
 #include "io/own/text_scanner.hpp"

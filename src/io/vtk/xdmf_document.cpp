@@ -3,7 +3,7 @@
 #include <map>
 #include <optional>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/own/mapped_file.hpp"
 #include "io/own/text_scanner.hpp"
