@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // join(): surfaces one after another.
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -13,11 +14,11 @@ namespace isotet {
 namespace {
 
 using Parts = std::vector<const Surface*>;
+using Get = std::function<const Array&(const Surface&)>; // one of its arrays
 
 bool is_alike(const Array& a, const Array& b) { return a.type() == b.type() && a.components() == b.components(); }
 
 /// The arrays one after another; nothing unless all have one type and shape and at least one tuple.
-template <class Get>
 Array concatenate(const Parts& parts, const Get& get) {
     if (parts.empty()) return {};
     const Array& first = get(*parts[0]);
@@ -29,7 +30,7 @@ Array concatenate(const Parts& parts, const Get& get) {
         for (const Surface* part : parts) size += get(*part).size();
         all.reserve(size);
         for (const Surface* part : parts) {
-            const auto more = get(*part).template as<Value>();
+            const auto more = get(*part).as<Value>();
             all.insert(all.end(), more.begin(), more.end());
         }
         return Array::own(std::move(all), first.components());
@@ -37,7 +38,6 @@ Array concatenate(const Parts& parts, const Get& get) {
 }
 
 /// As concatenate(), but only if every part has a tuple for each of its vertices (or triangles).
-template <class Get>
 Array concatenate_full(const Parts& parts, const Get& get, std::size_t (Surface::*count)() const noexcept) {
     const bool full =
         std::ranges::all_of(parts, [&](const Surface* part) { return get(*part).tuples() == (part->*count)(); });
@@ -144,23 +144,18 @@ Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& is
         return part->origin == first.origin && is_alike(part->positions, first.positions);
     });
     joined.origin = alike ? first.origin : std::array<double, 3>{};
-    joined.positions = alike ? concatenate(parts, [](const Surface& part) -> const Array& { return part.positions; })
-                             : absolute_positions(parts);
+    joined.positions = alike ? concatenate(parts, &Surface::positions) : absolute_positions(parts);
     joined.triangles = vertices <= std::numeric_limits<std::uint32_t>::max()
                            ? join_triangles<std::uint32_t>(parts, triangles)
                            : join_triangles<std::uint64_t>(parts, triangles);
     if (std::ranges::all_of(parts, [&](const Surface* part) { return part->normals_kind == first.normals_kind; })) {
         const auto count = first.normals_kind == Normals::face ? &Surface::triangle_count : &Surface::vertices;
-        joined.normals =
-            concatenate_full(parts, [](const Surface& part) -> const Array& { return part.normals; }, count);
+        joined.normals = concatenate_full(parts, &Surface::normals, count);
         joined.normals_kind = joined.normals.empty() ? Normals::none : first.normals_kind;
     }
-    joined.edge_ends =
-        concatenate_full(parts, [](const Surface& part) -> const Array& { return part.edge_ends; }, &Surface::vertices);
-    joined.edge_weights = concatenate_full(
-        parts, [](const Surface& part) -> const Array& { return part.edge_weights; }, &Surface::vertices);
-    joined.source_cells = concatenate_full(
-        parts, [](const Surface& part) -> const Array& { return part.source_cells; }, &Surface::triangle_count);
+    joined.edge_ends = concatenate_full(parts, &Surface::edge_ends, &Surface::vertices);
+    joined.edge_weights = concatenate_full(parts, &Surface::edge_weights, &Surface::vertices);
+    joined.source_cells = concatenate_full(parts, &Surface::source_cells, &Surface::triangle_count);
     joined.point_fields = join_fields(parts, &Surface::point_fields, &Surface::vertices);
     joined.cell_fields = join_fields(parts, &Surface::cell_fields, &Surface::triangle_count);
     if (isovalues.size() == surfaces.size()) {
