@@ -70,7 +70,7 @@ void pack_all(benchmark::State& state) {
 void select(benchmark::State& state) {
     const Subject& of = subject(state);
     const core::Packed& packed = of.packed.data();
-    const float stored = core::store_isovalue<float>(isovalue, packed.storage);
+    const core::StoredIsovalue<float> stored = core::store_isovalue<float>(isovalue, packed.storage);
     for (auto _ : state) benchmark::DoNotOptimize(cpu::select(packed, std::span(&stored, 1)).value());
     count_tets(state, of);
 }
@@ -78,7 +78,7 @@ void select(benchmark::State& state) {
 void select_and_count(benchmark::State& state) {
     const Subject& of = subject(state);
     const core::Packed& packed = of.packed.data();
-    const float stored = core::store_isovalue<float>(isovalue, packed.storage);
+    const core::StoredIsovalue<float> stored = core::store_isovalue<float>(isovalue, packed.storage);
     const cpu::Wanted<float> wanted{std::span(&stored, 1)};
     for (auto _ : state) {
         const cpu::Selection selection = cpu::select(packed, wanted.isovalues).value();

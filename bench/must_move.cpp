@@ -41,7 +41,7 @@ std::uint64_t bytes_of(const Surface& surface) {
 std::uint64_t extraction_must_move(const PackedGrid& packed, double isovalue, const Surface& surface) {
     const core::Packed& data = packed.data();
     const auto read = [&]<class Real>() {
-        return bytes_of_selected(data, core::store_isovalue<Real>(isovalue, data.storage));
+        return bytes_of_selected(data, core::store_isovalue<Real>(isovalue, data.storage).value);
     };
     return (data.single() ? read.operator()<float>() : read.operator()<double>()) + bytes_of(surface);
 }

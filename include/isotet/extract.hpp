@@ -36,12 +36,13 @@ struct ExtractOptions {
 
 struct ExtractReport {
     std::uint64_t selected_clusters = 0;
-    std::uint64_t tied_points = 0;            ///< points whose stored value equals the stored isovalue
-    std::optional<std::uint64_t> false_ties;  ///< of these, not ties in the input's own precision; nothing when the
-                                              ///< input is no longer at hand
+    std::uint64_t tied_points = 0;            ///< points whose value, as stored, equals the isovalue, as stored
+    std::optional<std::uint64_t> false_ties;  ///< of these, made equal only by rounding: none where values are stored
+                                              ///< unchanged; nothing when the input is no longer at hand
     bool near_tie = false; ///< no point is tied, but points hold the value of the field's type nearest to the isovalue
                            ///< (0.7 on float32)
-    double isovalue_stored = 0;               ///< the isovalue as rounded for the comparison, in the unit of the field
+    double isovalue_stored = 0;               ///< the isovalue of the surface, in the unit of the field: rounded as
+                                              ///< values are; not at all where these are stored unchanged
     std::uint64_t surface_bytes = 0;          ///< all arrays of the surface
     std::uint64_t transient_bytes = 0;        ///< beyond the surfaces themselves, at the peak of the call
     std::uint64_t predicted_bytes = 0;        ///< what the call was expected to need at most, surfaces included, before

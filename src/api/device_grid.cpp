@@ -24,7 +24,7 @@ struct DeviceSurface::Data {
     std::shared_ptr<vulkan::Context> context; ///< before the buffers, so that it goes after them
     vulkan::SurfaceBuffers buffers;
     double isovalue = 0;
-    float stored = 0;
+    core::StoredIsovalue<float> stored{0};
     double stored_in_unit = 0; ///< of the field
     std::array<double, 3> origin{};
     std::uint64_t changes = 0; ///< of the packed grid, when it was extracted
@@ -270,7 +270,7 @@ Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::s
         data->context = grid->shared_context();
         data->isovalue = isovalues[i];
         data->stored = core::store_isovalue<float>(isovalues[i], packed.storage);
-        data->stored_in_unit = core::restore_value(data->stored, packed.storage);
+        data->stored_in_unit = core::restore_value(data->stored.sum(), packed.storage);
         data->origin = packed.origin;
         data->changes = packed.changes;
         data->storages.clear();

@@ -129,13 +129,13 @@ Result<const std::vector<std::uint32_t>*> TetFilter::find(double isovalue) {
     if (!std::isfinite(isovalue))
         return Error{ErrorCode::invalid_argument, fmt::format("the isovalue is {}, but must be finite", isovalue)};
     return core::guarded("searching tets", [&]() -> Result<const std::vector<std::uint32_t>*> {
-        tets_->search->find(core::store_isovalue<float>(isovalue, tets_->storage), tets_->found);
+        tets_->search->find(core::store_isovalue<float>(isovalue, tets_->storage).value, tets_->found);
         return &tets_->found;
     });
 }
 
 bool TetFilter::is_cut(std::uint32_t tet, double isovalue) const {
-    return tets_->table.range(tet).holds(core::store_isovalue<float>(isovalue, tets_->storage));
+    return tets_->table.range(tet).holds(core::store_isovalue<float>(isovalue, tets_->storage).value);
 }
 
 } // namespace isotet

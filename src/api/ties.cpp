@@ -43,9 +43,9 @@ void for_points_with(const core::Packed& packed, Real stored, const F& f) {
 } // namespace
 
 template <class Real>
-void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points,
-                 ExtractReport& report) {
-    report.isovalue_stored = core::restore_value(static_cast<double>(stored), packed.storage);
+void report_ties(const core::Packed& packed, double isovalue, const core::StoredIsovalue<Real>& stored,
+                 std::uint64_t tied_points, ExtractReport& report) {
+    report.isovalue_stored = core::restore_value(stored.sum(), packed.storage);
     report.tied_points = tied_points;
     if (packed.field.tuples() != packed.user_points) return;
     const auto holds_exactly = [&](std::uint64_t point, double value) {
@@ -54,7 +54,7 @@ void report_ties(const core::Packed& packed, double isovalue, Real stored, std::
     };
     if (tied_points) {
         std::atomic<std::uint64_t> exact{0};
-        for_points_with(packed, stored, [&](std::uint64_t point) {
+        for_points_with(packed, stored.tied, [&](std::uint64_t point) {
             if (holds_exactly(point, isovalue)) exact.fetch_add(1, std::memory_order_relaxed);
         });
         report.false_ties = tied_points - exact;
@@ -63,7 +63,7 @@ void report_ties(const core::Packed& packed, double isovalue, Real stored, std::
     report.false_ties = 0;
     const double nearest = snap(packed.field, isovalue);
     const Real nearest_stored = core::store_value<Real>(nearest, packed.storage);
-    if (nearest == isovalue || nearest_stored == stored) return;
+    if (nearest == isovalue || nearest_stored == stored.tied) return;
     std::atomic<bool> near{false};
     for_points_with(packed, nearest_stored, [&](std::uint64_t point) {
         if (holds_exactly(point, nearest)) near.store(true, std::memory_order_relaxed);
@@ -71,8 +71,10 @@ void report_ties(const core::Packed& packed, double isovalue, Real stored, std::
     report.near_tie = near;
 }
 
-template void report_ties<float>(const core::Packed&, double, float, std::uint64_t, ExtractReport&);
-template void report_ties<double>(const core::Packed&, double, double, std::uint64_t, ExtractReport&);
+template void report_ties<float>(const core::Packed&, double, const core::StoredIsovalue<float>&, std::uint64_t,
+                                 ExtractReport&);
+template void report_ties<double>(const core::Packed&, double, const core::StoredIsovalue<double>&, std::uint64_t,
+                                  ExtractReport&);
 
 } // namespace api
 } // namespace isotet

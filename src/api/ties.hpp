@@ -5,6 +5,7 @@
 #include <isotet/extract.hpp>
 
 #include "core/packed.hpp"
+#include "core/storage.hpp"
 
 namespace isotet::api {
 
@@ -14,7 +15,7 @@ namespace isotet::api {
 ///                when there are tied points; the same for the nearest value of the field's type when it is stored
 ///                differently
 template <class Real>
-void report_ties(const core::Packed& packed, double isovalue, Real stored, std::uint64_t tied_points,
-                 ExtractReport& report);
+void report_ties(const core::Packed& packed, double isovalue, const core::StoredIsovalue<Real>& stored,
+                 std::uint64_t tied_points, ExtractReport& report);
 
 } // namespace isotet::api

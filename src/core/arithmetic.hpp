@@ -22,8 +22,9 @@ using Vector = std::array<Real, 3>;
 
 /// Where the isovalue lies between the end below (0) and the end above (1).
 template <class Real>
-Real edge_weight(Real isovalue, Real below, Real above) {
-    const Real t = (isovalue - below) / (above - below);
+Real edge_weight(const StoredIsovalue<Real>& isovalue, Real below, Real above) {
+    const Real rounded_up = isovalue.value - below;
+    const Real t = (rounded_up + isovalue.rest) / (above - below);
     return t < Real(0x1p-32) ? Real(0) : t;
 }
 

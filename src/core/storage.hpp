@@ -38,16 +38,30 @@ Real store_value(double value, const Storage& storage) {
     return std::abs(stored) < Real(tiny) ? Real(0) : stored; // also turns -0 into +0
 }
 
-/// The stored form of an isovalue: rounded up where values are stored unchanged, so that `stored >= isovalue` says the
-/// same as the exact comparison; like the values otherwise.
+/// The stored form of an isovalue: `value` + `rest`.
 template <class Real>
-Real store_isovalue(double isovalue, const Storage& storage) {
+struct StoredIsovalue {
+    Real value;        ///< stored values that are at least this are above
+    Real rest = 0;     ///< 0, or less where `value` was rounded up
+    Real tied = value; ///< stored values that equal this are tied; never_stored where none can be
+
+    static constexpr Real never_stored = static_cast<Real>(2 * stored_infinity);
+
+    double sum() const { return static_cast<double>(value) + static_cast<double>(rest); }
+};
+
+/// Where values are stored unchanged, `value` is rounded up: a stored value is at least that just when it is at least
+/// the isovalue, and equals the isovalue only if nothing was rounded. Elsewhere `value` is rounded as values are.
+template <class Real>
+StoredIsovalue<Real> store_isovalue(double isovalue, const Storage& storage) {
     double x = (isovalue - storage.offset) * storage.scale;
     x = std::min(std::max(x, -largest_stored), largest_stored);
-    Real stored = static_cast<Real>(x);
-    if (storage.unchanged && static_cast<double>(stored) < x)
-        stored = std::nextafter(stored, std::numeric_limits<Real>::infinity());
-    return std::abs(stored) < Real(tiny) ? Real(0) : stored;
+    Real value = static_cast<Real>(x);
+    if (storage.unchanged && static_cast<double>(value) < x)
+        value = std::nextafter(value, std::numeric_limits<Real>::infinity());
+    if (std::abs(value) < Real(tiny)) return {0}; // as values so small are
+    if (!storage.unchanged || static_cast<double>(value) == x) return {value};
+    return {value, static_cast<Real>(x - static_cast<double>(value)), StoredIsovalue<Real>::never_stored};
 }
 
 /// A stored value in the unit of the field.

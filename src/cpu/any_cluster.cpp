@@ -30,7 +30,8 @@ public:
 
     std::uint64_t own_tied_points() const {
         const Real* const values = s_.values.data();
-        return static_cast<std::uint64_t>(std::count(values + header_.foreign_points, values + points_, isovalue_));
+        return static_cast<std::uint64_t>(
+            std::count(values + header_.foreign_points, values + points_, isovalue_.tied));
     }
 
     const Record<Real>* cut(Start& count) {
@@ -61,20 +62,20 @@ private:
         const bool merge = cutting_.wanted.ties == Ties::merge;
         for (std::size_t k = 0; k < points_; ++k) {
             const Real value = s_.values[k];
-            s_.above[k] = value >= isovalue_;
-            s_.special[k] = static_cast<std::uint8_t>(merge && value == isovalue_ ? is_tied
-                                                      : core::is_nan(value)       ? has_no_data
-                                                                                  : 0);
+            s_.above[k] = value >= isovalue_.value;
+            s_.special[k] = static_cast<std::uint8_t>(merge && value == isovalue_.tied ? is_tied
+                                                      : core::is_nan(value)            ? has_no_data
+                                                                                       : 0);
         }
     }
 
     void cut_tets() {
         s_.cut.count = 0;
         const core::Range<Real> range = packed_.as<Real>().ranges[cluster_];
-        if (!(range.lower < isovalue_)) return; // nothing below
+        if (!(range.lower < isovalue_.value)) return; // nothing below
         const auto tets = packed_.cluster_tets(cluster_);
         const core::GroupRange* group = packed_.group_ranges.data() + header_.first_group;
-        const std::uint8_t step = core::quantize(isovalue_, range);
+        const std::uint8_t step = core::quantize(isovalue_.value, range);
         for (std::size_t begin = 0; begin < tets.size(); begin += core::group_size, ++group) {
             if (group->lower > step || step > group->upper) continue;
             for (std::size_t i = begin; i < std::min(begin + core::group_size, tets.size()); ++i)
@@ -187,7 +188,7 @@ private:
     const Packed& packed_;
     const std::size_t place_, cluster_;
     const std::uint32_t isovalue_number_;
-    const Real isovalue_;
+    const core::StoredIsovalue<Real> isovalue_;
     const core::ClusterHeader& header_;
     const core::ClusterLinks links_;
     const std::size_t points_;

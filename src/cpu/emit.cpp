@@ -141,7 +141,7 @@ private:
     /// Vertices of a cluster that is not plain: at tied points and on seam edges. Others may be who uses them.
     OwnVertices<Real> find_masked(std::size_t place, Scratch<Real>& s) const {
         const core::ClusterHeader& h = packed_.headers[s.points->cluster];
-        const Real isovalue = wanted_.isovalues[selection_.isovalues[place]];
+        const core::StoredIsovalue<Real>& isovalue = wanted_.isovalues[selection_.isovalues[place]];
         std::size_t count = 0;
         core::for_bits(masks_.tied(place), Masks::tied_words, [&](std::size_t own) {
             const auto local = static_cast<std::uint8_t>(h.foreign_points + own);
@@ -152,7 +152,7 @@ private:
         core::for_bits(masks_.seams(place), masks_.seam_words(place), [&](std::size_t k) {
             std::uint8_t below = own_seams[k].lower, above = own_seams[k].higher;
             const auto value = [&](std::uint8_t local) { return reals_.values[s.points->packed[local]]; };
-            if (value(below) >= isovalue) std::swap(below, above);
+            if (value(below) >= isovalue.value) std::swap(below, above);
             s.ends[count] = {below, above};
             s.weights[count++] = core::edge_weight(isovalue, value(below), value(above));
         });

@@ -64,9 +64,8 @@ Result<ops::RawSurfaces> extract(const core::Packed& packed, const ops::Request<
 
     std::vector<std::size_t> order(request.isovalues.size()); // ascending isovalue -> the caller's
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return request.isovalues[a] < request.isovalues[b]; });
-    std::vector<Real> isovalues;
+    std::ranges::sort(order, {}, [&](std::size_t i) { return request.isovalues[i].value; });
+    std::vector<core::StoredIsovalue<Real>> isovalues;
     for (const std::size_t i : order) isovalues.push_back(request.isovalues[i]);
     // Where only positions are wanted, they are kept at once: more memory than ends and weights, but nothing is found
     // twice. In double precision that would be too much.

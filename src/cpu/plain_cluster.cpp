@@ -77,10 +77,10 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     static constexpr Record<float> nothing;
     const std::size_t cluster = cutting.selection.clusters[place];
     const core::ClusterHeader& h = cutting.packed.headers[cluster];
-    const float isovalue = cutting.wanted.isovalues[cutting.selection.isovalues[place]];
+    const core::StoredIsovalue<float>& isovalue = cutting.wanted.isovalues[cutting.selection.isovalues[place]];
     if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, isovalue, s.above.data()))
         return nullptr;
-    cut_tets<Simd>(cutting.packed, cluster, isovalue, s);
+    cut_tets<Simd>(cutting.packed, cluster, isovalue.value, s);
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.used.use(s.keys[i]);
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < s.cut.count; ++i) triangles += core::case_table[s.cut.cases[i]].triangles;

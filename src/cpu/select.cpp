@@ -21,14 +21,16 @@ struct Sums {
 
 /// Calls f(cluster, first, end) for each cluster of a task whose range holds the isovalues [first, end) and no others.
 template <class Real, class F>
-void for_selected(const Packed& packed, std::span<const Real> isovalues, std::size_t task, F&& f) {
+void for_selected(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues, std::size_t task,
+                  F&& f) {
     const auto& ranges = packed.as<Real>().ranges;
-    const Real lowest = isovalues.front(), highest = isovalues.back();
+    constexpr auto value = &core::StoredIsovalue<Real>::value;
+    const Real lowest = isovalues.front().value, highest = isovalues.back().value;
     for (std::size_t c = task * clusters_a_task; c < std::min(packed.clusters(), (task + 1) * clusters_a_task); ++c) {
         const core::Range<Real> range = ranges[c];
         if (!(range.lower <= highest && lowest <= range.upper)) continue;
-        const auto first = std::lower_bound(isovalues.begin(), isovalues.end(), range.lower);
-        const auto end = std::upper_bound(first, isovalues.end(), range.upper);
+        const auto first = std::ranges::lower_bound(isovalues, range.lower, {}, value);
+        const auto end = std::ranges::upper_bound(first, isovalues.end(), range.upper, {}, value);
         if (first != end)
             f(c, static_cast<std::size_t>(first - isovalues.begin()),
               static_cast<std::size_t>(end - isovalues.begin()));
@@ -38,7 +40,7 @@ void for_selected(const Packed& packed, std::span<const Real> isovalues, std::si
 } // namespace
 
 template <class Real>
-Result<Selection> select(const Packed& packed, std::span<const Real> isovalues) {
+Result<Selection> select(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues) {
     const auto words_of = [&](std::size_t c) {
         return Masks::tied_words + core::words_of_bits(packed.headers[c].own_seams);
     };
@@ -88,8 +90,8 @@ Result<Selection> select(const Packed& packed, std::span<const Real> isovalues) 
     return selection;
 }
 
-template Result<Selection> select<float>(const Packed&, std::span<const float>);
-template Result<Selection> select<double>(const Packed&, std::span<const double>);
+template Result<Selection> select<float>(const Packed&, std::span<const core::StoredIsovalue<float>>);
+template Result<Selection> select<double>(const Packed&, std::span<const core::StoredIsovalue<double>>);
 
 Masks::Masks(const Selection& selection) : selection_(&selection), words_(selection.first_word[selection.size()]) {
     core::parallel_ranges(words_.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {

@@ -15,14 +15,15 @@
 namespace isotet::cpu {
 
 struct Avx2 {
-    ISOTET_AVX2 static bool classify(const float* values, std::size_t n, float isovalue, std::uint8_t* above) {
-        const __m256 level = _mm256_set1_ps(isovalue);
+    ISOTET_AVX2 static bool classify(const float* values, std::size_t n, const core::StoredIsovalue<float>& isovalue,
+                                     std::uint8_t* above) {
+        const __m256 level = _mm256_set1_ps(isovalue.value), tied = _mm256_set1_ps(isovalue.tied);
         bool special = false;
         std::size_t k = 0;
         for (; k + 8 <= n; k += 8) {
             const __m256 x = _mm256_loadu_ps(values + k);
             const __m128i is_above = halves(_mm256_castps_si256(_mm256_cmp_ps(x, level, _CMP_GE_OQ)));
-            special |= _mm256_movemask_ps(_mm256_cmp_ps(x, level, _CMP_EQ_UQ)) != 0; // equal, or not a number
+            special |= _mm256_movemask_ps(_mm256_cmp_ps(x, tied, _CMP_EQ_UQ)) != 0; // tied, or not a number
             _mm_storel_epi64(reinterpret_cast<__m128i*>(above + k),
                              _mm_and_si128(_mm_packs_epi16(is_above, is_above), _mm_set1_epi8(1)));
         }
@@ -131,8 +132,8 @@ struct Avx2 {
     }
 
     ISOTET_AVX2 static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above, const float* values,
-                                  float isovalue, EndPair* ends, float* weights) {
-        const __m256 level = _mm256_set1_ps(isovalue);
+                                  const core::StoredIsovalue<float>& isovalue, EndPair* ends, float* weights) {
+        const __m256 level = _mm256_set1_ps(isovalue.value), rest = _mm256_set1_ps(isovalue.rest);
         const __m256i table = table_of(above);
         for (std::size_t i = 0; i < n; i += 8) {
             const __m256i key = _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(edges + i)));
@@ -147,7 +148,8 @@ struct Avx2 {
             _mm_storeu_si128(reinterpret_cast<__m128i*>(ends + i), halves(pairs));
             const __m256 value_below = _mm256_i32gather_ps(values, below, 4),
                          value_above = _mm256_i32gather_ps(values, end_above, 4);
-            const __m256 t = _mm256_div_ps(_mm256_sub_ps(level, value_below), _mm256_sub_ps(value_above, value_below));
+            const __m256 part = _mm256_add_ps(_mm256_sub_ps(level, value_below), rest);
+            const __m256 t = _mm256_div_ps(part, _mm256_sub_ps(value_above, value_below));
             const __m256 large = _mm256_cmp_ps(t, _mm256_set1_ps(0x1p-32f), _CMP_NLT_UQ);
             _mm256_storeu_ps(weights + i, _mm256_and_ps(t, large));
         }

@@ -15,14 +15,15 @@
 namespace isotet::cpu {
 
 struct Avx512 {
-    ISOTET_AVX512 static bool classify(const float* values, std::size_t n, float isovalue, std::uint8_t* above) {
-        const __m512 level = _mm512_set1_ps(isovalue);
+    ISOTET_AVX512 static bool classify(const float* values, std::size_t n, const core::StoredIsovalue<float>& isovalue,
+                                       std::uint8_t* above) {
+        const __m512 level = _mm512_set1_ps(isovalue.value), tied = _mm512_set1_ps(isovalue.tied);
         unsigned special = 0;
         for (std::size_t k = 0; k < n; k += 16) {
             const __mmask16 there = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
             const __m512 x = _mm512_maskz_loadu_ps(there, values + k);
             const __mmask16 is_above = _mm512_cmp_ps_mask(x, level, _CMP_GE_OQ);
-            special |= _mm512_mask_cmp_ps_mask(there, x, level, _CMP_EQ_UQ); // equal, or not a number
+            special |= _mm512_mask_cmp_ps_mask(there, x, tied, _CMP_EQ_UQ); // tied, or not a number
             _mm_storeu_si128(reinterpret_cast<__m128i*>(above + k), _mm_maskz_set1_epi8(is_above, 1));
         }
         return special;
@@ -128,9 +129,10 @@ struct Avx512 {
     ISOTET_AVX512 static void keys(const CutTets& cut, VertexKey* out) { Avx2::keys(cut, out); }
 
     ISOTET_AVX512 static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above,
-                                    const float* values, float isovalue, EndPair* ends, float* weights) {
+                                    const float* values, const core::StoredIsovalue<float>& isovalue, EndPair* ends,
+                                    float* weights) {
         const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
-        const __m512 level = _mm512_set1_ps(isovalue);
+        const __m512 level = _mm512_set1_ps(isovalue.value), rest = _mm512_set1_ps(isovalue.rest);
         for (std::size_t i = 0; i < n; i += 16) {
             const __m256i key = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(edges + i));
             const __m256i a = _mm256_and_si256(_mm256_srli_epi16(key, 7), _mm256_set1_epi16(127));
@@ -143,7 +145,8 @@ struct Avx512 {
                                 _mm256_or_si256(end_below, _mm256_slli_epi16(end_above, 8)));
             const __m512 value_below = _mm512_i32gather_ps(_mm512_cvtepu16_epi32(end_below), values, 4);
             const __m512 value_above = _mm512_i32gather_ps(_mm512_cvtepu16_epi32(end_above), values, 4);
-            const __m512 t = _mm512_div_ps(_mm512_sub_ps(level, value_below), _mm512_sub_ps(value_above, value_below));
+            const __m512 part = _mm512_add_ps(_mm512_sub_ps(level, value_below), rest);
+            const __m512 t = _mm512_div_ps(part, _mm512_sub_ps(value_above, value_below));
             const __mmask16 large = _mm512_cmp_ps_mask(t, _mm512_set1_ps(0x1p-32f), _CMP_NLT_UQ);
             _mm512_storeu_ps(weights + i, _mm512_maskz_mov_ps(large, t));
         }

@@ -52,13 +52,14 @@ struct KeyTable {
 struct Portable {
     static constexpr std::size_t table_size = core::max_cluster_points;
 
-    /// above[k] = 1 where values[k] >= isovalue, else 0, for k < n. Returns true when some value equals the isovalue or
-    /// is NaN. May read and write up to the next multiple of 64.
-    static bool classify(const float* values, std::size_t n, float isovalue, std::uint8_t* above) {
+    /// above[k] = 1 where values[k] is above, else 0, for k < n. Returns true when some value is tied or NaN. May read
+    /// and write up to the next multiple of 64.
+    static bool classify(const float* values, std::size_t n, const core::StoredIsovalue<float>& isovalue,
+                         std::uint8_t* above) {
         bool special = false;
         for (std::size_t k = 0; k < n; ++k) {
-            above[k] = values[k] >= isovalue;
-            special |= !(values[k] < isovalue || values[k] > isovalue);
+            above[k] = values[k] >= isovalue.value;
+            special |= !(values[k] < isovalue.tied || values[k] > isovalue.tied);
         }
         return special;
     }
@@ -158,7 +159,7 @@ struct Portable {
     /// Ends of edges, and where the isovalue lies between them. May read and write up to the next multiple of 16.
     template <class Real>
     static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above, const Real* values,
-                      Real isovalue, EndPair* ends, Real* weights) {
+                      const core::StoredIsovalue<Real>& isovalue, EndPair* ends, Real* weights) {
         for (std::size_t i = 0; i < n; ++i) {
             // Sides are as good as random: no branch.
             const std::size_t lower = edges[i] / table_size, higher = edges[i] % table_size;

@@ -23,7 +23,7 @@ using core::Packed;
 /// What is extracted: as ops::Request, but the isovalues ascend.
 template <class Real>
 struct Wanted {
-    std::span<const Real> isovalues;
+    std::span<const core::StoredIsovalue<Real>> isovalues;
     Ties ties = Ties::merge;
     bool ends = false; ///< records keep ends and weights of vertices instead of positions
     bool source_cells = false;
@@ -125,7 +125,7 @@ struct Target {
 
 /// Errors   invalid_argument when there would be 2^32 places or more
 template <class Real>
-Result<Selection> select(const Packed& packed, std::span<const Real> isovalues);
+Result<Selection> select(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues);
 
 template <class Real>
 Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Selection& selection, Masks& masks,

@@ -21,6 +21,7 @@
 #include <isotet/result.hpp>
 
 #include "core/packed.hpp"
+#include "core/storage.hpp"
 
 namespace isotet::ops {
 
@@ -33,7 +34,7 @@ struct CarriedField {
 /// What to extract.
 template <class Real>
 struct Request {
-    std::vector<Real> isovalues; ///< stored form, in any order; one surface each
+    std::vector<core::StoredIsovalue<Real>> isovalues; ///< in any order; one surface each
     Ties ties = Ties::merge;
     bool ends = false;          ///< edge ends and weights
     bool normals = false;       ///< gradient normals (packed.gradients is there)

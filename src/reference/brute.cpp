@@ -135,7 +135,7 @@ private:
         return stored;
     }
     bool is_coarse(const UserTet& tet) const;
-    void report_ties(double isovalue, Real stored, ops::BruteSurface& surface) const;
+    void report_ties(double isovalue, const core::StoredIsovalue<Real>& stored, ops::BruteSurface& surface) const;
     std::map<std::uint64_t, std::uint32_t> gradients() const;
 
     std::vector<UserTet> tets_;
@@ -168,13 +168,14 @@ bool StoredGrid<Real>::is_coarse(const UserTet& tet) const {
 }
 
 template <class Real>
-void StoredGrid<Real>::report_ties(double isovalue, Real stored, ops::BruteSurface& surface) const {
+void StoredGrid<Real>::report_ties(double isovalue, const core::StoredIsovalue<Real>& stored,
+                                   ops::BruteSurface& surface) const {
     const auto holds_exactly = [&](std::uint64_t point, double value) {
         return field_.visit([&](auto values) { return core::equals_exactly(values[point], value); });
     };
-    surface.isovalue_stored = core::restore_value(static_cast<double>(stored), storage_);
+    surface.isovalue_stored = core::restore_value(stored.sum(), storage_);
     for (const std::uint64_t point : used_)
-        if (values_.at(point) == stored) {
+        if (values_.at(point) == stored.tied) {
             ++surface.raw.tied_points;
             surface.false_ties += !holds_exactly(point, isovalue);
         }
@@ -206,10 +207,10 @@ std::map<std::uint64_t, std::uint32_t> StoredGrid<Real>::gradients() const {
 
 template <class Real>
 ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::BruteRequest& request) {
-    const Real isovalue = core::store_isovalue<Real>(user_isovalue, storage_);
+    const core::StoredIsovalue<Real> isovalue = core::store_isovalue<Real>(user_isovalue, storage_);
     const auto value = [&](std::uint64_t p) { return values_.at(p); };
     const auto edge_of = [&](std::uint64_t above, std::uint64_t below) -> Edge {
-        if (request.ties == Ties::merge && value(above) == isovalue) return {above, above};
+        if (request.ties == Ties::merge && value(above) == isovalue.tied) return {above, above};
         return {std::min(above, below), std::max(above, below)};
     };
     ops::BruteSurface surface;
@@ -219,7 +220,7 @@ ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Bru
     for (const UserTet& tet : tets_) {
         if (!is_valid(tet)) continue;
         unsigned index = 0;
-        for (std::size_t k = 0; k < 4; ++k) index |= unsigned{value(tet.corners[k]) >= isovalue} << k;
+        for (std::size_t k = 0; k < 4; ++k) index |= unsigned{value(tet.corners[k]) >= isovalue.value} << k;
         const core::TetCase& c = core::case_table[index];
         const std::size_t before = triangles.size();
         for (std::size_t t = 0; t < c.triangles; ++t) {
@@ -243,7 +244,7 @@ ops::BruteSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Bru
     std::uint64_t next = 0;
     for (auto& [edge, number] : numbers) {
         number = next++;
-        const bool lower_is_above = value(edge.first) >= isovalue;
+        const bool lower_is_above = value(edge.first) >= isovalue.value;
         const std::uint64_t below = lower_is_above ? edge.second : edge.first,
                             above = lower_is_above ? edge.first : edge.second;
         const Real t = below == above ? Real(0) : core::edge_weight(isovalue, value(below), value(above));

@@ -61,12 +61,12 @@ enum Kind { tied_point = 0, seam_edge = 1, inner_edge = 2 };
 using Place = std::tuple<std::uint32_t, int, std::uint64_t, std::uint64_t>;
 
 template <class Real>
-Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Real>& request, Real isovalue,
-                                    const Progress& progress) {
+Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Real>& request,
+                                    const core::StoredIsovalue<Real>& isovalue, const Progress& progress) {
     const auto& reals = packed.as<Real>();
     const auto value = [&](std::uint64_t p) { return reals.values[p]; };
-    const auto is_above = [&](std::uint64_t p) { return value(p) >= isovalue; };
-    const auto is_tied = [&](std::uint64_t p) { return value(p) == isovalue; };
+    const auto is_above = [&](std::uint64_t p) { return value(p) >= isovalue.value; };
+    const auto is_tied = [&](std::uint64_t p) { return value(p) == isovalue.tied; };
     const std::vector<ReferenceTet> tets = all_tets(packed);
 
     std::map<Edge, Holders> edge_holders;
@@ -153,8 +153,9 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
     if (request.normals) surface.normals = Array::own(std::move(normals), 3);
     if (request.source_cells) surface.source_cells = Array::own(std::move(source_cells));
     for (std::size_t c = 0; c < packed.clusters(); ++c)
-        surface.selected_clusters += reals.ranges[c].lower <= isovalue && isovalue <= reals.ranges[c].upper;
-    surface.tied_points = static_cast<std::uint64_t>(std::count(reals.values.begin(), reals.values.end(), isovalue));
+        surface.selected_clusters += reals.ranges[c].lower <= isovalue.value && isovalue.value <= reals.ranges[c].upper;
+    surface.tied_points =
+        static_cast<std::uint64_t>(std::count(reals.values.begin(), reals.values.end(), isovalue.tied));
     return surface;
 }
 
@@ -163,7 +164,7 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
 template <class Real>
 Result<ops::RawSurfaces> extract(const Packed& packed, const ops::Request<Real>& request, const Progress& progress) {
     ops::RawSurfaces out;
-    for (const Real isovalue : request.isovalues) {
+    for (const core::StoredIsovalue<Real>& isovalue : request.isovalues) {
         auto surface = extract_one(packed, request, isovalue, progress);
         if (!surface) return std::move(surface).error();
         out.surfaces.push_back(*std::move(surface));

@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "core/storage.hpp"
 #include "render/send.hpp"
 
 namespace isotet::render {
@@ -77,7 +76,8 @@ layout::TetPage ChosenTets::describe(const Part& part) const {
         page.ranges = vulkan::address_of(store_->ranges,
                                          index * (layout::page_tets / layout::tet_group) * sizeof(core::CutRange));
     }
-    page.isovalue = stored_;
+    page.isovalue = stored_.value;
+    page.rest = stored_.rest;
     page.tets = part.tets;
     return page;
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/storage.hpp"
 #include "render/tet_pages.hpp"
 #include "vulkan/recorder.hpp"
 
@@ -49,7 +50,7 @@ private:
 
     std::shared_ptr<const TetPages> store_; ///< before the buffer, so that it goes after it
     double isovalue_ = 0;
-    float stored_ = 0;
+    core::StoredIsovalue<float> stored_{0};
     bool has_list_ = false;
     vulkan::Buffer numbers_; ///< of tets in their page, page by page
     std::vector<Part> parts_;

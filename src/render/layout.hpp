@@ -18,7 +18,7 @@ namespace layout {
 static_assert(sizeof(View) == 64 + 12 + 4 + 12 + 4 * 4 + 4 * 8 + 12 + 4);
 static_assert(sizeof(Mesh) == 8 * 8 + 3 * 12 + 3 * 4 && sizeof(Lines) == 8 + 12 + 4);
 static_assert(sizeof(FragmentList) == 4 && sizeof(Fragment) == 16);
-static_assert(sizeof(TetRegisters) == 68 && sizeof(TetTables) == 176 && sizeof(TetPage) == sizeof(Mesh) + 6 * 8 + 8);
+static_assert(sizeof(TetRegisters) == 68 && sizeof(TetTables) == 176 && sizeof(TetPage) == sizeof(Mesh) + 6 * 8 + 12);
 static_assert(sizeof(TwinPush) == 20 && page_tets % tet_group == 0);
 static_assert(sizeof(DrawPush) == 16 && sizeof(ResolvePush) == 8);
 

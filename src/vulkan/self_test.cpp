@@ -66,6 +66,9 @@ void set_ordinary_edge(SelfTestCase& out, Random& random, int lowest, int highes
     out.below = a;
     out.above = b;
     out.isovalue = std::clamp(a + (b - a) * static_cast<float>(random.below(1u << 20)) * 0x1p-20f, a, b);
+    if (out.isovalue == a || std::abs(out.isovalue) < 0x1p-70f) return;
+    const float step = out.isovalue - std::nextafter(out.isovalue, a);
+    out.rest = -step * static_cast<float>(random.below(1u << 20)) * 0x1p-20f;
 }
 
 void set_edge(SelfTestCase& out, std::size_t kind, Random& random) {
@@ -79,6 +82,7 @@ void set_edge(SelfTestCase& out, std::size_t kind, Random& random) {
         set_ordinary_edge(out, random, 0, 1);
         out.below = 0;
         out.isovalue = std::ldexp(1 + static_cast<float>(random.below(1u << 20)) * 0x1p-20f, -32);
+        out.rest = 0;
         out.above = 1;
         out.a = random.value(-70, -69);
         out.b = std::bit_cast<float>(std::bit_cast<std::uint32_t>(out.a) + 1 + random.below(3));
@@ -155,7 +159,7 @@ std::vector<SelfTestCase> self_test_cases() {
 
 SelfTestAnswer self_test_answer(const SelfTestCase& given) {
     SelfTestAnswer answer{};
-    const float t = core::edge_weight(given.isovalue, given.below, given.above);
+    const float t = core::edge_weight<float>({given.isovalue, given.rest}, given.below, given.above);
     const auto vertex = core::vertex_normal(given.code_below, given.code_above, t);
     const auto corner = [&](std::size_t i) {
         return core::Vector<float>{given.corners[3 * i], given.corners[3 * i + 1], given.corners[3 * i + 2]};

@@ -42,7 +42,7 @@ TEST(InstructionLevels, GiveTheSameBytes) {
         const NastyGrid g =
             nasty_grid(seed, {.side = 9, .values = smooth ? 0 : 5, .no_data = smooth ? 0 : 0.002, .missing = 0.05});
         const PackedGrid packed = pack(g.grid, g.field, {.source_cells = true, .gradients = true}).value();
-        for (const double isovalue : {-0.5, 0.0, 0.25, 1.5})
+        for (const double isovalue : {-0.5, 0.0, 0.1, 0.25, 1.5})
             for (const bool extras : {false, true}) {
                 ExtractOptions options;
                 options.edge_ends = options.source_cells = extras;

@@ -11,6 +11,7 @@
 
 #include "golden/golden_files.hpp"
 #include "golden/vtk_contour.hpp"
+#include "support/close_values.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"
@@ -124,6 +125,19 @@ TEST(MadeGrids, HaveTheCountsAndAreasOfVtkAfterSplitting) {
                 expect_equal_to_vtk(grid, packed, point_field(grid, place), isovalue, compared);
         }
     EXPECT_GT(compared.merged, 10);
+}
+
+TEST(CloseValues, HaveTheCountsAndAreasOfVtk) {
+    Compared compared;
+    for (const bool far_values : {false, true}) {
+        const CloseValues close{.far_values = far_values};
+        const Grid grid = made_grid("perturbed", 12, {"gyroid"});
+        const PointField field = close.field(grid);
+        const PackedGrid packed = pack(grid, field).value();
+        for (int step = 0; step < close.steps; ++step)
+            expect_equal_to_vtk(grid, packed, field, close.isovalue(step, 0.3), compared);
+    }
+    EXPECT_EQ(compared.merged, 12);
 }
 
 } // namespace

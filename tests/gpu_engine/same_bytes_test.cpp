@@ -2,6 +2,7 @@
 // The same bytes as the CPU engine, in both modes for ties: every array, on grids as nasty as those that the CPU engine
 // is measured on.
 #include "gpu_engine/engines.hpp"
+#include "support/close_values.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"
@@ -43,6 +44,14 @@ TEST_F(SameBytes, OnSmoothFields) {
 TEST_F(SameBytes, OnIntegerFieldsFullOfTies) {
     for (const std::uint32_t seed : Seeds(1, 12))
         expect_same_on(seed, {.side = 4 + int(seed) % 6, .values = 2 + int(seed) % 4}, {-1, 0, 0.5, 1, 2});
+}
+
+TEST_F(SameBytes, OnCloseValues) {
+    for (const bool far_values : {false, true}) {
+        const CloseValues close{.far_values = far_values};
+        const Grid grid = made_grid("shuffled", 8, {"gyroid"});
+        expect_same_on(grid, close.field(grid), {close.isovalue(2, 0.3), close.isovalue(3, 0)});
+    }
 }
 
 TEST_F(SameBytes, OnPointsWithoutData) {

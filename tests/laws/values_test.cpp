@@ -267,13 +267,12 @@ TEST(IsovalueOnFloat32, IsComparedAsADouble) {
     EXPECT_EQ(tied.report.tied_points, 1u);
     EXPECT_EQ(tied.report.false_ties, 0u);
     EXPECT_FALSE(tied.report.near_tie);
-    // 0.3f is greater than 0.3, and the least float32 that is: above in any case, but a tie that the input does not
-    // have.
-    ExtractOptions keep;
-    keep.ties = Ties::keep;
-    const Extraction above = extract(one_tet<float>({0.3f, 0, 0, 0}), 0.3, keep).value();
-    EXPECT_EQ(above.report.tied_points, 1u);
-    EXPECT_EQ(above.report.false_ties, 1u);
+    // 0.3f is greater than 0.3, and the least float32 that is: above, and no tie.
+    const Extraction above = extract(one_tet<float>({0.3f, 0, 0, 0}), 0.3).value();
+    EXPECT_EQ(above.report.tied_points, 0u);
+    EXPECT_EQ(above.report.false_ties, 0u);
+    EXPECT_TRUE(above.report.near_tie);
+    EXPECT_EQ(above.report.isovalue_stored, 0.3);
     EXPECT_EQ(above.surface.triangle_count(), 1u);
 }
 

@@ -2,6 +2,7 @@
 // Surfaces of random grids from plain arrays: the engines agree, the packed grid gives the same, and so does the weld
 // written straight from the contract.
 #include "once/once_support.hpp"
+#include "support/close_values.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"
@@ -57,6 +58,14 @@ TEST(Once, AgreesOnFloat64CoordinatesInSinglePrecision) {
                            {0, 0.25, 1});
 }
 
+TEST(Once, AgreesOnCloseValues) {
+    for (const bool far_values : {false, true}) {
+        const CloseValues close{.far_values = far_values};
+        const Grid grid = made_grid("shuffled", 8, {"gyroid"});
+        expect_agreement(grid, close.field(grid), {close.isovalue(2, 0.3), close.isovalue(3, 0)});
+    }
+}
+
 TEST(Once, AgreesOnCellsOfAllTypes) {
     for (const char* shape : {"hex", "wedge", "pyramid", "mixed", "layer", "perturbed"}) {
         SCOPED_TRACE(shape);
@@ -80,7 +89,7 @@ TEST(Once, GivesTheVerticesAndTrianglesOfABruteForceWeld) {
     for (const std::uint32_t seed : Seeds(100, 10)) {
         const NastyGrid g =
             nasty_grid(seed, {.side = 2 + int(seed) % 6, .values = 2 + int(seed) % 4, .no_data = 0.02, .missing = 0.1});
-        for (const double isovalue : {0.0, 0.5, 1.0})
+        for (const double isovalue : {0.0, 0.1, 0.5, 1.0})
             for (const Ties ties : {Ties::merge, Ties::keep})
                 ASSERT_EQ(sets_of(surface_once(g.grid, g.field, isovalue, with_everything(ties, Precision::single))),
                           brute_weld<float>(g.grid, g.field.values, isovalue, ties))

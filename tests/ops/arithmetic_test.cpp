@@ -25,12 +25,34 @@ Real length(const Vector<Real>& v) {
 }
 
 TEST(EdgeWeight, IsZeroBelowTwoToMinus32AndOneAtTheUpperEnd) {
-    EXPECT_EQ(core::edge_weight(0.0f, -1.0f, 0x1p32f), 0x1p-32f);
-    EXPECT_EQ(core::edge_weight(0.0f, -1.0f, 0x1p33f), 0.0f);
-    EXPECT_EQ(core::edge_weight(0.0, -1.0, 0x1p33), 0.0);
-    EXPECT_EQ(core::edge_weight(5.0f, 2.0f, 5.0f), 1.0f);
-    EXPECT_EQ(core::edge_weight(0.0f, -0x1p91f, 0x1p91f), 0.5f);
-    EXPECT_EQ(core::edge_weight(1.0f, 0.0f, 3.0f), 1.0f / 3.0f);
+    EXPECT_EQ(core::edge_weight<float>({0}, -1, 0x1p32f), 0x1p-32f);
+    EXPECT_EQ(core::edge_weight<float>({0}, -1, 0x1p33f), 0.0f);
+    EXPECT_EQ(core::edge_weight<double>({0}, -1, 0x1p33), 0.0);
+    EXPECT_EQ(core::edge_weight<float>({5}, 2, 5), 1.0f);
+    EXPECT_EQ(core::edge_weight<float>({0}, -0x1p91f, 0x1p91f), 0.5f);
+    EXPECT_EQ(core::edge_weight<float>({1}, 0, 3), 1.0f / 3.0f);
+}
+
+TEST(EdgeWeight, IsThatOfTheIsovalueAsGivenBetweenNeighbouringFloats) {
+    constexpr float below = 1, above = 1 + 0x1p-23f;
+    for (const double share : {0x1p-20, 0.1, 0.5, 0.999})
+        EXPECT_NEAR(core::edge_weight(core::store_isovalue<float>(1 + share * 0x1p-23, {}), below, above), share,
+                    0x1p-24);
+}
+
+/// A million isovalues and ends as near as can be, and far: 0 to 1, whatever is rounded.
+TEST(EdgeWeight, IsNeverOutsideOfItsEdge) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> draw(-2, 2), share(0, 1);
+    for (int i = 0; i < 1000000; ++i) {
+        const double isovalue = draw(random);
+        const auto stored = core::store_isovalue<float>(isovalue, {});
+        const float below =
+            i % 2 ? std::nextafter(stored.value, -3.0f) : static_cast<float>(isovalue - 4 - share(random));
+        const float above = i % 4 < 2 ? stored.value : static_cast<float>(isovalue + 4 * share(random) + 0.001);
+        const float t = core::edge_weight(stored, below, above);
+        ASSERT_TRUE(t >= 0 && t <= 1) << t << " at " << isovalue;
+    }
 }
 
 TEST(Interpolate, GivesExactlyTheEndsWhereTheFormulaAloneDoesNot) {

@@ -62,9 +62,11 @@ void expect_rules(const std::vector<double>& values, ScalarType type) {
         ASSERT_FALSE(stored == 0 && std::signbit(stored));
         // The isovalue's rounding is monotone, too, and agrees with that of the values: no tie vanishes.
         if (std::isinf(value)) continue;
-        const Real isovalue = core::store_isovalue<Real>(value, storage);
-        ASSERT_EQ(stored, isovalue) << value;
-        ASSERT_LE(std::abs(static_cast<double>(isovalue)), 0x1p57);
+        const core::StoredIsovalue<Real> isovalue = core::store_isovalue<Real>(value, storage);
+        ASSERT_EQ(stored, isovalue.tied) << value;
+        ASSERT_EQ(stored, isovalue.value) << value;
+        ASSERT_EQ(isovalue.rest, 0) << value;
+        ASSERT_LE(std::abs(static_cast<double>(isovalue.value)), 0x1p57);
     }
 }
 
@@ -90,9 +92,13 @@ TEST(UnchangedValues, AreOnTheSideOfTheExactIsovalue) {
         const double near = values[random() % values.size()];
         for (const double isovalue :
              {near, std::nextafter(near, infinity), std::nextafter(near, -infinity), near + 0.1})
-            for (const double value : values)
-                ASSERT_EQ(core::store_value<float>(value, storage) >= core::store_isovalue<float>(isovalue, storage),
-                          value >= isovalue);
+            for (const double value : values) {
+                const float given = core::store_value<float>(value, storage);
+                const core::StoredIsovalue<float> stored = core::store_isovalue<float>(isovalue, storage);
+                ASSERT_EQ(given >= stored.value, value >= isovalue);
+                ASSERT_EQ(given == stored.tied, value == isovalue);
+                ASSERT_NEAR(stored.sum(), isovalue, std::abs(isovalue) * 0x1p-47);
+            }
     }
 }
 
@@ -105,7 +111,7 @@ TEST(ChangedValues, NeverChangeSideWithoutATie) {
     for (const double isovalue : values)
         for (const double value : values) {
             const float stored = core::store_value<float>(value, storage),
-                        wanted = core::store_isovalue<float>(isovalue, storage);
+                        wanted = core::store_isovalue<float>(isovalue, storage).tied;
             ASSERT_TRUE(stored == wanted || (stored > wanted) == (value > isovalue));
         }
 }

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <type_traits>
 
@@ -119,10 +120,14 @@ SurfaceSets brute_weld(const Grid& grid, const Array& field, double user_isovalu
     const StoredField stored(field, used_points(tets));
     const double isovalue = stored.isovalue(user_isovalue);
     const auto value = [&](std::int64_t point) { return stored.values[static_cast<std::size_t>(point)]; };
+    // The least Real that is not below the isovalue, and what that is too much by.
+    const Real nearest = static_cast<Real>(isovalue),
+               level = nearest < isovalue ? std::nextafter(nearest, std::numeric_limits<Real>::infinity()) : nearest;
+    const Real rest = static_cast<Real>(isovalue - static_cast<double>(level));
     SurfaceSets sets;
     const auto add_vertex = [&](const Ends& ends) {
         const Real s0 = static_cast<Real>(value(ends.first)), s1 = static_cast<Real>(value(ends.second));
-        const Real rise = s1 - s0, part = static_cast<Real>(isovalue) - s0;
+        const Real rise = s1 - s0, above_it = level - s0, part = above_it + rest;
         Real t = ends.first == ends.second ? Real(0) : part / rise;
         if (t < Real(0x1p-32)) t = 0;
         double p[3];

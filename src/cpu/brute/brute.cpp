@@ -98,7 +98,7 @@ private:
     /// The surface; nothing when an assumption was wrong, which has then been set right.
     template <class Point>
     Result<std::optional<ops::BruteSurface>> extract(double isovalue, const Progress& progress) {
-        const Real stored = core::store_isovalue<Real>(isovalue, survey_.field.storage);
+        const core::StoredIsovalue<Real> stored = core::store_isovalue<Real>(isovalue, survey_.field.storage);
         const SidesFound found = find_sides(input_, survey_, isovalue, stored, request_.ties,
                                             settled_ ? Watch::nothing : Watch::deciding, sides_);
         CutContext context{input_, sides_, Ranges(sides_.points())};

@@ -24,7 +24,7 @@ void make_vertex(const VertexSource<Real>& source, std::uint64_t vertex, std::ui
     const std::array<std::uint64_t, 2> ends{lower, higher};
     const std::array<Real, 2> values{source.value(lower), source.value(higher)};
     // Which end is above is a toss: an index costs less than a branch.
-    const std::size_t up = values[0] >= source.isovalue() ? 0 : 1;
+    const std::size_t up = values[0] >= source.isovalue().value ? 0 : 1;
     const std::uint64_t below = ends[1 - up], above = ends[up];
     const Real t = lower == higher ? Real(0) : core::edge_weight(source.isovalue(), values[1 - up], values[up]);
     const auto a = source.position(below), b = source.position(above);

@@ -13,12 +13,16 @@ namespace isotet::cpu::brute {
 template <class Real>
 class VertexSource {
 public:
-    VertexSource(const ops::BruteInput& input, const PointSurvey& survey, Real isovalue)
-        : input_(&input), origin_(survey.origin), storage_(survey.field.storage), isovalue_(isovalue),
-          value_bytes_(size_of(input.field.values.type())), point_bytes_(3 * size_of(input.grid.points.type())) {}
+    VertexSource(const ops::BruteInput& input, const PointSurvey& survey, const core::StoredIsovalue<Real>& isovalue)
+        : input_(&input),
+          origin_(survey.origin),
+          storage_(survey.field.storage),
+          isovalue_(isovalue),
+          value_bytes_(size_of(input.field.values.type())),
+          point_bytes_(3 * size_of(input.grid.points.type())) {}
 
     const ops::BruteInput& input() const { return *input_; }
-    Real isovalue() const { return isovalue_; }
+    const core::StoredIsovalue<Real>& isovalue() const { return isovalue_; }
     Real value(std::uint64_t point) const {
         const Array& values = input_->field.values;
         const double user = values.type() == ScalarType::float32
@@ -49,7 +53,7 @@ private:
     const ops::BruteInput* input_;
     std::array<double, 3> origin_;
     core::Storage storage_;
-    Real isovalue_;
+    core::StoredIsovalue<Real> isovalue_;
     std::size_t value_bytes_, point_bytes_;
 };
 

@@ -111,12 +111,13 @@ struct SidesFound {
 /// The flags of all points.
 /// `isovalue`  as the user gave it, and as stored
 template <class Real>
-SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, Ties ties,
-                      Watch watch, Sides& sides);
+SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue,
+                      const core::StoredIsovalue<Real>& stored, Ties ties, Watch watch, Sides& sides);
 
 /// Counts tied points that were seen, and what else ExtractReport says of ties.
 template <class Real>
-void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored,
-                 SidesFound found, const Sides& sides, ops::BruteSurface& surface);
+void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue,
+                 const core::StoredIsovalue<Real>& stored, SidesFound found, const Sides& sides,
+                 ops::BruteSurface& surface);
 
 } // namespace isotet::cpu::brute

@@ -24,7 +24,8 @@ std::optional<double> nearest_value(const Array& values, double isovalue) {
 template <class Real, class T>
 class SideFinder {
 public:
-    SideFinder(const StoredField& field, Real stored, std::optional<double> nearest, Ties ties, Watch watch)
+    SideFinder(const StoredField& field, const core::StoredIsovalue<Real>& stored, std::optional<double> nearest,
+               Ties ties, Watch watch)
         : storage_(field.storage),
           stored_(stored),
           lower_(static_cast<Number>(field.statistics.lower)),
@@ -50,19 +51,19 @@ private:
     template <class Store>
     SidesFound find(const T* values, std::size_t count, std::uint8_t* flags, const Store& store) const {
         // Flags are bytes, which might be anything: what is read again and again stands in variables of its own.
-        const Real stored = stored_, stored_nearest = stored_nearest_;
+        const Real level = stored_.value, tied_value = stored_.tied, stored_nearest = stored_nearest_;
         const Number lower = lower_, upper = upper_, offset = static_cast<Number>(storage_.offset);
         const std::uint8_t tied_flags = tied_flags_, near_flag = near_flag_, deciding_flag = deciding_flag_;
         std::uint8_t any_tied = 0, any_near = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const auto value = static_cast<Number>(values[i]);
             const Real s = store(values[i]);
-            const bool no_data = value != value, tied = s == stored;
+            const bool no_data = value != value, tied = s == tied_value;
             const bool deciding = no_data | (value == lower) | (value == upper) | (std::abs(value) == infinity) |
                                   ((s == 0) & (value != offset));
             const auto if_tied = static_cast<std::uint8_t>(tied ? tied_flags : 0);
             const auto if_near = static_cast<std::uint8_t>(s == stored_nearest ? near_flag : 0);
-            flags[i] = static_cast<std::uint8_t>((s >= stored ? side::above : 0) | (no_data ? side::no_data : 0) |
+            flags[i] = static_cast<std::uint8_t>((s >= level ? side::above : 0) | (no_data ? side::no_data : 0) |
                                                  if_tied | if_near | (deciding ? deciding_flag : 0));
             any_tied |= if_tied;
             any_near |= if_near;
@@ -73,7 +74,8 @@ private:
     static constexpr Number infinity = std::numeric_limits<Number>::infinity();
 
     core::Storage storage_;
-    Real stored_, stored_nearest_ = 0;
+    core::StoredIsovalue<Real> stored_;
+    Real stored_nearest_ = 0;
     Number lower_, upper_;
     std::uint8_t tied_flags_, near_flag_, deciding_flag_;
     bool as_they_are_;
@@ -111,8 +113,8 @@ void add_flags(const Array& points, Sides& sides, const F& f) {
 } // namespace
 
 template <class Real>
-SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored, Ties ties,
-                      Watch watch, Sides& sides) {
+SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, double isovalue,
+                      const core::StoredIsovalue<Real>& stored, Ties ties, Watch watch, Sides& sides) {
     const Array& values = input.field.values;
     std::atomic<bool> tied{false}, near{false};
     values.visit([&]<class T>(std::span<const T> typed) {
@@ -141,13 +143,16 @@ SidesFound find_sides(const ops::BruteInput& input, const PointSurvey& survey, d
     return {tied, near};
 }
 
-template SidesFound find_sides<float>(const ops::BruteInput&, const PointSurvey&, double, float, Ties, Watch, Sides&);
-template SidesFound find_sides<double>(const ops::BruteInput&, const PointSurvey&, double, double, Ties, Watch, Sides&);
+template SidesFound find_sides<float>(const ops::BruteInput&, const PointSurvey&, double,
+                                      const core::StoredIsovalue<float>&, Ties, Watch, Sides&);
+template SidesFound find_sides<double>(const ops::BruteInput&, const PointSurvey&, double,
+                                       const core::StoredIsovalue<double>&, Ties, Watch, Sides&);
 
 template <class Real>
-void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue, Real stored,
-                 SidesFound found, const Sides& sides, ops::BruteSurface& surface) {
-    surface.isovalue_stored = core::restore_value(static_cast<double>(stored), survey.field.storage);
+void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double isovalue,
+                 const core::StoredIsovalue<Real>& stored, SidesFound found, const Sides& sides,
+                 ops::BruteSurface& surface) {
+    surface.isovalue_stored = core::restore_value(stored.sum(), survey.field.storage);
     if (!found.tied && !found.near) return;
     const Array& values = input.field.values;
     const auto nearest = nearest_value(values, isovalue);
@@ -156,7 +161,7 @@ void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double
     values.visit([&](auto typed) {
         core::parallel_each(values.tuples(), side_grain, [&](std::size_t point) {
             if (sides.is_unseen(point)) return;
-            if (core::store_value<Real>(static_cast<double>(typed[point]), survey.field.storage) == stored) {
+            if (core::store_value<Real>(static_cast<double>(typed[point]), survey.field.storage) == stored.tied) {
                 tied.fetch_add(1, std::memory_order_relaxed);
                 if (core::equals_exactly(typed[point], isovalue)) exact.fetch_add(1, std::memory_order_relaxed);
             }
@@ -168,9 +173,9 @@ void report_ties(const ops::BruteInput& input, const PointSurvey& survey, double
     surface.near_tie = tied == 0 && near;
 }
 
-template void report_ties<float>(const ops::BruteInput&, const PointSurvey&, double, float, SidesFound, const Sides&,
-                                 ops::BruteSurface&);
-template void report_ties<double>(const ops::BruteInput&, const PointSurvey&, double, double, SidesFound, const Sides&,
-                                  ops::BruteSurface&);
+template void report_ties<float>(const ops::BruteInput&, const PointSurvey&, double, const core::StoredIsovalue<float>&,
+                                 SidesFound, const Sides&, ops::BruteSurface&);
+template void report_ties<double>(const ops::BruteInput&, const PointSurvey&, double,
+                                  const core::StoredIsovalue<double>&, SidesFound, const Sides&, ops::BruteSurface&);
 
 } // namespace isotet::cpu::brute

@@ -120,7 +120,7 @@ struct TetPage {
     Address gradients;    ///< of textures: unit direction and 0, or zero, each
     Address tables;       ///< of textures: TetTables
     Address ranges;       ///< of mesh shaders: a Range for every tet_group tets of the page
-    float isovalue;
+    float isovalue, rest; ///< core::StoredIsovalue: value, rest
     uint tets;            ///< that are drawn
 };
 

@@ -95,7 +95,7 @@ TetVertex tet_vertex(TetPage page, Tet tet, uint number) {
         above = other;
     }
     const vec4 a = tet.corners[below], b = tet.corners[above];
-    const float t = edge_weight(page.isovalue, a.w, b.w);
+    const float t = edge_weight(page.isovalue, page.rest, a.w, b.w);
     TetVertex found;
     found.position = vec3(interpolate(a.x, b.x, t), interpolate(a.y, b.y, t), interpolate(a.z, b.z, t));
     found.gradient = vec3(0.0);

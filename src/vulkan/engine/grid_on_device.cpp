@@ -181,7 +181,7 @@ Result<void> GridOnDevice::sweep(const Task& task, std::span<const std::uint32_t
 }
 
 Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const Progress& progress, WorkDone& done) {
-    const std::vector<std::uint32_t> pages = cache_->hit_by(task.isovalue);
+    const std::vector<std::uint32_t> pages = cache_->hit_by(task.isovalue.value);
     {
         Recorder recorder(*context_);
         passes.begin(recorder, task);
@@ -234,7 +234,7 @@ Result<WorkDone> GridOnDevice::extract(std::span<Task> tasks, const Progress& pr
 
     bool together = true;
     for (bool complete = false; together && !complete;) {
-        for (const Task& task : tasks) together = together && cache_->touch(cache_->hit_by(task.isovalue));
+        for (const Task& task : tasks) together = together && cache_->touch(cache_->hit_by(task.isovalue.value));
         if (!together) break;
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
         auto all = extract_together(tasks, *passes, done);

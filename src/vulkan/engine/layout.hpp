@@ -15,7 +15,7 @@ namespace layout {
 
 static_assert(sizeof(Page) == 52 && sizeof(Cluster) == 32 && sizeof(Neighbour) == 12 && sizeof(Range) == 8);
 static_assert(sizeof(Count) == 8 && sizeof(Start) == 12 && sizeof(Lists) == 48 && sizeof(DrawArguments) == 20);
-static_assert(sizeof(Tables) == 108 && sizeof(Output) == 144 && sizeof(ExtractPush) == 28 && sizeof(RangesPush) == 8);
+static_assert(sizeof(Tables) == 108 && sizeof(Output) == 144 && sizeof(ExtractPush) == 36 && sizeof(RangesPush) == 8);
 static_assert(sizeof(SurfacePush) == 8 && sizeof(FieldPush) == 28);
 static_assert(group_size == core::group_size && max_cluster_points == core::max_cluster_points);
 static_assert(max_cluster_groups == core::max_cluster_tets / core::group_size &&

@@ -13,8 +13,14 @@ using layout::Lists;
 using layout::Output;
 
 layout::ExtractPush push_of(const Resident& resident, const Task& task, std::uint32_t batch) {
-    return {address_of(resident.tables), address_of(task.surface.head), task.isovalue,
-            task.ties == Ties::merge ? 1u : 0u, batch};
+    const core::StoredIsovalue<float>& isovalue = task.isovalue;
+    return {address_of(resident.tables),
+            address_of(task.surface.head),
+            isovalue.value,
+            isovalue.rest,
+            isovalue.tied,
+            task.ties == Ties::merge ? 1u : 0u,
+            batch};
 }
 
 constexpr std::uint64_t arguments_in(std::size_t list) { return list + offsetof(layout::ListHead, groups_x); }

@@ -10,6 +10,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/result.hpp>
 
+#include "core/storage.hpp"
 #include "vulkan/context.hpp"
 #include "vulkan/engine/carried_fields.hpp"
 #include "vulkan/engine/resident.hpp"
@@ -20,7 +21,7 @@ namespace isotet::vulkan {
 
 /// What is extracted, and into what.
 struct Task {
-    float isovalue; ///< stored form
+    core::StoredIsovalue<float> isovalue;
     Ties ties;
     SurfaceBuffers& surface;
     std::vector<std::shared_ptr<const CarriedField>> fields; ///< one for each of the surface's

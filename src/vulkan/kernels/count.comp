@@ -44,8 +44,8 @@ void load_points(bool merge) {
     const uint self = gl_LocalInvocationIndex;
     if (self >= local_points()) return;
     const float value = value_of(page_point(self));
-    classify(self, value, push.isovalue, merge);
-    if (self >= foreign_points && value == push.isovalue) atomicAdd(tied_points, 1u);
+    classify(self, value, push.isovalue, push.tied, merge);
+    if (self >= foreign_points && value == push.tied) atomicAdd(tied_points, 1u);
 }
 
 void cut_tets(bool special) {

@@ -85,7 +85,7 @@ void load_points() {
     if (self >= local_points()) return;
     points[self] = page_point(self);
     values[self] = value_of(points[self]);
-    classify(self, values[self], push.isovalue, push.merge != 0u);
+    classify(self, values[self], push.isovalue, push.tied, push.merge != 0u);
 }
 
 void cut_tets(bool special) {
@@ -200,7 +200,7 @@ void write_vertices(bool special) {
         float t = 0.0;
         if (ends.x != ends.y) {
             if (is_in(above, ends.x)) ends = ends.yx;
-            t = edge_weight(push.isovalue, values[ends.x], values[ends.y]);
+            t = edge_weight(push.isovalue, push.rest, values[ends.x], values[ends.y]);
         }
         write_vertex(number - start.vertex, ends.x, ends.y, t);
     }

@@ -30,7 +30,7 @@ void main() {
     const uint i = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (i >= count) return;
     const SelfTestCase given = cases.at[i];
-    const float t = edge_weight(given.isovalue, given.below, given.above);
+    const float t = edge_weight(given.isovalue, given.rest, given.below, given.above);
     const vec3 vertex = vertex_normal(given.code_below, given.code_above, t);
     const vec3 face = face_normal(corner(given, 0u), corner(given, 1u), corner(given, 2u));
     answers.at[i].weight = floatBitsToUint(t);

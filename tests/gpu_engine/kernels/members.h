@@ -58,7 +58,8 @@
     M(a_output, Output, triangles) M(a_output, Output, normals) M(a_output, Output, lowest) \
     M(a_output, Output, ends) M(a_output, Output, weights) M(a_output, Output, sources) \
     M(a_extract_push, ExtractPush, tables) M(a_extract_push, ExtractPush, surface) \
-    M(a_extract_push, ExtractPush, isovalue) M(a_extract_push, ExtractPush, merge) \
+    M(a_extract_push, ExtractPush, isovalue) M(a_extract_push, ExtractPush, rest) \
+    M(a_extract_push, ExtractPush, tied) M(a_extract_push, ExtractPush, merge) \
     M(a_extract_push, ExtractPush, batch) \
     M(a_ranges_push, RangesPush, tables) \
     M(a_surface_push, SurfacePush, surface) \

@@ -82,9 +82,10 @@ float root(float x) {
     return composed(0u, exponent >> 1, side);
 }
 
-/// Where the isovalue lies between the end below (0) and the end above (1).
-float edge_weight(float isovalue, float below, float above) {
-    precise float part = isovalue - below;
+/// Where isovalue + rest lies between the end below (0) and the end above (1).
+float edge_weight(float isovalue, float rest, float below, float above) {
+    precise float rounded_up = isovalue - below;
+    precise float part = rounded_up + rest;
     precise float whole = above - below;
     const float t = divide(part, whole);
     return t < weight_floor ? 0.0 : t;

@@ -10,7 +10,7 @@
 
 // Sets of local points, 4 words each.
 const uint above = 0u;   ///< value >= isovalue
-const uint tied = 4u;    ///< value == isovalue (Ties::merge; with Ties::keep a tied point is like any above)
+const uint tied = 4u;    ///< value == tied_value (Ties::merge; with Ties::keep a tied point is like any above)
 const uint no_data = 8u;
 shared uint sides[12];
 
@@ -40,13 +40,13 @@ void clear_cut() {
 }
 
 /// Puts a local point into the sets. A barrier must follow.
-void classify(uint point, float value, float isovalue, bool merge) {
+void classify(uint point, float value, float isovalue, float tied_value, bool merge) {
     const uint bit = 1u << point % 32u;
     if ((floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u) {
         atomicOr(sides[no_data + point / 32u], bit);
     } else if (value >= isovalue) {
         atomicOr(sides[above + point / 32u], bit);
-        if (merge && value == isovalue) atomicOr(sides[tied + point / 32u], bit);
+        if (merge && value == tied_value) atomicOr(sides[tied + point / 32u], bit);
     }
 }
 

@@ -164,7 +164,9 @@ struct Output {
 struct ExtractPush {
     Address tables;
     Address surface;       ///< Output
-    float isovalue;
+    float isovalue;        ///< core::StoredIsovalue: value, rest, tied
+    float rest;
+    float tied;
     uint merge;            ///< 1: Ties::merge
     uint batch;            ///< 0: all pages; else count and emit leave clusters of pages of other batches alone
 };

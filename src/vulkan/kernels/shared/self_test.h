@@ -11,7 +11,7 @@ using uint = std::uint32_t;
 #endif
 
 struct SelfTestCase {
-    float isovalue, below, above;  ///< for edge_weight
+    float isovalue, rest, below, above; ///< for edge_weight
     float a, b;                    ///< for interpolate, by that weight
     uint code_below, code_above;   ///< for vertex_normal, by that weight
     float corners[9];              ///< for face_normal
@@ -26,7 +26,7 @@ struct SelfTestAnswer {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(SelfTestCase) == 64 && sizeof(SelfTestAnswer) == 32);
+static_assert(sizeof(SelfTestCase) == 68 && sizeof(SelfTestAnswer) == 32);
 } // namespace isotet::vulkan::layout
 #endif
 
