@@ -56,8 +56,9 @@ struct FieldReport {
 
 /// The grid in clusters: what every engine works on.
 ///
-/// The grid that was packed is not needed any more, except that the array of the contoured field stays shared (it tells
-/// false ties). Moving is cheap; copying is not possible.
+/// The grid that was packed is not needed any more. Where values were changed as they were stored (FieldReport), the
+/// array of the contoured field stays shared, to tell false ties; not a borrowed one, without which nothing is told of
+/// them. Moving is cheap; copying is not possible.
 ///
 /// Threads   const functions are safe from many threads; set_field() and set_points() need the object alone
 class PackedGrid {

@@ -47,8 +47,11 @@ void report_ties(const core::Packed& packed, double isovalue, const core::Stored
                  std::uint64_t tied_points, ExtractReport& report) {
     report.isovalue_stored = core::restore_value(stored.sum(), packed.storage);
     report.tied_points = tied_points;
-    if (packed.field.tuples() != packed.user_points) return;
+    const bool all_exact = packed.storage.unchanged && packed.field_report.flushed == 0;
+    if (!all_exact && packed.field.empty()) return;
     const auto holds_exactly = [&](std::uint64_t point, double value) {
+        if (all_exact)
+            return core::restore_value(static_cast<double>(packed.as<Real>().values[point]), packed.storage) == value;
         return packed.field.visit(
             [&](auto values) { return core::equals_exactly(values[packed.user_point(point)], value); });
     };

@@ -137,7 +137,8 @@ struct Packed {
     std::array<double, 3> origin{};
     Storage storage;
     std::shared_ptr<StorageCache> storage_cache; ///< of fields carried onto surfaces (field_storage.hpp)
-    Array field;                        ///< as the user gave it; shared, to tell false ties
+    Array field;                        ///< as the user gave it, to tell false ties; no values, only their type, where
+                                        ///< what is stored tells them, and of a borrowed array
     std::uint64_t user_points = 0, user_cells = 0;
     PackReport report;
     FieldReport field_report;
