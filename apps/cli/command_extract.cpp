@@ -262,6 +262,12 @@ void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
                                   outside ? "is outside the range" : "has nothing below it or is cut by no tet",
                                   field.name, shortest(field.lower), shortest(field.upper)));
     }
+    if (const std::uint64_t ties = surface.report.false_ties.value_or(0); ties > 0) {
+        const bool double_helps = command_.precision == Precision::single && !field.unchanged;
+        console_.note(fmt::format("isovalue {}: {} point{} tied (equal to it) only by rounding{}",
+                                  shortest(surface.isovalue), grouped(ties), ties == 1 ? " is" : "s are",
+                                  double_helps ? "; --precision double keeps them apart" : ""));
+    }
     if (surface.report.near_tie) {
         console_.note(fmt::format(
             "no point has the value {}, but points have the nearest one that the type of '{}' can hold; --snap "

@@ -114,12 +114,6 @@ std::string facts_table(const ExtractNumbers& numbers) {
     return table.text();
 }
 
-std::string ties_text(const ExtractReport& report) {
-    std::string text = grouped(report.tied_points);
-    if (report.false_ties.value_or(0) > 0) text += fmt::format(" ({} false)", grouped(*report.false_ties));
-    return text;
-}
-
 Json choice_json(const ExtractNumbers& numbers) {
     Json ways = Json::array();
     for (const Forecast& one : numbers.choice.forecasts)
@@ -151,10 +145,10 @@ std::string extract_table(const ExtractNumbers& numbers) {
     table.row({"isovalue", times ? "time" : "", "tied points", "vertices", "triangles", "area", "extract",
                files ? "write" : "", files ? "file" : ""});
     for (const SurfaceNumbers& surface : numbers.surfaces) {
-        table.row({shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "", ties_text(surface.report),
-                   grouped(surface.vertices), grouped(surface.triangles), rounded(surface.area),
-                   seconds_text(surface.extract_seconds), files ? seconds_text(surface.write_seconds) : "",
-                   surface.file});
+        table.row({shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "",
+                   grouped(surface.report.tied_points), grouped(surface.vertices), grouped(surface.triangles),
+                   rounded(surface.area), seconds_text(surface.extract_seconds),
+                   files ? seconds_text(surface.write_seconds) : "", surface.file});
     }
     return facts_table(numbers) + "\n" + table.text();
 }

@@ -105,6 +105,26 @@ TEST_F(Program, ExtractForecastsWhatIsAskedFor) {
     EXPECT_TRUE(reference["choice"]["predicted"].is_null());
 }
 
+TEST_F(Program, ExtractNotesTiesThatComeFromRoundingAndTheRemedy) {
+    put_content(path("g.msh"), small_grid({{"p", {1, 1 + 0x1p-40, -50, 50, 1}}}));
+    const auto run = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"extract", path("g.msh"), "-f", "p", "-i", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return isotet(arguments);
+    };
+    for (const char* method : {"brute", "clusters"}) {
+        const RunResult single = run({"--method", method});
+        EXPECT_NE(
+            single.err.find("isovalue 1: 1 point is tied (equal to it) only by rounding; --precision double keeps "
+                            "them apart"),
+            std::string::npos)
+            << single.err;
+        EXPECT_EQ(single.out.find("false"), std::string::npos) << single.out;
+        const RunResult exact = run({"--method", method, "--precision", "double"});
+        EXPECT_EQ(exact.err.find("only by rounding"), std::string::npos) << exact.err;
+    }
+}
+
 TEST_F(Program, ExtractByBruteTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {
     std::string grid = small_grid({{"p", {1, 2, 3, 4, 8}}});
     put_content(path("g.msh"), grid);
