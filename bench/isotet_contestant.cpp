@@ -163,11 +163,10 @@ Reply IsotetContestant::extract_once(double isovalue) {
 }
 
 Reply IsotetContestant::set_field(const std::string& name) {
-    PackedGrid& changed = packed(name);
+    const PackedGrid& before = packed(name);
     const Stopwatch watch;
-    changed.set_field(negative_, threads_).value();
+    const PackedGrid changed = before.with_field(negative_, {.threads = threads_}).value();
     const double seconds = watch.seconds();
-    changed.set_field(field_, threads_).value(); // as it was, for the commands that follow
     return Reply().number("seconds", seconds).count("must_move", new_field_must_move(changed, field_.values.bytes()));
 }
 

@@ -76,7 +76,7 @@ public:
     Result<BenchCosts> prepare(BenchBed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch uploading;
-        Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, bed.progress);
+        Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, {.progress = bed.progress});
         if (!grid) return grid.error();
         grid_ = *std::move(grid);
         return BenchCosts{bed.pack_seconds + uploading.seconds(), bed.packed->report().bytes, grid_->device_bytes(), 0};

@@ -59,7 +59,7 @@ Result<void> Extractor::load(const PackedGrid& packed) {
                                     bytes_text(needs.all()), bytes_text(needs.least()),
                                     bytes_text(device_->memory_free())));
     }
-    Result<DeviceGrid> grid = DeviceGrid::upload(*device_, packed, options, console_.progress());
+    Result<DeviceGrid> grid = DeviceGrid::upload(*device_, packed, options, {.progress = console_.progress()});
     if (!grid) return without_device(grid.error());
     grid_ = *std::move(grid);
     if (!grid_->complete()) {
@@ -79,21 +79,35 @@ Result<bool> Extractor::left_to_cpu(const Result<void>& set) {
 }
 
 Result<void> Extractor::set_field(PackedGrid& packed, const PointField& field, int threads) {
+    const Run run{threads, console_.progress()};
     if (grid_) {
-        const Result<bool> left = left_to_cpu(grid_->set_field(packed, field, threads, console_.progress()));
+        const Result<bool> left = left_to_cpu(grid_->set_field(field, run));
         if (!left) return left.error();
-        if (!*left) return {};
+        if (!*left) {
+            packed = grid_->packed();
+            return {};
+        }
     }
-    return packed.set_field(field, threads, console_.progress());
+    Result<PackedGrid> changed = packed.with_field(field, run);
+    if (!changed) return changed.error();
+    packed = *changed;
+    return {};
 }
 
 Result<void> Extractor::set_points(PackedGrid& packed, const Array& points, int threads) {
+    const Run run{threads, console_.progress()};
     if (grid_) {
-        const Result<bool> left = left_to_cpu(grid_->set_points(packed, points, threads, console_.progress()));
+        const Result<bool> left = left_to_cpu(grid_->set_points(points, run));
         if (!left) return left.error();
-        if (!*left) return {};
+        if (!*left) {
+            packed = grid_->packed();
+            return {};
+        }
     }
-    return packed.set_points(points, threads, console_.progress());
+    Result<PackedGrid> changed = packed.with_points(points, run);
+    if (!changed) return changed.error();
+    packed = *changed;
+    return {};
 }
 
 Result<Extraction> Extractor::extract_on_device(double isovalue, const ExtractOptions& options) {

@@ -62,7 +62,7 @@ Result<void> RenderScene::upload_boundary() {
 }
 
 Result<void> RenderScene::upload_grid() {
-    Result<DeviceGrid> grid = DeviceGrid::upload(device_, *input_.packed, {}, console_.progress());
+    Result<DeviceGrid> grid = DeviceGrid::upload(device_, *input_.packed, {}, {.progress = console_.progress()});
     if (!grid) return grid.error();
     grid_ = *std::move(grid);
     if (!input_.colors) return {};

@@ -101,45 +101,39 @@ public:
     /// Cost   a pass over the links of the packed grid
     static DeviceGridNeeds needs(const PackedGrid& packed, const DeviceGridOptions& options = {});
 
-    /// Uploads a packed grid.
+    /// Uploads a packed grid, and keeps a handle on it.
     ///
-    /// `packed`   single precision; borrowed, must outlive the grid on the device, where it is read again for pages
-    ///            that did not fit, for the user's numbers of points and cells, and for ties, unless it is given up.
-    ///            When its field or points are set, but not by the functions below, it must be uploaded again
+    /// `packed`   single precision
     /// Cost       about 11 bytes a tet over the bus
     /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more;
     ///            out_of_memory, before anything is uploaded, when needs().least() is more than is free; machine;
     ///            cancelled
     static Result<DeviceGrid> upload(const Device& device, const PackedGrid& packed,
-                                     const DeviceGridOptions& options = {}, const Progress& progress = {});
+                                     const DeviceGridOptions& options = {}, const Run& run = {});
 
     DeviceGrid(DeviceGrid&&) noexcept;
     DeviceGrid& operator=(DeviceGrid&&) noexcept;
     ~DeviceGrid();
 
-    /// Replaces the contoured field of the packed grid and of the grid on the device (another field, or the next time
-    /// step): values go up, ranges are worked out on the device and come back.
+    /// The grid that is on the device: the one that was uploaded, or what set_field() and set_points() made of it.
+    const PackedGrid& packed() const noexcept;
+
+    /// Replaces the contoured field (another field, or the next time step): values go up, ranges are worked out on the
+    /// device and come back.
     ///
-    /// `packed`     the one that was uploaded
-    /// Guarantees   the packed grid is byte for byte what packed.set_field() makes of it
+    /// Guarantees   packed() is then byte for byte what PackedGrid::with_field() gives
     /// Cost         a pass over the values and 4 bytes a point over the bus, 0.1 bytes a tet back; gradients, and
     ///              ranges of pages that are not on the device, are worked out on the processor
-    /// Errors       as PackedGrid::set_field(); invalid_argument when `packed` is another one; of the device:
-    ///              out_of_memory, machine. The packed grid has the field then, but must be uploaded again
-    Result<void> set_field(PackedGrid& packed, const PointField& field, int threads = 0, const Progress& progress = {});
+    /// Errors       as PackedGrid::with_field(): nothing has changed then; of the device: out_of_memory, machine. The
+    ///              grid must be uploaded again then; packed() is what it was
+    Result<void> set_field(const PointField& field, const Run& run = {});
 
-    /// Replaces the coordinates of both (a mesh that moves).
+    /// Replaces the coordinates (a mesh that moves).
     ///
-    /// Cost     PackedGrid::set_points(), and 12 bytes a point over the bus
-    /// Errors   as PackedGrid::set_points(): nothing has changed then; the others as set_field()
-    Result<void> set_points(PackedGrid& packed, const Array& points, int threads = 0, const Progress& progress = {});
-
-    /// Lets the packed grid go, which may then be changed or destroyed. Extraction stays, without what its numbers are
-    /// needed for: edge ends, source cells, cell fields, and point fields that are not on the device yet; the report
-    /// then does not tell false ties and near ties, and set_field() and set_points() are errors.
-    ///
-    /// Errors   invalid_argument when not all pages are there
-    Result<void> give_up_packed();
+    /// Guarantees   packed() is then byte for byte what PackedGrid::with_points() gives
+    /// Cost         PackedGrid::with_points(), and 12 bytes a point over the bus
+    /// Errors       as PackedGrid::with_points(): nothing has changed then; the others as set_field()
+    Result<void> set_points(const Array& points, const Run& run = {});
 
     std::uint64_t device_bytes() const noexcept; ///< resident arrays and the pages that are there
     bool complete() const noexcept;              ///< all pages are there
@@ -163,8 +157,7 @@ public:
     Result<std::vector<DeviceSurface>> extract(std::span<const double> isovalues, const ExtractOptions& options = {},
                                                const Progress& progress = {});
 
-    /// A surface of this grid, on the processor, with all that was asked for when it was extracted. When the packed
-    /// grid has got another field or other points since then, the report does not tell false ties and near ties.
+    /// A surface of this grid, on the processor, with all that was asked for when it was extracted.
     ///
     /// Cost     the arrays over the bus; cell fields are copied here
     Result<Extraction> download(const DeviceSurface& surface, const Progress& progress = {});
@@ -175,7 +168,6 @@ public:
 private:
     struct Data;
     explicit DeviceGrid(std::unique_ptr<Data> data);
-    Result<void> check_same(const PackedGrid& packed) const;
     Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
                               const ExtractOptions& options, const Progress& progress);
     std::unique_ptr<Data> data_;

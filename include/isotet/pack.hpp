@@ -54,49 +54,48 @@ struct FieldReport {
     bool unchanged = false;            ///< no rounding: float32 or integers below 2^24 (2^53 in double packing)
 };
 
-/// The grid in clusters: what every engine works on.
+/// The grid in clusters: what every engine works on. A handle: copying shares everything, and what it refers to never
+/// changes. The grid that was packed is not needed any more. A default-made handle is an empty grid.
 ///
-/// The grid that was packed is not needed any more. Where values were changed as they were stored (FieldReport), the
-/// array of the contoured field stays shared, to tell false ties; not a borrowed one, without which nothing is told of
-/// them. Moving is cheap; copying is not possible.
+/// Where values were changed as they were stored (FieldReport), the array of the contoured field stays shared, to tell
+/// false ties; not a borrowed one, without which nothing is told of them.
 ///
-/// Threads   const functions are safe from many threads; set_field() and set_points() need the object alone
+/// Threads   safe from many threads
 class PackedGrid {
 public:
     PackedGrid();
-    explicit PackedGrid(std::unique_ptr<core::Packed> data);
-    PackedGrid(PackedGrid&&) noexcept;
-    PackedGrid& operator=(PackedGrid&&) noexcept;
-    ~PackedGrid();
+    explicit PackedGrid(std::shared_ptr<const core::Packed> data);
+    PackedGrid(const PackedGrid&) = default; // no move: a handle that was moved from stays what it was
+    PackedGrid& operator=(const PackedGrid&) = default;
+    ~PackedGrid() = default;
 
     const PackReport& report() const noexcept;
     const FieldReport& field() const noexcept;
     Precision precision() const noexcept;
-    std::array<double, 3> origin() const noexcept; ///< positions are stored relative to it
-    std::uint64_t user_points() const noexcept;    ///< points of the user's grid, unused ones too
+    std::uint64_t user_points() const noexcept; ///< points of the user's grid, unused ones too
     std::uint64_t user_cells() const noexcept;
 
     /// The packed arrays, for engines; src/core/packed.hpp draws them.
     const core::Packed& data() const noexcept { return *data_; }
+    const std::shared_ptr<const core::Packed>& shared_data() const noexcept { return data_; }
 
-    /// Replaces the contoured field (another field, or the next time step on the same cells) without packing again.
+    /// The same grid with another field (or the next time step on the same cells); cells and points are shared.
     ///
     /// `field`   one scalar for each point of the user's grid
-    /// Cost      one pass over values and tets; nothing proportional to the grid is allocated
-    /// Errors    invalid_argument when the length or the number of components is wrong; cancelled (the packed grid then
-    ///           has no usable field: set one again)
-    Result<void> set_field(const PointField& field, int threads = 0, const Progress& progress = {});
+    /// Cost      one pass over values and tets; 4 bytes a point (8 in double) and 0.1 bytes a tet are allocated
+    /// Errors    invalid_argument when the length or the number of components is wrong; out_of_memory; cancelled
+    Result<PackedGrid> with_field(const PointField& field, const Run& run = {}) const;
 
-    /// Replaces the coordinates (a mesh that moves) without packing again: the same points and cells in the same order.
+    /// The same grid with other coordinates (a mesh that moves); cells and field are shared.
     ///
-    /// `points`  float32 or float64, 3 components, as many as the user's grid has
+    /// `points`  float32 or float64, 3 components, as many as the user's grid has, in the same order
+    /// Cost      one pass over points and tets; 12 bytes a point (24 in double) are allocated
     /// Errors    invalid_argument when the shape or type is wrong; invalid_data when a coordinate is not finite or 2^91
-    ///           or more, or when a tet changes its orientation (pack again)
-    Result<void> set_points(const Array& points, int threads = 0, const Progress& progress = {});
+    ///           or more, or when a tet changes its orientation (pack again); out_of_memory; cancelled
+    Result<PackedGrid> with_points(const Array& points, const Run& run = {}) const;
 
 private:
-    friend class DeviceGrid; // sets a field with the device's help
-    std::unique_ptr<core::Packed> data_;
+    std::shared_ptr<const core::Packed> data_;
 };
 
 /// Packs a grid: cells are checked and split into tets, tets are oriented, sorted along a Hilbert curve, and gathered

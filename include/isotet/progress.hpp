@@ -24,4 +24,10 @@ struct Progress {
     }
 };
 
+/// How a call is carried out.
+struct Run {
+    int threads = 0; ///< at most; 0: all
+    Progress progress = {};
+};
+
 } // namespace isotet

@@ -22,43 +22,23 @@ namespace isotet {
 
 struct DeviceSurface::Data {
     std::shared_ptr<vulkan::Context> context; ///< before the buffers, so that it goes after them
+    std::shared_ptr<const core::Packed> packed; ///< the grid as it was when this was extracted
     vulkan::SurfaceBuffers buffers;
     double isovalue = 0;
     core::StoredIsovalue<float> stored{0};
-    double stored_in_unit = 0; ///< of the field
-    std::array<double, 3> origin{};
-    std::uint64_t changes = 0; ///< of the packed grid, when it was extracted
     std::vector<core::Storage>
         storages; ///< of the point fields that were interpolated on the device: of all, or of none
     ExtractOptions options;
 
-    Result<Extraction> download(const core::Packed* packed) const;
+    Result<Extraction> download() const;
 };
 
 using FieldsOnDevice = std::vector<std::shared_ptr<const vulkan::CarriedField>>;
 
-/// What extraction must know of a packed grid, also when that was given up.
-struct GridFacts {
-    core::Storage storage;
-    std::array<double, 3> origin{};
-    std::uint64_t changes = 0, user_points = 0;
-    bool gradients = false;
-
-    explicit GridFacts(const core::Packed& packed)
-        : storage(packed.storage),
-          origin(packed.origin),
-          changes(packed.changes),
-          user_points(packed.user_points),
-          gradients(!packed.gradients.empty()) {}
-};
-
 struct DeviceGrid::Data {
+    PackedGrid packed;
     std::unique_ptr<vulkan::GridOnDevice> grid;
     DeviceWork work;
-    std::optional<GridFacts> given_up; ///< of the packed grid that is gone
-
-    GridFacts facts() const { return given_up ? *given_up : GridFacts(*grid->packed()); }
-    Result<void> check_fit(const ExtractOptions& options) const;
 
     Result<void> extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
                          const ExtractOptions& options, const FieldsOnDevice& fields, const Progress& progress);
@@ -70,7 +50,7 @@ DeviceSurface& DeviceSurface::operator=(DeviceSurface&&) noexcept = default;
 DeviceSurface::~DeviceSurface() = default;
 
 double DeviceSurface::isovalue() const noexcept { return data_ ? data_->isovalue : 0; }
-std::array<double, 3> DeviceSurface::origin() const noexcept { return data_ ? data_->origin : std::array<double, 3>{}; }
+std::array<double, 3> DeviceSurface::origin() const noexcept { return data_ ? data_->packed->origin : std::array<double, 3>{}; }
 std::uint64_t DeviceSurface::vertices() const noexcept { return data_ ? data_->buffers.vertices() : 0; }
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return data_ ? data_->buffers.triangle_count() : 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return data_ ? data_->buffers.bytes() : 0; }
@@ -98,8 +78,8 @@ Result<FieldsOnDevice> carry(vulkan::GridOnDevice& grid, const ExtractOptions& o
     if (!grid.complete()) grid.fields().clear(); // pages need the room
     if (!grid.complete()) return fields;
     for (const Field& field : options.point_fields) {
-        auto carried = grid.fields().get(grid.context(), grid.packed(), field);
-        if (!carried && carried.error().code == ErrorCode::out_of_memory && grid.packed()) {
+        auto carried = grid.fields().get(grid.context(), *grid.packed(), field);
+        if (!carried && carried.error().code == ErrorCode::out_of_memory) {
             grid.fields().clear();
             return FieldsOnDevice();
         }
@@ -107,11 +87,6 @@ Result<FieldsOnDevice> carry(vulkan::GridOnDevice& grid, const ExtractOptions& o
         fields.push_back(*std::move(carried));
     }
     return fields;
-}
-
-Error numbers_are_gone() {
-    return {ErrorCode::invalid_argument, "edge ends, source cells and cell fields need the numbers of points and cells "
-                                         "of the packed grid, but it was given up"};
 }
 
 DeviceWork work_of(vulkan::WorkDone&& done) {
@@ -128,14 +103,7 @@ DeviceWork work_of(vulkan::WorkDone&& done) {
 
 } // namespace
 
-Result<void> DeviceGrid::check_same(const PackedGrid& packed) const {
-    if (data_->given_up)
-        return Error{ErrorCode::invalid_argument, "the packed grid was given up: nothing can be set on the device"};
-    if (&packed.data() != data_->grid->packed())
-        return Error{ErrorCode::invalid_argument,
-                     "the packed grid to change is not the one that was uploaded to the device"};
-    return data_->grid->check_current();
-}
+const PackedGrid& DeviceGrid::packed() const noexcept { return data_->packed; }
 
 DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOptions& options) {
     if (!packed.data().single()) return {};
@@ -144,25 +112,25 @@ DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOpti
 }
 
 Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& packed, const DeviceGridOptions& options,
-                                      const Progress& progress) {
+                                      const Run& run) {
     return core::guarded("uploading the packed grid", [&]() -> Result<DeviceGrid> {
         vulkan::GridOptions grid_options;
         grid_options.page_bytes = options.page_bytes;
         grid_options.reserve = options.surface_bytes.value_or(device.memory_free() / 8);
-        auto grid = vulkan::GridOnDevice::upload(device.context(), packed.data(), grid_options, progress);
+        Result<std::unique_ptr<vulkan::GridOnDevice>> grid = Error{};
+        core::with_threads(run.threads, [&] {
+            grid = vulkan::GridOnDevice::upload(device.context(), packed.shared_data(), grid_options, run.progress);
+        });
         if (!grid) return std::move(grid).error();
-        return DeviceGrid(std::make_unique<Data>(Data{*std::move(grid), {}, {}}));
+        return DeviceGrid(std::make_unique<Data>(Data{packed, *std::move(grid), {}}));
     });
 }
 
 /// As the device made it; but cell fields, and point fields that were not interpolated there, as after any engine.
-Result<Extraction> DeviceSurface::Data::download(const core::Packed* packed) const {
-    if (packed)
-        if (auto ok = api::check_fit(options, *packed); !ok) return ok.error();
+Result<Extraction> DeviceSurface::Data::download() const {
     const bool fields_are_there = !buffers.fields.empty();
     const bool ends = options.edge_ends || (!options.point_fields.empty() && !fields_are_there);
-    if (!packed && (ends || buffers.parts().sources)) return numbers_are_gone();
-    auto raw = buffers.download(*context, packed, ends);
+    auto raw = buffers.download(*context, *packed, ends);
     if (!raw) return std::move(raw).error();
     ExtractOptions without_normals = options;
     without_normals.normals = Normals::none;
@@ -171,69 +139,43 @@ Result<Extraction> DeviceSurface::Data::download(const core::Packed* packed) con
         for (const Field& field : options.point_fields)
             stored_as.push_back(core::choose_storage(field.values, *packed));
     Extraction out;
-    out.surface = api::finish<float>(origin, without_normals, stored_as, *raw);
+    out.surface = api::finish<float>(packed->origin, without_normals, stored_as, *raw);
     out.surface.normals_kind = options.normals;
     out.surface.normals = raw->normals;
-    if (packed && packed->changes == changes) {
-        api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report);
-    } else {
-        out.report.tied_points = raw->tied_points;
-        out.report.isovalue_stored = stored_in_unit;
-    }
+    api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report);
     out.report.selected_clusters = raw->selected_clusters;
     out.report.surface_bytes = api::bytes_of(out.surface);
     return out;
 }
 
-Result<void> DeviceGrid::set_field(PackedGrid& packed, const PointField& field, int threads, const Progress& progress) {
+Result<void> DeviceGrid::set_field(const PointField& field, const Run& run) {
     return core::guarded("setting the field on the device", [&]() -> Result<void> {
-        core::Packed& data = *packed.data_;
-        if (auto ok = check_same(packed); !ok) return ok;
-        if (auto ok = core::check_field(field, data.user_points); !ok) return ok;
+        if (auto ok = core::check_field(field, data_->packed.user_points()); !ok) return ok;
+        const auto next = std::make_shared<core::Packed>(data_->packed.data());
         Result<void> result;
-        core::with_threads(threads, [&] {
-            result = core::store_values<float>(field, data, progress);
-            if (result && !data.gradients.empty()) core::store_gradients(data);
+        core::with_threads(run.threads, [&] {
+            result = core::store_values<float>(field, *next, run.progress);
+            if (result && !next->gradients.empty()) core::store_gradients(*next);
             if (!result) return;
-            auto done = data_->grid->take_field(data, progress);
-            if (done) {
-                data_->work = work_of(*std::move(done));
-                return;
-            }
-            core::store_ranges<float>(data, 0, data.clusters(), {}); // whatever the device made of them
-            result = done.error();
+            auto done = data_->grid->set_field(next, run.progress);
+            if (done) data_->work = work_of(*std::move(done));
+            else result = done.error();
         });
+        if (result) data_->packed = PackedGrid(next);
         return result;
     });
 }
 
-Result<void> DeviceGrid::set_points(PackedGrid& packed, const Array& points, int threads, const Progress& progress) {
+Result<void> DeviceGrid::set_points(const Array& points, const Run& run) {
     return core::guarded("setting the points on the device", [&]() -> Result<void> {
-        if (auto ok = check_same(packed); !ok) return ok;
-        if (auto ok = packed.set_points(points, threads, progress); !ok) return ok;
-        auto done = data_->grid->take_points(progress);
+        const Result<PackedGrid> next = data_->packed.with_points(points, run);
+        if (!next) return next.error();
+        auto done = data_->grid->set_points(next->shared_data(), run.progress);
         if (!done) return done.error();
         data_->work = work_of(*std::move(done));
+        data_->packed = *next;
         return {};
     });
-}
-
-Result<void> DeviceGrid::give_up_packed() {
-    if (data_->given_up) return {};
-    GridFacts facts = data_->facts();
-    if (auto ok = data_->grid->give_up_packed(); !ok) return ok;
-    data_->given_up = std::move(facts);
-    return {};
-}
-
-/// Errors   as api::check_fit(), and for what only the packed grid could give
-Result<void> DeviceGrid::Data::check_fit(const ExtractOptions& options) const {
-    if (!given_up) return api::check_fit(options, *grid->packed());
-    if (options.edge_ends || options.source_cells || !options.cell_fields.empty()) return numbers_are_gone();
-    if (options.normals == Normals::gradient && !given_up->gradients) return api::no_gradients();
-    for (const Field& field : options.point_fields)
-        if (auto ok = api::check_length(field, given_up->user_points); !ok) return ok;
-    return {};
 }
 
 std::uint64_t DeviceGrid::device_bytes() const noexcept { return data_->grid->device_bytes(); }
@@ -262,17 +204,14 @@ Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const 
 Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
                                        const ExtractOptions& options, const FieldsOnDevice& fields,
                                        const Progress& progress) {
-    const GridFacts packed = facts();
     std::vector<vulkan::Task> tasks;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         auto& data = surfaces[i].data_;
         if (!data || data->context != grid->shared_context()) data = std::make_unique<DeviceSurface::Data>();
         data->context = grid->shared_context();
         data->isovalue = isovalues[i];
-        data->stored = core::store_isovalue<float>(isovalues[i], packed.storage);
-        data->stored_in_unit = core::restore_value(data->stored.sum(), packed.storage);
-        data->origin = packed.origin;
-        data->changes = packed.changes;
+        data->packed = packed.shared_data();
+        data->stored = core::store_isovalue<float>(isovalues[i], data->packed->storage);
         data->storages.clear();
         for (const auto& field : fields) data->storages.push_back(field->storage);
         data->options = options;
@@ -290,13 +229,12 @@ Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::sp
     return core::guarded("extraction", [&]() -> Result<void> {
         vulkan::GridOnDevice& grid = *data_->grid;
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok;
-        if (auto ok = data_->check_fit(options); !ok) return ok;
-        if (auto ok = grid.check_current(); !ok) return ok;
+        if (auto ok = api::check_fit(options, data_->packed.data()); !ok) return ok;
         const std::uint64_t up = grid.context().staging().uploaded();
         auto fields = carry(grid, options);
         if (!fields) return fields.error();
         auto done = data_->extract(isovalues, surfaces, options, *fields, progress);
-        if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty() && grid.packed()) {
+        if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty()) {
             // Fields can be interpolated elsewhere, surfaces cannot.
             fields->clear();
             grid.fields().clear();
@@ -316,7 +254,7 @@ Result<Extraction> DeviceGrid::download(const DeviceSurface& surface, const Prog
         vulkan::Staging& staging = data.context->staging();
         const std::uint64_t down = staging.downloaded();
         Result<Extraction> result = Error{};
-        core::with_threads(data.options.threads, [&] { result = data.download(data_->grid->packed()); });
+        core::with_threads(data.options.threads, [&] { result = data.download(); });
         data_->work = {};
         data_->work.downloaded_bytes = staging.downloaded() - down;
         progress("download", 1);

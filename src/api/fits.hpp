@@ -2,8 +2,6 @@
 // Whether what is asked for can be had from a packed grid.
 #pragma once
 
-#include <cstdint>
-
 #include <isotet/extract.hpp>
 
 #include "core/packed.hpp"
@@ -12,9 +10,5 @@ namespace isotet::api {
 
 /// Errors   invalid_argument when something was not packed, or a field has another length
 Result<void> check_fit(const ExtractOptions& options, const core::Packed& packed);
-
-/// Its parts, for a packed grid that is gone.
-Error no_gradients();
-Result<void> check_length(const Field& point_field, std::uint64_t user_points);
 
 } // namespace isotet::api

@@ -7,6 +7,7 @@ namespace isotet {
 
 struct DeviceSurface::Data {};
 struct DeviceGrid::Data {
+    PackedGrid packed;
     DeviceWork work;
 };
 
@@ -34,13 +35,12 @@ DeviceGrid& DeviceGrid::operator=(DeviceGrid&&) noexcept = default;
 DeviceGrid::~DeviceGrid() = default;
 
 DeviceGridNeeds DeviceGrid::needs(const PackedGrid&, const DeviceGridOptions&) { return {}; }
-Result<DeviceGrid> DeviceGrid::upload(const Device&, const PackedGrid&, const DeviceGridOptions&, const Progress&) {
+Result<DeviceGrid> DeviceGrid::upload(const Device&, const PackedGrid&, const DeviceGridOptions&, const Run&) {
     return built_without();
 }
-Result<void> DeviceGrid::check_same(const PackedGrid&) const { return built_without(); }
-Result<void> DeviceGrid::set_field(PackedGrid&, const PointField&, int, const Progress&) { return built_without(); }
-Result<void> DeviceGrid::set_points(PackedGrid&, const Array&, int, const Progress&) { return built_without(); }
-Result<void> DeviceGrid::give_up_packed() { return built_without(); }
+Result<void> DeviceGrid::set_field(const PointField&, const Run&) { return built_without(); }
+Result<void> DeviceGrid::set_points(const Array&, const Run&) { return built_without(); }
+const PackedGrid& DeviceGrid::packed() const noexcept { return data_->packed; }
 std::uint64_t DeviceGrid::device_bytes() const noexcept { return 0; }
 bool DeviceGrid::complete() const noexcept { return false; }
 const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }

@@ -179,7 +179,7 @@ Result<DeviceSpeeds> measure_speeds(const Device& device, std::uint64_t side, in
             std::optional<DeviceGrid> grid;
             const Result<double> upload = best_of(2, progress, [&]() -> Result<void> {
                 grid.reset();
-                Result<DeviceGrid> uploaded = DeviceGrid::upload(device, *packed, {}, progress);
+                Result<DeviceGrid> uploaded = DeviceGrid::upload(device, *packed, {}, {.progress = progress});
                 if (!uploaded) return uploaded.error();
                 grid = *std::move(uploaded);
                 return {};

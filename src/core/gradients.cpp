@@ -48,7 +48,7 @@ public:
     explicit Gradients(Packed& packed) : packed_(packed), borrowers_(packed) {}
 
     void run() {
-        packed_.gradients = Buffer<std::uint32_t>(packed_.points());
+        packed_.gradients = SharedBuffer<std::uint32_t>(packed_.points());
         parallel_each(packed_.clusters(), 16, [&](std::size_t c) { one_cluster(c); });
     }
 

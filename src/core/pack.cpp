@@ -70,7 +70,7 @@ void store_points(const Array& points, Packed& packed) {
     else store_positions<double>(points, packed);
 }
 
-Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, const PackOptions& options,
+Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& field, const PackOptions& options,
                                      const Progress& progress) {
     auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
@@ -95,7 +95,7 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     draft.locals.release();
     draft.point_of.release();
 
-    auto packed = std::make_unique<Packed>(std::move(draft.packed));
+    auto packed = std::make_shared<Packed>(std::move(draft.packed));
     packed->storage_cache = std::make_shared<StorageCache>();
     packed->user_points = grid.points.tuples();
     packed->user_cells = cells->count();
@@ -106,7 +106,7 @@ Result<std::unique_ptr<Packed>> pack(const Grid& grid, const PointField& field, 
     if (options.gradients) store_gradients(*packed);
     measure(*packed);
     progress("pack", 1);
-    return packed;
+    return std::shared_ptr<const Packed>(std::move(packed));
 }
 
 /// True when no stored tet has a negative volume with these coordinates.
@@ -142,53 +142,56 @@ Result<void> check_moved_points(const Packed& packed, const Array& points) {
 } // namespace
 } // namespace core
 
-PackedGrid::PackedGrid() : data_(std::make_unique<core::Packed>()) {}
-PackedGrid::PackedGrid(std::unique_ptr<core::Packed> data) : data_(std::move(data)) {}
-PackedGrid::PackedGrid(PackedGrid&&) noexcept = default;
-PackedGrid& PackedGrid::operator=(PackedGrid&&) noexcept = default;
-PackedGrid::~PackedGrid() = default;
+PackedGrid::PackedGrid() {
+    static const auto empty = std::make_shared<const core::Packed>();
+    data_ = empty;
+}
+PackedGrid::PackedGrid(std::shared_ptr<const core::Packed> data) : data_(std::move(data)) {}
 
 const PackReport& PackedGrid::report() const noexcept { return data_->report; }
 const FieldReport& PackedGrid::field() const noexcept { return data_->field_report; }
 Precision PackedGrid::precision() const noexcept { return data_->single() ? Precision::single : Precision::double_; }
-std::array<double, 3> PackedGrid::origin() const noexcept { return data_->origin; }
 std::uint64_t PackedGrid::user_points() const noexcept { return data_->user_points; }
 std::uint64_t PackedGrid::user_cells() const noexcept { return data_->user_cells; }
 
-Result<void> PackedGrid::set_field(const PointField& field, int threads, const Progress& progress) {
-    return core::guarded("setting the field", [&]() -> Result<void> {
+Result<PackedGrid> PackedGrid::with_field(const PointField& field, const Run& run) const {
+    return core::guarded("setting the field", [&]() -> Result<PackedGrid> {
         if (auto ok = core::check_field(field, data_->user_points); !ok) return ok.error();
-        Result<void> result;
-        core::with_threads(threads, [&] {
-            result = core::store_field(field, *data_, progress);
-            if (result && !data_->gradients.empty()) core::store_gradients(*data_);
+        const auto next = std::make_shared<core::Packed>(*data_);
+        Result<void> stored;
+        core::with_threads(run.threads, [&] {
+            stored = core::store_field(field, *next, run.progress);
+            if (stored && !next->gradients.empty()) core::store_gradients(*next);
         });
-        return result;
+        if (!stored) return stored.error();
+        return PackedGrid(next);
     });
 }
 
-Result<void> PackedGrid::set_points(const Array& points, int threads, const Progress& progress) {
-    return core::guarded("setting the points", [&]() -> Result<void> {
+Result<PackedGrid> PackedGrid::with_points(const Array& points, const Run& run) const {
+    return core::guarded("setting the points", [&]() -> Result<PackedGrid> {
         if (!is_floating(points.type()) || points.components() != 3 || points.tuples() != data_->user_points)
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the new points are {} x {} {}, but must be {} x 3 of float32 or float64",
                                      points.tuples(), points.components(), name_of(points.type()), data_->user_points)};
-        Result<void> result;
-        core::with_threads(threads, [&] {
-            result = core::check_moved_points(*data_, points);
-            if (!result) return;
-            core::store_points(points, *data_);
-            if (!data_->gradients.empty()) core::store_gradients(*data_);
+        const auto next = std::make_shared<core::Packed>(*data_);
+        Result<void> checked;
+        core::with_threads(run.threads, [&] {
+            checked = core::check_moved_points(*next, points);
+            if (!checked) return;
+            core::store_points(points, *next);
+            if (!next->gradients.empty()) core::store_gradients(*next);
         });
-        progress("pack", 1);
-        return result;
+        if (!checked) return checked.error();
+        run.progress("pack", 1);
+        return PackedGrid(next);
     });
 }
 
 Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options,
                         const Progress& progress) {
     return core::guarded("packing", [&]() -> Result<PackedGrid> {
-        Result<std::unique_ptr<core::Packed>> result = Error{};
+        Result<std::shared_ptr<const core::Packed>> result = Error{};
         core::with_threads(options.threads, [&] { result = core::pack(grid, field, options, progress); });
         if (!result) return std::move(result).error();
         return PackedGrid(*std::move(result));

@@ -85,14 +85,14 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
                                  total.cluster, total.group, limit - 1)};
 
     Packed& packed = draft.packed;
-    packed.headers = Buffer<ClusterHeader>(total.cluster);
-    packed.tets = Buffer<StoredTet>(total.group * group_size);
+    packed.headers = SharedBuffer<ClusterHeader>(total.cluster);
+    packed.tets = SharedBuffer<StoredTet>(total.group * group_size);
     draft.first_local = Buffer<std::uint64_t>(total.cluster + 1);
     draft.locals = Buffer<std::uint64_t>(total.local);
     draft.first_local[total.cluster] = total.local;
     const bool wide_cells = cells > std::size_t{1} << 32;
-    if (source_cells && wide_cells) packed.wide_cell_ids = Buffer<std::uint64_t>(packed.tets.size());
-    else if (source_cells) packed.cell_ids = Buffer<std::uint32_t>(packed.tets.size());
+    if (source_cells && wide_cells) packed.wide_cell_ids = SharedBuffer<std::uint64_t>(packed.tets.size());
+    else if (source_cells) packed.cell_ids = SharedBuffer<std::uint32_t>(packed.tets.size());
     parallel_each(block_count, 1, [&](std::size_t b) {
         const BlockClusters block = std::move(blocks[b]);
         std::vector<TetOrigin> origins(source_cells ? block.tets.size() : 0);

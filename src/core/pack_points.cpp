@@ -51,8 +51,8 @@ void number_points(std::uint64_t user_points, Draft& draft) {
         points += header.own_points;
     }
     const bool wide = user_points > std::uint64_t{1} << 32;
-    if (wide) packed.wide_point_ids = Buffer<std::uint64_t>(points);
-    else packed.point_ids = Buffer<std::uint32_t>(points);
+    if (wide) packed.wide_point_ids = SharedBuffer<std::uint64_t>(points);
+    else packed.point_ids = SharedBuffer<std::uint32_t>(points);
 
     // Local points in packed order, and the tets' corners with them.
     parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {

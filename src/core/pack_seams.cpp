@@ -184,7 +184,7 @@ public:
             header.first_link = words;
             words += ClusterLinks::words(header);
         }
-        packed_.links = Buffer<std::uint32_t>(words);
+        packed_.links = SharedBuffer<std::uint32_t>(words);
         parallel_each(tasks, 1, [&](std::size_t task) {
             std::copy(lists[task].begin(), lists[task].end(),
                       packed_.links.begin() + packed_.headers[task * clusters_a_task].first_link);

@@ -34,7 +34,7 @@
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 
-#include "core/buffer.hpp"
+#include "core/shared_buffer.hpp"
 
 namespace isotet::core {
 
@@ -107,9 +107,9 @@ struct ClusterLinks {
 /// What depends on the precision.
 template <class Real>
 struct Values {
-    Buffer<Real> positions; ///< 3 a point, relative to the origin
-    Buffer<Real> values;
-    Buffer<Range<Real>> ranges;
+    SharedBuffer<Real> positions; ///< 3 a point, relative to the origin
+    SharedBuffer<Real> values;
+    SharedBuffer<Range<Real>> ranges;
 };
 
 /// How values of a field become stored values; see storage.hpp.
@@ -121,17 +121,18 @@ struct Storage {
 
 class StorageCache;
 
+/// Copying shares all arrays. A copy that gets another field or other points gets arrays of its own for them.
 struct Packed {
-    Buffer<ClusterHeader> headers;
-    Buffer<StoredTet> tets;             ///< 32 a group
-    Buffer<GroupRange> group_ranges;
-    Buffer<std::uint32_t> links;
-    Buffer<std::uint8_t> has_no_data;   ///< 1 where the cluster holds a point without data
-    Buffer<std::uint32_t> point_ids;    ///< packed point -> user's point; or, from 2^32 user's points on,
-    Buffer<std::uint64_t> wide_point_ids;
-    Buffer<std::uint32_t> cell_ids;     ///< stored tet (by group and lane) -> user's cell, on request; or
-    Buffer<std::uint64_t> wide_cell_ids;
-    Buffer<std::uint32_t> gradients;    ///< octahedral code a point, on request (normal_code.hpp)
+    SharedBuffer<ClusterHeader> headers;
+    SharedBuffer<StoredTet> tets;             ///< 32 a group
+    SharedBuffer<GroupRange> group_ranges;
+    SharedBuffer<std::uint32_t> links;
+    SharedBuffer<std::uint8_t> has_no_data;   ///< 1 where the cluster holds a point without data
+    SharedBuffer<std::uint32_t> point_ids;    ///< packed point -> user's point; or, from 2^32 user's points on,
+    SharedBuffer<std::uint64_t> wide_point_ids;
+    SharedBuffer<std::uint32_t> cell_ids;     ///< stored tet (by group and lane) -> user's cell, on request; or
+    SharedBuffer<std::uint64_t> wide_cell_ids;
+    SharedBuffer<std::uint32_t> gradients;    ///< octahedral code a point, on request (normal_code.hpp)
     std::variant<Values<float>, Values<double>> reals;
 
     std::array<double, 3> origin{};
@@ -142,7 +143,6 @@ struct Packed {
     std::uint64_t user_points = 0, user_cells = 0;
     PackReport report;
     FieldReport field_report;
-    std::uint64_t changes = 0;          ///< of field or points: who holds a copy can tell
 
     std::size_t clusters() const { return headers.size(); }
     std::size_t points() const { return point_ids.size() + wide_point_ids.size(); }

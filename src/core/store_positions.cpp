@@ -62,7 +62,6 @@ bool is_coarse(const PointReader& points, const Packed& packed, std::size_t clus
 
 template <class Real>
 void store_positions(const Array& array, Packed& packed) {
-    ++packed.changes;
     const PointReader points(array);
     const bool unchanged = array.type() == ScalarType::float32 || sizeof(Real) == sizeof(double);
     packed.origin = {};
@@ -71,8 +70,8 @@ void store_positions(const Array& array, Packed& packed) {
         for (std::size_t axis = 0; axis < 3 && packed.points(); ++axis)
             packed.origin[axis] = rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
     }
-    Buffer<Real>& positions = packed.as<Real>().positions;
-    if (positions.empty()) positions = Buffer<Real>(3 * packed.points());
+    SharedBuffer<Real>& positions = packed.as<Real>().positions;
+    positions = SharedBuffer<Real>(3 * packed.points());
     std::atomic<std::uint64_t> flushed{0}, coarse{0};
     parallel_ranges(packed.points(), 1 << 14, [&](std::size_t begin, std::size_t end) {
         constexpr std::size_t ahead = 16;

@@ -7,14 +7,11 @@ namespace isotet::core {
 
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress) {
-    ++packed.changes;
     Values<Real>& reals = packed.as<Real>();
-    if (reals.values.size() != packed.points()) {
-        reals.values = Buffer<Real>(packed.points());
-        reals.ranges = Buffer<Range<Real>>(packed.clusters());
-        packed.group_ranges = Buffer<GroupRange>(packed.tets.size() / group_size);
-        packed.has_no_data = Buffer<std::uint8_t>(packed.clusters());
-    }
+    reals.values = SharedBuffer<Real>(packed.points());
+    reals.ranges = SharedBuffer<Range<Real>>(packed.clusters());
+    packed.group_ranges = SharedBuffer<GroupRange>(packed.tets.size() / group_size);
+    packed.has_no_data = SharedBuffer<std::uint8_t>(packed.clusters());
     const FieldStorage stored = store_field_values(field.values, packed, progress, reals.values.data());
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "storing the field was cancelled"};
 

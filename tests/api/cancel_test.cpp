@@ -35,7 +35,7 @@ public:
             {"survey", [this](const Progress& p) { return code_of(survey(grid_, {}, p)); }},
             {"split", [this](const Progress& p) { return code_of(split(grid_, p)); }},
             {"pack", [this](const Progress& p) { return code_of(pack(grid_, point_field(grid_), {}, p)); }},
-            {"set_field", [this](const Progress& p) { return code_of(packed_.set_field(point_field(grid_), 0, p)); }},
+            {"set_field", [this](const Progress& p) { return code_of(packed_.with_field(point_field(grid_), {.progress = p})); }},
             {"extract", [this](const Progress& p) { return code_of(extract(packed_, 0.1, {}, p)); }},
             {"extract by reference",
              [this](const Progress& p) {

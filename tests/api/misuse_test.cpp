@@ -175,7 +175,7 @@ TEST(Extract, RefusesFieldsThatDoNotFit) {
 
 TEST(SetField, RefusesAFieldThatDoesNotFitAndKeepsTheOldOne) {
     PackedGrid packed = pack(one_tet(), some_field()).value();
-    expect_error(packed.set_field(field_of<float>({1, 2}, "new")), ErrorCode::invalid_argument,
+    expect_error(packed.with_field(field_of<float>({1, 2}, "new")), ErrorCode::invalid_argument,
                  "field 'new' has 2 values, but the grid has 5 points");
     EXPECT_EQ(packed.field().name, "value");
     EXPECT_EQ(extract(packed, 0.5).value().surface.triangle_count(), 1u);
@@ -183,11 +183,11 @@ TEST(SetField, RefusesAFieldThatDoesNotFitAndKeepsTheOldOne) {
 
 TEST(SetPoints, RefusesPointsOfTheWrongShapeOrType) {
     PackedGrid packed = pack(one_tet(), some_field()).value();
-    expect_error(packed.set_points(Array::own(std::vector<float>(12, 0), 3)), ErrorCode::invalid_argument,
+    expect_error(packed.with_points(Array::own(std::vector<float>(12, 0), 3)), ErrorCode::invalid_argument,
                  "the new points are 4 x 3 float32, but must be 5 x 3 of float32 or float64");
-    EXPECT_FALSE(packed.set_points(Array::own(std::vector<std::int32_t>(15, 0), 3)));
-    EXPECT_FALSE(packed.set_points(Array::own(std::vector<float>(15, 0), 1)));
-    EXPECT_FALSE(packed.set_points({}));
+    EXPECT_FALSE(packed.with_points(Array::own(std::vector<std::int32_t>(15, 0), 3)));
+    EXPECT_FALSE(packed.with_points(Array::own(std::vector<float>(15, 0), 1)));
+    EXPECT_FALSE(packed.with_points({}));
 }
 
 TEST(NumberOfThreads, MayBeAnything) {

@@ -11,7 +11,7 @@
 namespace isotet::test {
 
 template <class T>
-void append_bytes(std::string& out, const core::Buffer<T>& buffer) {
+void append_bytes(std::string& out, const core::SharedBuffer<T>& buffer) {
     out += std::to_string(buffer.size()) + ":";
     out.append(reinterpret_cast<const char*>(buffer.data()), buffer.bytes());
 }

@@ -96,8 +96,8 @@ TEST(Threads, DoNotMatterForNewFieldsAndPoints) {
     std::string expected;
     for (const int threads : thread_counts) {
         PackedGrid packed = pack(grid, point_field(grid), with_everything(Precision::single, threads)).value();
-        packed.set_field(point_field(grid, 1), threads).value();
-        packed.set_points(points, threads).value();
+        packed = packed.with_field(point_field(grid, 1), {.threads = threads}).value();
+        packed = packed.with_points(points, {.threads = threads}).value();
         if (expected.empty()) expected = bytes_of(packed);
         EXPECT_TRUE(bytes_of(packed) == expected) << threads << " threads";
     }

@@ -37,7 +37,7 @@ protected:
     Result<std::string> extract_on(const Device& opened) {
         auto grid = DeviceGrid::upload(opened, packed, {.page_bytes = 10'000, .surface_bytes = {}});
         if (!grid) return grid.error();
-        if (auto set = grid->set_field(packed, field); !set) return set.error();
+        if (auto set = grid->set_field(field); !set) return set.error();
         auto surface = grid->extract(0.2, options);
         if (!surface) return surface.error();
         auto extraction = grid->download(*surface);
@@ -136,7 +136,7 @@ TEST_F(EngineFaults, CancellingIsNotAFailure) {
     std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    const auto upload = DeviceGrid::upload(device(), packed, {}, progress);
+    const auto upload = DeviceGrid::upload(device(), packed, {}, {.progress = progress});
     ASSERT_FALSE(upload);
     EXPECT_EQ(upload.error().code, ErrorCode::cancelled);
     DeviceGrid grid = DeviceGrid::upload(device(), packed).value();

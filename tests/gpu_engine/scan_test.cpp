@@ -21,26 +21,26 @@ protected:
     /// Clusters of nothing, but for a point in the first.
     static core::Packed empty_clusters() {
         core::Packed packed;
-        packed.headers = core::Buffer<core::ClusterHeader>(clusters);
+        packed.headers = core::SharedBuffer<core::ClusterHeader>(clusters);
         std::fill(packed.headers.begin(), packed.headers.end(), core::ClusterHeader{});
         packed.headers[0].own_points = 1;
-        packed.point_ids = core::Buffer<std::uint32_t>(1);
+        packed.point_ids = core::SharedBuffer<std::uint32_t>(1);
         packed.point_ids[0] = 0;
-        packed.has_no_data = core::Buffer<std::uint8_t>(clusters);
+        packed.has_no_data = core::SharedBuffer<std::uint8_t>(clusters);
         std::fill(packed.has_no_data.begin(), packed.has_no_data.end(), std::uint8_t{0});
-        packed.as<float>().values = core::Buffer<float>(1);
-        packed.as<float>().positions = core::Buffer<float>(3);
+        packed.as<float>().values = core::SharedBuffer<float>(1);
+        packed.as<float>().positions = core::SharedBuffer<float>(3);
         std::fill_n(packed.as<float>().values.data(), 1, 0.f);
         std::fill_n(packed.as<float>().positions.data(), 3, 0.f);
         auto& ranges = packed.as<float>().ranges;
-        ranges = core::Buffer<core::Range<float>>(clusters);
+        ranges = core::SharedBuffer<core::Range<float>>(clusters);
         std::fill(ranges.begin(), ranges.end(), core::Range<float>{0, 1});
         return packed;
     }
 
     /// The head of a surface after blocks with these counts have been added up.
     vulkan::layout::Output scan(const std::array<Count, 3>& blocks) {
-        const core::Packed packed = empty_clusters();
+        const auto packed = std::make_shared<const core::Packed>(empty_clusters());
         const auto grid = vulkan::GridOnDevice::upload(shared_context(), packed, {}, {}).value();
         const vulkan::Resident& resident = grid->resident();
         std::vector<Count> sums(resident.sizes().segments, Count{0, 0});

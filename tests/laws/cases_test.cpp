@@ -158,7 +158,7 @@ void expect_all_cases(const std::vector<Place>& points, const std::vector<Corner
     const int patterns = static_cast<int>(std::lround(std::pow(3, points.size())));
     for (int pattern = 0; pattern < patterns; ++pattern) {
         const std::vector<float> values = values_of(pattern, points.size());
-        packed.set_field(field_of(values), 1).value();
+        packed = packed.with_field(field_of(values), {.threads = 1}).value();
         for (const Ties ties : {Ties::merge, Ties::keep})
             for (const Engine engine : {Engine::cpu, Engine::reference}) {
                 SCOPED_TRACE(testing::Message()

@@ -54,7 +54,7 @@ TEST(SetField, GivesTheBytesOfAFreshPack) {
     for (const Precision precision : {Precision::single, Precision::double_}) {
         PackedGrid packed = pack(grid, fields.back(), with_everything(precision)).value();
         for (const PointField& field : fields) {
-            packed.set_field(field).value();
+            packed = packed.with_field(field).value();
             const PackedGrid fresh = pack(grid, field, with_everything(precision)).value();
             const double isovalue = (fresh.field().lower + fresh.field().upper) / 2;
             EXPECT_EQ(packed.field().offset, fresh.field().offset);
@@ -74,10 +74,10 @@ TEST(SetField, CanBeCancelledAndDoneAgain) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    const auto cancelled = packed.set_field(point_field(grid, 1), 0, progress);
+    const auto cancelled = packed.with_field(point_field(grid, 1), {.progress = progress});
     ASSERT_FALSE(cancelled);
     EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
-    packed.set_field(point_field(grid, 1)).value();
+    packed = packed.with_field(point_field(grid, 1)).value();
     const PackedGrid fresh = pack(grid, point_field(grid, 1), with_everything()).value();
     EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid, 1))) ==
                 bytes_of(whole_surface(fresh, 0.1, point_field(grid, 1))));
@@ -103,7 +103,7 @@ TEST(SetPoints, GivesTheBytesOfAFreshPackWhereTheCurveIsTheSame) {
     Grid grid = made_grid("shuffled", 8, {"gyroid"});
     PackedGrid packed = pack(grid, point_field(grid), with_everything()).value();
     grid.points = moved<float>(grid.points, [](auto p) { return std::array{2 * p[0], 2 * p[1], 2 * p[2]}; });
-    packed.set_points(grid.points).value();
+    packed = packed.with_points(grid.points).value();
     const PackedGrid fresh = pack(grid, point_field(grid), with_everything()).value();
     EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid))) ==
                 bytes_of(whole_surface(fresh, 0.1, point_field(grid))));
@@ -118,9 +118,9 @@ void expect_moved_as_fresh(const Grid& original, Precision precision) {
             const auto q = twisted(p);
             return std::array{q[0] + shift, q[1] - shift, q[2]};
         });
-        packed.set_points(grid.points).value();
+        packed = packed.with_points(grid.points).value();
         const PackedGrid fresh = pack(grid, point_field(grid), with_everything(precision)).value();
-        EXPECT_EQ(packed.origin(), fresh.origin());
+        EXPECT_EQ(packed.data().origin, fresh.data().origin);
         EXPECT_EQ(packed.report().coarse_clusters == 0, fresh.report().coarse_clusters == 0);
         const SurfaceSets expected = sets_of(whole_surface(fresh, 0.1, point_field(grid)));
         EXPECT_GT(expected.vertices.size(), 100u);
@@ -140,13 +140,13 @@ TEST(SetPoints, RefusesPointsThatTurnATetAndChangesNothing) {
     PackedGrid packed = pack(grid, point_field(grid), with_everything()).value();
     const std::string before = bytes_of(whole_surface(packed, 0.1, point_field(grid)));
     const auto mirrored =
-        packed.set_points(moved<float>(grid.points, [](auto p) { return std::array{-p[0], p[1], p[2]}; }));
+        packed.with_points(moved<float>(grid.points, [](auto p) { return std::array{-p[0], p[1], p[2]}; }));
     ASSERT_FALSE(mirrored);
     EXPECT_EQ(mirrored.error().code, ErrorCode::invalid_data);
     EXPECT_NE(mirrored.error().message.find("750 tets change their orientation"), std::string::npos)
         << mirrored.error().message;
     const auto infinite =
-        packed.set_points(moved<double>(grid.points, [](auto p) { return std::array{p[0], p[1] / 0.0, p[2]}; }));
+        packed.with_points(moved<double>(grid.points, [](auto p) { return std::array{p[0], p[1] / 0.0, p[2]}; }));
     ASSERT_FALSE(infinite);
     EXPECT_EQ(infinite.error().code, ErrorCode::invalid_data);
     EXPECT_TRUE(bytes_of(whole_surface(packed, 0.1, point_field(grid))) == before);
@@ -157,7 +157,7 @@ TEST(SetPoints, IgnoresPointsThatNoTetUses) {
                              field_of<float>({0, 1, 1, 1, 1}))
                             .value();
     const Array points = Array::own(std::vector<float>{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2, NAN, INFINITY, 1e30f}, 3);
-    packed.set_points(points).value();
+    packed = packed.with_points(points).value();
     EXPECT_EQ(extract(packed, 0.5).value().surface.positions.at(0, 0) +
                   extract(packed, 0.5).value().surface.positions.at(1, 0) +
                   extract(packed, 0.5).value().surface.positions.at(2, 0),
@@ -176,7 +176,7 @@ TEST(HugeOffsets, LeaveCentimetreCellsAsTheyAre) {
     const Grid near = centimetres(0), far = centimetres(4e6);
     const PackedGrid packed_near = pack(near, point_field(near)).value(),
                      packed_far = pack(far, point_field(far)).value();
-    EXPECT_NEAR(packed_far.origin()[0], 4e6, 1);
+    EXPECT_NEAR(packed_far.data().origin[0], 4e6, 1);
     EXPECT_EQ(packed_far.report().coarse_clusters, 0u);
     ExtractOptions options;
     options.edge_ends = true;
@@ -214,7 +214,7 @@ TEST(HugeOffsets, ThatFloat32CannotHoldAreReportedAndDoublePackingHoldsThem) {
     EXPECT_EQ(single.report().coarse_clusters, single.report().clusters);
     const PackedGrid precise = pack(both, field_of(values), with_everything(Precision::double_)).value();
     EXPECT_EQ(precise.report().coarse_clusters, 0u);
-    EXPECT_EQ(precise.origin(), (std::array<double, 3>{}));
+    EXPECT_EQ(precise.data().origin, (std::array<double, 3>{}));
     const Surface surface = extract(precise, 0.5).value().surface;
     EXPECT_EQ(surface.positions.type(), ScalarType::float64);
     for (std::size_t v = 0; v < surface.vertices(); ++v) ASSERT_NEAR(std::abs(surface.positions.at(v, 0)), 4e6, 0.021);

@@ -27,7 +27,7 @@ void expect_all_cases(const std::vector<Place>& points, const std::vector<Corner
     const int patterns = static_cast<int>(std::lround(std::pow(3, points.size())));
     for (int pattern = 0; pattern < patterns; ++pattern) {
         const PointField field = field_of(values_of(pattern, points.size()));
-        packed.set_field(field, 1).value();
+        packed = packed.with_field(field, {.threads = 1}).value();
         for (const Ties ties : {Ties::merge, Ties::keep})
             for (const Engine engine : {Engine::cpu, Engine::reference}) {
                 OnceOptions options;

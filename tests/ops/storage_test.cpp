@@ -157,7 +157,7 @@ TEST(Origin, IsAFloat32OnEveryAxis) {
         const auto packed = pack(grid, {"x", Array::own(std::vector<float>{0, 1, 2, 3}), false, {}}).value();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::uint64_t bits;
-            const double origin = packed.origin()[axis];
+            const double origin = packed.data().origin[axis];
             std::memcpy(&bits, &origin, sizeof bits);
             EXPECT_EQ(bits & 0x1fffffffu, 0u) << "axis " << axis << ", shift " << shift << ": " << origin;
         }

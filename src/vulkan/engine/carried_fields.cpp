@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include <fmt/core.h>
-
 #include "core/buffer.hpp"
 #include "core/field_storage.hpp"
 #include "core/parallel.hpp"
@@ -52,19 +50,13 @@ Result<CarriedField> upload(Context& context, const core::Packed& packed, const 
 
 } // namespace
 
-Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context, const core::Packed* packed,
+Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context, const core::Packed& packed,
                                                                const Field& field) {
     const Array& values = field.values;
     std::erase_if(entries_, [](const Entry& entry) { return entry.array.expired(); });
     for (const Entry& entry : entries_)
         if (entry.array.is(values)) return entry.field;
-    if (!packed)
-        return Error{
-            ErrorCode::invalid_argument,
-            fmt::format(
-                "point field '{}' is not on the device, and the packed grid, which numbers its points, was given up",
-                field.name)};
-    auto uploaded = upload(context, *packed, values);
+    auto uploaded = upload(context, packed, values);
     if (!uploaded) return std::move(uploaded).error();
     auto shared = std::make_shared<const CarriedField>(*std::move(uploaded));
     if (const core::ArrayIdentity array(values); !array.expired()) entries_.push_back({array, shared});

@@ -27,10 +27,9 @@ class CarriedFields {
 public:
     /// The field, uploaded unless it is there.
     ///
-    /// `packed`   null when it is gone: only fields that are there can be had
     /// Cost       4 bytes a point and component over the bus
-    /// Errors     out_of_memory; machine; invalid_argument for a field that is not there when `packed` is gone
-    Result<std::shared_ptr<const CarriedField>> get(Context& context, const core::Packed* packed, const Field& field);
+    /// Errors     out_of_memory; machine
+    Result<std::shared_ptr<const CarriedField>> get(Context& context, const core::Packed& packed, const Field& field);
 
     /// Gives their memory back, as far as nobody uses them.
     void clear() { entries_.clear(); }

@@ -56,11 +56,12 @@ GridNeeds GridOnDevice::needs(const core::Packed& packed, std::uint64_t page_byt
     return needs_of(packed, plan_pages(packed, page_bytes));
 }
 
-Result<std::unique_ptr<GridOnDevice>> GridOnDevice::upload(std::shared_ptr<Context> context, const core::Packed& packed,
+Result<std::unique_ptr<GridOnDevice>> GridOnDevice::upload(std::shared_ptr<Context> context,
+                                                           std::shared_ptr<const core::Packed> packed,
                                                            const GridOptions& options, const Progress& progress) {
-    if (auto ok = check(packed); !ok) return ok.error();
-    std::vector<PlannedPage> plan = plan_pages(packed, options.page_bytes);
-    const GridNeeds needs = needs_of(packed, plan);
+    if (auto ok = check(*packed); !ok) return ok.error();
+    std::vector<PlannedPage> plan = plan_pages(*packed, options.page_bytes);
+    const GridNeeds needs = needs_of(*packed, plan);
     const std::uint64_t least = needs.resident + needs.largest_page, free = context->memory().free();
     if (least > free)
         return Error{
@@ -69,11 +70,11 @@ Result<std::unique_ptr<GridOnDevice>> GridOnDevice::upload(std::shared_ptr<Conte
                 "the packed grid needs {} of device memory at least, but {} are free: {} for all clusters, and its "
                 "largest page",
                 core::format_bytes(least), core::format_bytes(free), core::format_bytes(needs.resident))};
-    std::unique_ptr<GridOnDevice> grid(new GridOnDevice(std::move(context), packed));
-    auto resident = Resident::upload(*grid->context_, packed, plan);
+    std::unique_ptr<GridOnDevice> grid(new GridOnDevice(std::move(context)));
+    auto resident = Resident::upload(*grid->context_, *packed, plan);
     if (!resident) return std::move(resident).error();
     grid->resident_ = *std::move(resident);
-    grid->cache_.emplace(*grid->context_, packed, std::move(plan), grid->resident_);
+    grid->cache_.emplace(*grid->context_, std::move(packed), std::move(plan), grid->resident_);
     if (auto ok = grid->cache_->load_all(options.reserve, progress); !ok) return ok.error();
     return grid;
 }
@@ -116,7 +117,6 @@ Result<void> GridOnDevice::make_room(SurfaceBuffers& surface) {
         auto grown = surface.grow(*context_, vertices, triangles, SurfaceBuffers::Room::exact);
         if (grown || grown.error().code != ErrorCode::out_of_memory) return grown;
         if (!surface.parts().fields.empty()) return grown; // fields give way before pages do
-        if (!packed_) return grown;                        // a page that went could not come back
         auto released = cache_->release_one();
         if (!released) return released.error();
         if (!*released) return grown;
@@ -205,27 +205,10 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
     return run_and_read_heads(recorder, one, done);
 }
 
-Result<void> GridOnDevice::give_up_packed() {
-    if (auto ok = check_current(); !ok) return ok;
-    if (!complete())
-        return Error{
-            ErrorCode::invalid_argument,
-            "not all of the packed grid is on the device: parts of it are yet to be loaded, so it cannot be given up"};
-    packed_ = nullptr;
-    cache_->give_up_packed();
-    return {};
-}
-
-Result<void> GridOnDevice::check_current() const {
-    if (!packed_ || packed_->changes == changes_) return {};
-    return Error{
-        ErrorCode::invalid_argument,
-        "the packed grid has got another field or other points, but not through the grid on the device: it must be "
-        "uploaded again"};
-}
-
 Result<WorkDone> GridOnDevice::extract(std::span<Task> tasks, const Progress& progress) {
-    if (auto ok = check_current(); !ok) return ok.error();
+    if (torn_)
+        return Error{ErrorCode::machine, "another field or other points could not be set on the device before, which "
+                                         "left the grid there incomplete: it must be uploaded again"};
     WorkDone done;
     if (tasks.empty() || resident_.sizes().clusters == 0) return done;
     const std::uint64_t up = context_->staging().uploaded(), loads = cache_->loads();

@@ -48,37 +48,30 @@ class GridOnDevice {
 public:
     static GridNeeds needs(const core::Packed& packed, std::uint64_t page_bytes);
 
-    /// `packed`   borrowed
     /// Errors     invalid_argument for a double packing, or one with more points or tets than fit into 32 bits;
     ///            out_of_memory, before anything is uploaded, when resident arrays and a page do not fit; machine;
     ///            cancelled
-    static Result<std::unique_ptr<GridOnDevice>> upload(std::shared_ptr<Context> context, const core::Packed& packed,
+    static Result<std::unique_ptr<GridOnDevice>> upload(std::shared_ptr<Context> context,
+                                                        std::shared_ptr<const core::Packed> packed,
                                                         const GridOptions& options, const Progress& progress);
 
     /// Extracts one surface for every task; all have the same parts, and were prepared.
     ///
-    /// Errors   invalid_argument when a surface has 2^32 vertices or triangles or more, or by check_current();
-    ///          out_of_memory; machine; cancelled
+    /// Errors   invalid_argument when a surface has 2^32 vertices or triangles or more; machine, also when set_field()
+    ///          or set_points() failed before; out_of_memory; cancelled
     Result<WorkDone> extract(std::span<Task> tasks, const Progress& progress);
 
-    /// After core::store_values(), and store_gradients() where there are gradients, gave the packed grid another field:
-    /// uploads values, works out ranges on the device, and brings these into the packed grid.
+    /// Replaces the field: uploads values, works out ranges on the device, and brings these into `packed`.
     ///
-    /// `packed`   the one that was uploaded
-    /// Errors     out_of_memory; machine; cancelled. Ranges of the packed grid are then wrong, and the grid on the
-    ///            device must go
-    Result<WorkDone> take_field(core::Packed& packed, const Progress& progress);
+    /// `packed`   a copy of packed() after core::store_values(), and store_gradients() where there are gradients
+    /// Errors     out_of_memory; machine; cancelled. Nothing can be extracted from the grid on the device then
+    Result<WorkDone> set_field(std::shared_ptr<core::Packed> packed, const Progress& progress);
 
-    /// After the packed grid got other points: uploads positions and gradients of the pages that are there.
-    /// Errors   as above, but the packed grid is as it was
-    Result<WorkDone> take_points(const Progress& progress);
-
-    /// Errors   invalid_argument when the packed grid has changed since it was uploaded, but not through the two above
-    Result<void> check_current() const;
-
-    /// Lets the packed grid go: no page goes any more, and nothing can be set.
-    /// Errors   invalid_argument when not all pages are there; by check_current()
-    Result<void> give_up_packed();
+    /// Replaces the points: uploads positions and gradients of the pages that are there.
+    ///
+    /// `packed`   a copy of packed() with other points
+    /// Errors     as above
+    Result<WorkDone> set_points(std::shared_ptr<const core::Packed> packed, const Progress& progress);
 
     /// Point fields that surfaces carry, by packed point.
     CarriedFields& fields() noexcept { return fields_; }
@@ -87,13 +80,12 @@ public:
     const std::shared_ptr<Context>& shared_context() const noexcept { return context_; }
     std::uint64_t device_bytes() const { return resident_.sizes().cost() + cache_->loaded_bytes(); }
     bool complete() const { return cache_->complete(); }
-    const core::Packed* packed() const noexcept { return packed_; } ///< null when it was given up
+    const std::shared_ptr<const core::Packed>& packed() const noexcept { return cache_->packed(); }
     const PageCache& pages() const noexcept { return *cache_; }
     const Resident& resident() const noexcept { return resident_; }
 
 private:
-    GridOnDevice(std::shared_ptr<Context> context, const core::Packed& packed) 
-        : context_(std::move(context)), packed_(&packed), changes_(packed.changes) {}
+    explicit GridOnDevice(std::shared_ptr<Context> context) : context_(std::move(context)) {}
 
     Result<Passes> make_passes(const SurfaceParts& parts);
     Result<bool> extract_together(std::span<Task> tasks, Passes& passes, WorkDone& done);
@@ -107,12 +99,11 @@ private:
     Result<void> make_room(SurfaceBuffers& surface);
 
     std::shared_ptr<Context> context_;
-    const core::Packed* packed_;
-    std::uint64_t changes_; ///< of the packed grid that the device knows
     Resident resident_;
     std::optional<PageCache> cache_;
     CarriedFields fields_;
     Buffer results_; ///< heads of surfaces, on their way to the processor
+    bool torn_ = false;       ///< setting a field or points ended half-way
     bool many_edges_ = false; ///< some cluster had many crossed edges once
 };
 

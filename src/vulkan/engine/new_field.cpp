@@ -21,29 +21,33 @@ Result<void> GridOnDevice::find_ranges(core::Packed& packed, WorkDone& done) {
     return cache_->download_group_ranges(packed);
 }
 
-Result<WorkDone> GridOnDevice::take_field(core::Packed& packed, const Progress& progress) {
+Result<WorkDone> GridOnDevice::set_field(std::shared_ptr<core::Packed> packed, const Progress& progress) {
     WorkDone done;
     const std::uint64_t up = context_->staging().uploaded(), down = context_->staging().downloaded();
-    if (packed.clusters() > 0) {
+    torn_ = true;
+    cache_->set_packed(packed);
+    if (packed->clusters() > 0) {
         if (auto ok = cache_->upload_values(progress); !ok) return ok.error();
-        if (!packed.gradients.empty())
+        if (!packed->gradients.empty())
             if (auto ok = cache_->upload_gradients(progress); !ok) return ok.error();
-        if (auto ok = find_ranges(packed, done); !ok) return ok.error();
+        if (auto ok = find_ranges(*packed, done); !ok) return ok.error();
         cache_->find_ranges();
     }
-    changes_ = packed.changes;
+    torn_ = false;
     done.uploaded = context_->staging().uploaded() - up;
     done.downloaded = context_->staging().downloaded() - down;
     return done;
 }
 
-Result<WorkDone> GridOnDevice::take_points(const Progress& progress) {
+Result<WorkDone> GridOnDevice::set_points(std::shared_ptr<const core::Packed> packed, const Progress& progress) {
     WorkDone done;
     const std::uint64_t up = context_->staging().uploaded();
+    torn_ = true;
+    cache_->set_packed(std::move(packed));
     if (auto ok = cache_->upload_positions(progress); !ok) return ok.error();
-    if (!packed_->gradients.empty())
+    if (!cache_->packed()->gradients.empty())
         if (auto ok = cache_->upload_gradients(progress); !ok) return ok.error();
-    changes_ = packed_->changes;
+    torn_ = false;
     done.uploaded = context_->staging().uploaded() - up;
     return done;
 }

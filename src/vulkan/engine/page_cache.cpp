@@ -16,8 +16,9 @@ Error cancelled() { return {ErrorCode::cancelled, "uploading the packed grid was
 
 } // namespace
 
-PageCache::PageCache(Context& context, const core::Packed& packed, std::vector<PlannedPage> plan, Resident& resident)
-    : context_(context), packed_(&packed), resident_(resident), plan_(std::move(plan)), pages_(plan_.size()) {
+PageCache::PageCache(Context& context, std::shared_ptr<const core::Packed> packed, std::vector<PlannedPage> plan,
+                     Resident& resident)
+    : context_(context), packed_(std::move(packed)), resident_(resident), plan_(std::move(plan)), pages_(plan_.size()) {
     for (const PlannedPage& page : plan_) entries_.push_back(page.layout);
     find_ranges();
 }

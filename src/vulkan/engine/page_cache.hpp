@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <isotet/progress.hpp>
@@ -19,8 +21,13 @@ namespace isotet::vulkan {
 
 class PageCache {
 public:
-    /// `packed` and `resident` are borrowed; nothing is loaded yet.
-    PageCache(Context& context, const core::Packed& packed, std::vector<PlannedPage> plan, Resident& resident);
+    /// `resident` is borrowed; nothing is loaded yet.
+    PageCache(Context& context, std::shared_ptr<const core::Packed> packed, std::vector<PlannedPage> plan,
+              Resident& resident);
+
+    const std::shared_ptr<const core::Packed>& packed() const noexcept { return packed_; }
+    /// The same cells with another field or other points: pages that are loaded from now on are filled from these.
+    void set_packed(std::shared_ptr<const core::Packed> packed) { packed_ = std::move(packed); }
 
     const std::vector<PlannedPage>& plan() const noexcept { return plan_; }
     bool is_loaded(std::uint32_t page) const noexcept { return static_cast<bool>(pages_[page].buffer); }
@@ -53,7 +60,7 @@ public:
     /// Tells the device which pages are there, and where.
     Result<void> upload_table();
 
-    /// After the packed grid got other values or points: replaces parts of the pages that are there.
+    /// After set_packed(): replaces parts of the pages that are there.
     Result<void> upload_values(const Progress& progress);
     Result<void> upload_gradients(const Progress& progress);
     Result<void> upload_positions(const Progress& progress);
@@ -61,10 +68,7 @@ public:
     /// Brings the ranges of groups, as the device has worked them out, into the packed grid.
     Result<void> download_group_ranges(core::Packed& packed) const;
 
-    /// Lets the packed grid go: what would need it, loading of pages above all, must not be called any more.
-    void give_up_packed() noexcept { packed_ = nullptr; }
-
-    /// Which pages an isovalue hits, after the packed grid got other ranges.
+    /// Which pages an isovalue hits, after set_packed() with other ranges.
     void find_ranges();
 
 private:
@@ -81,7 +85,7 @@ private:
     void release(std::uint32_t page);
 
     Context& context_;
-    const core::Packed* packed_; ///< null when it was given up
+    std::shared_ptr<const core::Packed> packed_;
     Resident& resident_;
     std::vector<PlannedPage> plan_;
     std::vector<Loaded> pages_;

@@ -94,7 +94,7 @@ void place_arrays(const Packed& packed, PlannedPage& page) {
 }
 
 /// The words of floats, to be copied.
-const std::uint32_t* words_of(const core::Buffer<float>& floats) {
+const std::uint32_t* words_of(const core::SharedBuffer<float>& floats) {
     return reinterpret_cast<const std::uint32_t*>(floats.data());
 }
 

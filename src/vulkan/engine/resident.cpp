@@ -113,7 +113,7 @@ Result<void> Resident::upload_ranges(Context& context, const core::Packed& packe
 }
 
 Result<void> Resident::download_ranges(Context& context, core::Packed& packed) const {
-    core::Buffer<core::Range<float>>& to = packed.as<float>().ranges;
+    core::SharedBuffer<core::Range<float>>& to = packed.as<float>().ranges;
     if (auto ok = context.staging().download(ranges, 0, std::as_writable_bytes(std::span(to.data(), to.size()))); !ok)
         return ok;
     std::vector<std::uint32_t> bits(pieces(packed.clusters(), 32));

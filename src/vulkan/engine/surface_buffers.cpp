@@ -117,7 +117,7 @@ Result<void> SurfaceBuffers::grow(Context& context, std::uint64_t vertices, std:
     return {};
 }
 
-Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::Packed* packed, bool with_ends) const {
+Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::Packed& packed, bool with_ends) const {
     const std::uint64_t v = vertices(), t = triangle_count();
     ops::RawSurface out;
     out.selected_clusters = result.selected_clusters;
@@ -129,8 +129,8 @@ Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::P
         to = std::move(*array).to_array(components);
         return {};
     };
-    const auto user_point = [&](std::uint32_t point) { return packed->user_point(point); };
-    const auto user_cell = [&](std::uint32_t tet) { return packed->user_cell(tet); };
+    const auto user_point = [&](std::uint32_t point) { return packed.user_point(point); };
+    const auto user_cell = [&](std::uint32_t tet) { return packed.user_cell(tet); };
     Result<void> ok = fetch(out.positions, positions, v, 3, float{});
     if (ok) ok = fetch(out.triangles, triangles, t, 3, std::uint32_t{});
     if (ok && parts_.normals != Normals::none)

@@ -53,9 +53,9 @@ public:
 
     /// What there is, on the processor.
     ///
-    /// `packed`   numbers points and cells as the user did; null where neither ends nor sources are wanted
+    /// `packed`   numbers points and cells as the user did
     /// `ends`     whether ends and weights are wanted: fields may have needed them on the device only
-    Result<ops::RawSurface> download(Context& context, const core::Packed* packed, bool ends) const;
+    Result<ops::RawSurface> download(Context& context, const core::Packed& packed, bool ends) const;
 
 private:
     /// An array: bytes for each vertex and triangle, and whether the parts have it.
