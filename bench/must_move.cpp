@@ -33,8 +33,8 @@ std::uint64_t bytes_of_selected(const core::Packed& packed, Real isovalue) {
 std::uint64_t bytes_of(const Surface& surface) {
     std::uint64_t bytes = surface.positions.bytes() + surface.triangles.bytes() + surface.normals.bytes() +
                           surface.edge_ends.bytes() + surface.edge_weights.bytes() + surface.source_cells.bytes();
-    for (const SurfaceField& field : surface.point_fields) bytes += field.values.bytes();
-    for (const SurfaceField& field : surface.cell_fields) bytes += field.values.bytes();
+    for (const Field& field : surface.point_fields) bytes += field.values.bytes();
+    for (const Field& field : surface.cell_fields) bytes += field.values.bytes();
     return bytes;
 }
 

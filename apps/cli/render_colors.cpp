@@ -79,17 +79,6 @@ const Array* find(const std::vector<Field>& fields, const std::string& name) {
     return found == fields.end() ? nullptr : &found->values;
 }
 
-/// What the user had: values / scale + offset.
-Array in_user_units(const SurfaceField& field) {
-    if (field.offset == 0 && field.scale == 1) return field.values;
-    std::vector<double> values(field.values.size());
-    field.values.visit([&](auto scalars) {
-        std::ranges::transform(scalars, values.begin(),
-                               [&](auto scalar) { return static_cast<double>(scalar) / field.scale + field.offset; });
-    });
-    return Array::own(std::move(values), field.values.components());
-}
-
 } // namespace
 
 Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Console& console) {
@@ -105,19 +94,18 @@ Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Con
 Result<ColorField> colors_of(const Surface& surface, const RenderCommand& command, Console& console) {
     Grid vertices;
     vertices.points = surface.positions;
-    for (const SurfaceField& field : surface.point_fields)
-        vertices.point_fields.push_back({field.name, in_user_units(field)});
+    vertices.point_fields = surface.point_fields;
     std::vector<std::string> names;
-    for (const SurfaceField& field : surface.point_fields) names.push_back(field.name);
+    for (const Field& field : surface.point_fields) names.push_back(field.name);
     if (const auto match = match_field_name(command.color_by, names)) {
         const Result<PointField> found = find_field(vertices, command.color_by, {.threads = command.common.threads});
         if (!found) return found.error();
         return with_scale({command.color_by, found->values, Association::point, {}, false}, command, console);
     }
-    for (const SurfaceField& field : surface.cell_fields) {
+    for (const Field& field : surface.cell_fields) {
         names.push_back(field.name);
         if (field.name == command.color_by)
-            return with_scale({field.name, in_user_units(field), Association::cell, {}, false}, command, console);
+            return with_scale({field.name, field.values, Association::cell, {}, false}, command, console);
     }
     std::string there;
     for (const std::string& name : nearest_first(command.color_by, names))

@@ -163,20 +163,9 @@ Result<void> RenderScene::add_mesh(const Surface& surface) {
 
 Result<void> RenderScene::add_colors(DrawnSurface& drawn, const Surface& surface) {
     const ColorField& field = *input_.colors;
-    Array values = field.values;
-    ColorScale scale = field.scale;
-    if (!input_.surface) { // interpolated by the engine: values / scale + offset is what the user had
-        const SurfaceField& carried =
-            field.association == Association::point ? surface.point_fields.front() : surface.cell_fields.front();
-        std::vector<double> back(carried.values.size());
-        carried.values.visit([&](auto scalars) {
-            std::ranges::transform(scalars, back.begin(), [&](auto scalar) {
-                return static_cast<double>(scalar) / carried.scale + carried.offset;
-            });
-        });
-        values = Array::own(std::move(back));
-    }
-    Result<DeviceColors> colors = DeviceColors::of_mesh(device_, values, field.association, scale);
+    const auto& carried = field.association == Association::point ? surface.point_fields : surface.cell_fields;
+    const Array& values = input_.surface ? field.values : carried.front().values; // else interpolated by the engine
+    Result<DeviceColors> colors = DeviceColors::of_mesh(device_, values, field.association, field.scale);
     if (!colors) return colors.error();
     drawn.colors = &mesh_colors_.emplace_back(*std::move(colors));
     return {};

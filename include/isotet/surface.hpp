@@ -1,7 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -10,19 +9,12 @@
 
 namespace isotet {
 
-/// A field on a surface. What the user had is `values / scale + offset`: writers apply it, in double.
-struct SurfaceField {
-    std::string name;
-    Array values;
-    double offset = 0;
-    double scale = 1; ///< a power of two
-};
-
 enum class Normals : std::uint8_t { none, gradient, face };
 
 /// Triangles on welded vertices. V vertices, F triangles.
 ///
-/// `positions`     float32 (float64 from a double packing), 3 components, V tuples, relative to `origin`
+/// `positions`     3 components, V tuples, in the coordinates of the grid: float32 where its points are float32 and the
+///                 precision is single, else float64
 /// `triangles`     uint32 (uint64 from 2^32 vertices on), 3 components, F tuples; counter-clockwise seen from the side
 ///                 of higher values
 /// `normals`       empty, or float32, 3 components: V tuples (gradient) or F tuples (face); unit length, or zero where
@@ -32,7 +24,6 @@ enum class Normals : std::uint8_t { none, gradient, face };
 /// `edge_weights`  empty, or float32 (float64), V tuples: 0 at the first end, 1 at the second
 /// `source_cells`  empty, or int64, F tuples: the user's cell of each triangle
 struct Surface {
-    std::array<double, 3> origin{};
     Array positions;
     Array triangles;
     Normals normals_kind = Normals::none;
@@ -40,15 +31,16 @@ struct Surface {
     Array edge_ends;
     Array edge_weights;
     Array source_cells;
-    std::vector<SurfaceField> point_fields; ///< V tuples each
-    std::vector<SurfaceField> cell_fields;  ///< F tuples each, in the user's own type
+    std::vector<Field> point_fields; ///< V tuples each: float32 where the grid's field is float32 and the precision is
+                                     ///< single, else float64
+    std::vector<Field> cell_fields;  ///< F tuples each, in the grid's own type
 
     std::size_t vertices() const noexcept { return positions.tuples(); }
     std::size_t triangle_count() const noexcept { return triangles.tuples(); }
 };
 
 /// Joins surfaces into one, vertices and triangles one after another; fields that not all of them have are dropped,
-/// empty surfaces aside. Origins that differ are added to the positions, in double.
+/// empty surfaces aside. Arrays of different types become float64.
 /// With `isovalues` (one a surface) the result has a cell field "isovalue", float64.
 Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues);
 

@@ -33,7 +33,7 @@ void with_indices(const Array& triangles, Work&& work) {
 } // namespace
 
 template <class Real>
-SurfaceField interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw) {
+Array interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw) {
     const std::size_t components = field.values.components(), vertices = raw.ends.tuples();
     const auto ends = raw.ends.as<std::int64_t>();
     const auto weights = raw.weights.as<Real>();
@@ -47,13 +47,13 @@ SurfaceField interpolate_field(const Field& field, const core::Storage& storage,
                     core::store_value<Real>(static_cast<double>(values[above * components + k]), storage), weights[v]);
         });
     });
-    return {field.name, std::move(out).to_array(components), storage.offset, storage.scale};
+    return std::move(out).to_array(components);
 }
 
-SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw) {
+Field copy_cell_field(const Field& field, const ops::RawSurface& raw) {
     const auto cells = raw.source_cells.as<std::int64_t>();
     const std::size_t components = field.values.components();
-    SurfaceField out{field.name, {}, 0, 1};
+    Field out{field.name, {}};
     field.values.visit([&]<class T>(std::span<const T> values) {
         core::Buffer<T> copy(cells.size() * components);
         core::parallel_each(cells.size(), grain, [&](std::size_t t) {
@@ -127,8 +127,8 @@ Array fill_normals(const ops::RawSurface& raw) {
     return raw.normals;
 }
 
-template SurfaceField interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&);
-template SurfaceField interpolate_field<double>(const Field&, const core::Storage&, const ops::RawSurface&);
+template Array interpolate_field<float>(const Field&, const core::Storage&, const ops::RawSurface&);
+template Array interpolate_field<double>(const Field&, const core::Storage&, const ops::RawSurface&);
 template Array face_normals<float>(const ops::RawSurface&);
 template Array face_normals<double>(const ops::RawSurface&);
 template Array fill_normals<float>(const ops::RawSurface&);

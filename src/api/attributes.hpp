@@ -10,13 +10,13 @@
 namespace isotet::api {
 
 /// A point field of the user's grid at the vertices: stored by the rules for values, interpolated between the edge
-/// ends.
+/// ends; in stored form.
 /// Cost   O(V)
 template <class Real>
-SurfaceField interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw);
+Array interpolate_field(const Field& field, const core::Storage& storage, const ops::RawSurface& raw);
 
 /// A cell field of the user's grid at the triangles, in its own type.
-SurfaceField copy_cell_field(const Field& field, const ops::RawSurface& raw);
+Field copy_cell_field(const Field& field, const ops::RawSurface& raw);
 
 constexpr std::size_t fill_normals_bytes = 16;
 

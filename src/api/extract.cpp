@@ -32,7 +32,7 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     request.ends = options.edge_ends || (reference && !options.point_fields.empty());
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
-    const api::MoreBytes more = api::more_bytes(options);
+    const api::MoreBytes more = api::more_bytes(options, packed.origin);
     request.more_vertex_bytes = more.vertex;
     request.more_triangle_bytes = more.triangle;
 

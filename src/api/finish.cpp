@@ -6,7 +6,10 @@
 #include <fmt/core.h>
 
 #include "api/attributes.hpp"
+#include "core/buffer.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "core/storage.hpp"
 
 namespace isotet::api {
 
@@ -20,20 +23,49 @@ Result<void> check_isovalues(std::span<const double> isovalues) {
     return {};
 }
 
+namespace {
+
+/// Stored numbers in the user's unit: f(stored, component) as To.
+template <class To, class Real, class F>
+Array restored(std::span<const Real> stored, std::size_t components, const F& f) {
+    constexpr std::size_t grain = 1 << 14;
+    core::Buffer<To> out(stored.size());
+    core::parallel_each(stored.size(), grain,
+                        [&](std::size_t i) { out[i] = static_cast<To>(f(static_cast<double>(stored[i]), i % components)); });
+    return std::move(out).to_array(components);
+}
+
+template <class Real>
+Array user_positions(const Array& stored, const std::array<double, 3>& origin) {
+    if (origin == std::array<double, 3>{}) return stored;
+    return restored<double>(stored.as<Real>(), 3, [&](double x, std::size_t axis) { return x + origin[axis]; });
+}
+
+template <class Real>
+Array user_values(const Array& stored, ScalarType type, const core::Storage& storage) {
+    const bool single = type == ScalarType::float32 && sizeof(Real) == sizeof(float);
+    const bool as_stored = storage.scale == 1 && storage.offset == 0 && single == (sizeof(Real) == sizeof(float));
+    if (as_stored) return stored;
+    const auto restore = [&](double value, std::size_t) { return core::restore_value(value, storage); };
+    if (single) return restored<float>(stored.as<Real>(), stored.components(), restore);
+    return restored<double>(stored.as<Real>(), stored.components(), restore);
+}
+
+} // namespace
+
 template <class Real>
 Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
                std::span<const core::Storage> storages, const ops::RawSurface& raw) {
     Surface surface;
-    surface.origin = origin;
-    surface.positions = raw.positions;
+    surface.positions = user_positions<Real>(raw.positions, origin);
     surface.triangles = raw.triangles;
     surface.normals_kind = options.normals;
     if (options.normals == Normals::gradient) surface.normals = fill_normals<Real>(raw);
     else if (options.normals == Normals::face) surface.normals = face_normals<Real>(raw);
     for (std::size_t i = 0; i < options.point_fields.size(); ++i) {
         const Field& field = options.point_fields[i];
-        if (raw.fields.empty()) surface.point_fields.push_back(interpolate_field<Real>(field, storages[i], raw));
-        else surface.point_fields.push_back({field.name, raw.fields[i], storages[i].offset, storages[i].scale});
+        const Array stored = raw.fields.empty() ? interpolate_field<Real>(field, storages[i], raw) : raw.fields[i];
+        surface.point_fields.push_back({field.name, user_values<Real>(stored, field.values.type(), storages[i])});
     }
     for (const Field& field : options.cell_fields) surface.cell_fields.push_back(copy_cell_field(field, raw));
     if (options.edge_ends) {
@@ -49,8 +81,10 @@ template Surface finish<float>(const std::array<double, 3>&, const ExtractOption
 template Surface finish<double>(const std::array<double, 3>&, const ExtractOptions&, std::span<const core::Storage>,
                                 const ops::RawSurface&);
 
-MoreBytes more_bytes(const ExtractOptions& options) {
+MoreBytes more_bytes(const ExtractOptions& options, const std::array<double, 3>& origin) {
     MoreBytes more;
+    if (origin != std::array<double, 3>{}) more.vertex += 3 * sizeof(double);
+    for (const Field& field : options.point_fields) more.vertex += field.values.components() * sizeof(double);
     if (options.normals == Normals::gradient) more.vertex += fill_normals_bytes;
     if (options.normals == Normals::face) more.triangle += 3 * sizeof(float);
     for (const Field& field : options.cell_fields)
@@ -64,7 +98,7 @@ std::uint64_t bytes_of(const Surface& surface) {
                                &surface.edge_weights, &surface.source_cells})
         bytes += array->bytes();
     for (const auto* fields : {&surface.point_fields, &surface.cell_fields})
-        for (const SurfaceField& field : *fields) bytes += field.values.bytes();
+        for (const Field& field : *fields) bytes += field.values.bytes();
     return bytes;
 }
 

@@ -17,17 +17,18 @@ namespace isotet::api {
 /// Errors   invalid_argument for an isovalue that is not finite
 Result<void> check_isovalues(std::span<const double> isovalues);
 
-/// Geometry, normals and fields. `storages` are those of the point fields of `options`, in their order.
+/// Geometry, normals and fields in the user's coordinates and units. `storages` are those of the point fields of
+/// `options`, in their order.
 template <class Real>
 Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
                std::span<const core::Storage> storages, const ops::RawSurface& raw);
 
-/// Bytes that finish() adds to each vertex and triangle of the surface of an engine that interpolates point fields
-/// itself.
+/// Bytes at most that finish() adds to each vertex and triangle of the surface of an engine that interpolates point
+/// fields itself.
 struct MoreBytes {
     std::size_t vertex = 0, triangle = 0;
 };
-MoreBytes more_bytes(const ExtractOptions& options);
+MoreBytes more_bytes(const ExtractOptions& options, const std::array<double, 3>& origin);
 
 /// All arrays of a surface.
 std::uint64_t bytes_of(const Surface& surface);

@@ -73,11 +73,11 @@ public:
 private:
     void find(std::string what, const core::Point& where) { report_.findings.push_back({std::move(what), where}); }
     void find_edge(const EdgeUse& edge) {
-        const core::Point a = mesh_.place(edge.low), b = mesh_.place(edge.high);
+        const core::Point a = mesh_.position(edge.low), b = mesh_.position(edge.high);
         find(describe(edge), {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
     }
     void find_triangle(std::uint64_t triangle, std::string what) {
-        find(std::move(what), mesh_.place(mesh_.corners(triangle)[0]));
+        find(std::move(what), mesh_.position(mesh_.corners(triangle)[0]));
     }
 
     template <class Index>
@@ -218,7 +218,7 @@ private:
                                                      pair.earlier, pair.triangle));
         });
         first_few(lists_.touching_list, [&](std::uint64_t vertex) {
-            find(fmt::format("the triangles around vertex {} are not one fan", vertex), mesh_.place(vertex));
+            find(fmt::format("the triangles around vertex {} are not one fan", vertex), mesh_.position(vertex));
         });
     }
 
@@ -228,7 +228,7 @@ private:
         for (std::uint64_t vertex = 0; vertex < lowest.size(); ++vertex)
             if (lowest[vertex] != vertex && report_.coincident_vertices++ < most_)
                 find(fmt::format("vertex {} is at the place of vertex {}", vertex, lowest[vertex]),
-                     mesh_.place(vertex));
+                     mesh_.position(vertex));
     }
 
     const Surface& surface_;

@@ -44,14 +44,17 @@ Array concatenate_full(const Parts& parts, const Get& get, std::size_t (Surface:
     return full ? concatenate(parts, get) : Array{};
 }
 
-/// Positions relative to origin 0.
-Array absolute_positions(const Parts& parts) {
+/// The arrays one after another: in their type if they have one in common, else as float64.
+Array concatenate_any(const Parts& parts, const Get& get) {
+    const Array& first = get(*parts[0]);
+    if (std::ranges::all_of(parts, [&](const Surface* part) { return is_alike(get(*part), first); }))
+        return concatenate(parts, get);
     std::vector<double> all;
     for (const Surface* part : parts)
-        for (std::size_t vertex = 0; vertex < part->vertices(); ++vertex)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                all.push_back(part->positions.at(vertex, axis) + part->origin[axis]);
-    return Array::own(std::move(all), 3);
+        get(*part).visit([&](auto values) {
+            for (const auto value : values) all.push_back(static_cast<double>(value));
+        });
+    return Array::own(std::move(all), first.components());
 }
 
 template <class Index>
@@ -67,52 +70,29 @@ Array join_triangles(const Parts& parts, std::size_t count) {
     return Array::own(std::move(all), 3);
 }
 
-const SurfaceField* find(const std::vector<SurfaceField>& fields, const std::string& name) {
-    const auto found = std::ranges::find(fields, name, &SurfaceField::name);
+const Field* find(const std::vector<Field>& fields, const std::string& name) {
+    const auto found = std::ranges::find(fields, name, &Field::name);
     return found == fields.end() ? nullptr : &*found;
 }
 
-/// A field in the user's unit, as doubles.
-Array plain(const SurfaceField& field) {
-    std::vector<double> values;
-    values.reserve(field.values.size());
-    for (std::size_t tuple = 0; tuple < field.values.tuples(); ++tuple)
-        for (std::size_t component = 0; component < field.values.components(); ++component)
-            values.push_back(field.values.at(tuple, component) / field.scale + field.offset);
-    return Array::own(std::move(values), field.values.components());
-}
-
-/// One field of all parts: as stored if all store it alike, else as doubles in the user's unit.
-std::optional<SurfaceField> join_field(const Parts& parts, const SurfaceField& field,
-                                       std::vector<SurfaceField> Surface::* list,
-                                       std::size_t (Surface::*count)() const noexcept) {
-    bool alike = true;
+/// One field of all parts; nothing unless all have it, of full length.
+std::optional<Field> join_field(const Parts& parts, const Field& field, std::vector<Field> Surface::* list,
+                                std::size_t (Surface::*count)() const noexcept) {
     for (const Surface* part : parts) {
-        const SurfaceField* other = find(part->*list, field.name);
+        const Field* other = find(part->*list, field.name);
         if (!other || other->values.components() != field.values.components() ||
             other->values.tuples() != (part->*count)())
             return std::nullopt;
-        alike &=
-            other->values.type() == field.values.type() && other->offset == field.offset && other->scale == field.scale;
     }
-    if (alike)
-        return SurfaceField{
-            field.name,
-            concatenate(parts,
-                        [&](const Surface& part) -> const Array& { return find(part.*list, field.name)->values; }),
-            field.offset, field.scale};
-    std::vector<double> all;
-    for (const Surface* part : parts) {
-        const Array values = plain(*find(part->*list, field.name));
-        all.insert(all.end(), values.as<double>().begin(), values.as<double>().end());
-    }
-    return SurfaceField{field.name, Array::own(std::move(all), field.values.components()), 0, 1};
+    return Field{field.name, concatenate_any(parts, [&](const Surface& part) -> const Array& {
+                     return find(part.*list, field.name)->values;
+                 })};
 }
 
-std::vector<SurfaceField> join_fields(const Parts& parts, std::vector<SurfaceField> Surface::* list,
-                                      std::size_t (Surface::*count)() const noexcept) {
-    std::vector<SurfaceField> joined;
-    for (const SurfaceField& field : parts[0]->*list)
+std::vector<Field> join_fields(const Parts& parts, std::vector<Field> Surface::* list,
+                               std::size_t (Surface::*count)() const noexcept) {
+    std::vector<Field> joined;
+    for (const Field& field : parts[0]->*list)
         if (auto whole = join_field(parts, field, list, count)) joined.push_back(std::move(*whole));
     return joined;
 }
@@ -140,11 +120,7 @@ Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& is
     const Surface& first = *parts[0];
 
     Surface joined;
-    const bool alike = std::ranges::all_of(parts, [&](const Surface* part) {
-        return part->origin == first.origin && is_alike(part->positions, first.positions);
-    });
-    joined.origin = alike ? first.origin : std::array<double, 3>{};
-    joined.positions = alike ? concatenate(parts, &Surface::positions) : absolute_positions(parts);
+    joined.positions = concatenate_any(parts, &Surface::positions);
     joined.triangles = vertices <= std::numeric_limits<std::uint32_t>::max()
                            ? join_triangles<std::uint32_t>(parts, triangles)
                            : join_triangles<std::uint64_t>(parts, triangles);
@@ -159,8 +135,8 @@ Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& is
     joined.point_fields = join_fields(parts, &Surface::point_fields, &Surface::vertices);
     joined.cell_fields = join_fields(parts, &Surface::cell_fields, &Surface::triangle_count);
     if (isovalues.size() == surfaces.size()) {
-        std::erase_if(joined.cell_fields, [](const SurfaceField& field) { return field.name == "isovalue"; });
-        joined.cell_fields.push_back({"isovalue", isovalue_field(surfaces, isovalues), 0, 1});
+        std::erase_if(joined.cell_fields, [](const Field& field) { return field.name == "isovalue"; });
+        joined.cell_fields.push_back({"isovalue", isovalue_field(surfaces, isovalues)});
     }
     return joined;
 }

@@ -48,7 +48,6 @@ Result<Mesh> Mesh::open(const Surface& surface) {
     Mesh mesh;
     mesh.positions_ = core::PointReader(positions);
     mesh.indices_ = core::IndexColumn(triangles);
-    mesh.origin_ = surface.origin;
     mesh.vertices_ = positions.empty() ? 0 : positions.tuples();
     mesh.triangles_ = triangles.empty() ? 0 : triangles.tuples();
 

@@ -38,19 +38,11 @@ public:
         return {indices_[3 * triangle], indices_[3 * triangle + 1], indices_[3 * triangle + 2]};
     }
 
-    /// Relative to the surface's origin, as stored.
     core::Point position(std::uint64_t vertex) const { return positions_[vertex]; }
-
-    /// In the user's coordinates.
-    core::Point place(std::uint64_t vertex) const {
-        const core::Point p = positions_[vertex];
-        return {p[0] + origin_[0], p[1] + origin_[1], p[2] + origin_[2]};
-    }
 
 private:
     core::PointReader positions_;
     core::IndexColumn indices_;
-    std::array<double, 3> origin_{};
     std::uint64_t vertices_ = 0, triangles_ = 0;
 };
 

@@ -41,7 +41,6 @@ Welded weld(const Surface& surface, const Mesh& mesh) {
         if (has_equal_corners(after) && !has_equal_corners(before)) ++welded.collapsed;
         else triangles.insert(triangles.end(), after.begin(), after.end());
     }
-    welded.surface.origin = surface.origin;
     welded.surface.positions = keep_leaders(surface.positions, lowest);
     welded.surface.triangles = Array::own(std::move(triangles), 3);
     if (surface.edge_ends.tuples() == lowest.size()) welded.surface.edge_ends = keep_leaders(surface.edge_ends, lowest);

@@ -98,12 +98,16 @@ Result<std::vector<PackedFace>> boundary_faces(const Packed& packed, const Progr
 Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& points) {
     return std::visit(
         [&]<class Real>(const Values<Real>& reals) {
-            std::vector<Real> positions(3 * points.size());
-            parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
-                for (std::size_t axis = 0; axis < 3; ++axis)
-                    positions[3 * i + axis] = reals.positions[3 * points[i] + axis];
-            });
-            return Array::own(std::move(positions), 3);
+            const auto positions = [&]<class To>(To, const auto& user) {
+                std::vector<To> out(3 * points.size());
+                parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        out[3 * i + axis] = user(reals.positions[3 * points[i] + axis], axis);
+                });
+                return Array::own(std::move(out), 3);
+            };
+            if (packed.origin == std::array<double, 3>{}) return positions(Real{}, [](Real x, std::size_t) { return x; });
+            return positions(double{}, [&](Real x, std::size_t axis) { return x + packed.origin[axis]; });
         },
         packed.reals);
 }
@@ -125,7 +129,6 @@ Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
         }
     });
     Surface surface;
-    surface.origin = packed.origin;
     surface.positions = positions_of(packed, points);
     surface.triangles = Array::own(std::move(triangles), 3);
     return surface;

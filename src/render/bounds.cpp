@@ -63,7 +63,7 @@ Box bounds_of(const PackedGrid& packed) {
 }
 
 Box bounds_of(const Surface& surface) {
-    return surface.positions.visit([&](auto positions) { return bounds_of_positions(positions, surface.origin); });
+    return surface.positions.visit([&](auto positions) { return bounds_of_positions(positions, {}); });
 }
 
 } // namespace isotet

@@ -183,7 +183,7 @@ void fit_to(Camera& camera, const Surface& surface, double aspect, double margin
             for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
                 std::array<double, 3> p{};
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    p[axis] = static_cast<double>(positions[i + axis]) + (surface.origin[axis] - middle[axis]);
+                    p[axis] = static_cast<double>(positions[i + axis]) - middle[axis];
                 if (std::isfinite(p[0] + p[1] + p[2])) add(p);
             }
         });

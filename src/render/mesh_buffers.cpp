@@ -80,16 +80,14 @@ Result<void> MeshBuffers::upload_positions(const Surface& surface) {
                                      static_cast<double>(scalars[broken]))};
         }
         // Far from 0, float64 positions keep their digits relative to their middle.
-        std::array<double, 3> shift{};
         if (surface.positions.type() == ScalarType::float64) {
             const Box box = bounds_of(surface);
             for (std::size_t axis = 0; axis < 3 && !box.empty(); ++axis)
-                shift[axis] = box.lower[axis] / 2 + box.upper[axis] / 2 - surface.origin[axis];
+                origin[axis] = box.lower[axis] / 2 + box.upper[axis] / 2;
         }
-        for (std::size_t axis = 0; axis < 3; ++axis) origin[axis] = surface.origin[axis] + shift[axis];
         core::Buffer<float> relative(scalars.size());
         core::parallel_each(scalars.size(), grain, [&](std::size_t i) {
-            relative[i] = static_cast<float>(static_cast<double>(scalars[i]) - shift[i % 3]);
+            relative[i] = static_cast<float>(static_cast<double>(scalars[i]) - origin[i % 3]);
         });
         Result<vulkan::Buffer> sent = send(*context, relative, "positions");
         if (sent) positions = *std::move(sent);

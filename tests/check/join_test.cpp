@@ -17,9 +17,7 @@ std::vector<T> values(const Array& array) {
     return {all.begin(), all.end()};
 }
 
-SurfaceField field(const std::string& name, std::vector<float> values, double offset = 0, double scale = 1) {
-    return {name, Array::own(std::move(values)), offset, scale};
-}
+Field field(const std::string& name, std::vector<float> values) { return {name, Array::own(std::move(values))}; }
 
 TEST(JoinSurfaces, PutsOneAfterAnotherAndMovesNumbers) {
     const Surface joined = join({surface_of(square()), surface_of(octahedron())}, {0.5, 2});
@@ -47,38 +45,33 @@ TEST(JoinSurfaces, DropsFieldsThatNotAllHave) {
     EXPECT_TRUE(joined.cell_fields.empty());
 }
 
-TEST(JoinSurfaces, KeepsOffsetAndScaleThatAllShareAndAppliesOthers) {
+TEST(JoinSurfaces, WidensFieldsOfDifferentTypes) {
     Surface a = surface_of(square()), b = surface_of(square());
-    a.point_fields = {field("same", {1, 2, 3, 4}, 100, 2), field("other", {1, 2, 3, 4}, 100, 2)};
-    b.point_fields = {field("same", {5, 6, 7, 8}, 100, 2), field("other", {5, 6, 7, 8}, 0, 1)};
+    a.point_fields = {field("same", {1, 2, 3, 4}), field("other", {1, 2, 3, 4})};
+    b.point_fields = {field("same", {5, 6, 7, 8}), {"other", Array::own(std::vector<double>{0.1, 6, 7, 8})}};
     const Surface joined = join({a, b}, {});
     ASSERT_EQ(joined.point_fields.size(), 2u);
-    EXPECT_EQ(joined.point_fields[0].offset, 100);
-    EXPECT_EQ(joined.point_fields[0].scale, 2);
     EXPECT_EQ(joined.point_fields[0].values.type(), ScalarType::float32);
-    EXPECT_EQ(values<double>(joined.point_fields[1].values), (std::vector<double>{100.5, 101, 101.5, 102, 5, 6, 7, 8}));
-    EXPECT_EQ(joined.point_fields[1].offset, 0);
+    EXPECT_EQ(values<double>(joined.point_fields[1].values), (std::vector<double>{1, 2, 3, 4, 0.1, 6, 7, 8}));
 }
 
 TEST(JoinSurfaces, LetsEmptySurfacesDecideNothing) {
     Surface a = surface_of(square());
     a.point_fields = {field("p", {1, 2, 3, 4})};
-    a.origin = {1, 2, 3};
     a.edge_ends = Array::own(std::vector<std::int64_t>(8), 2);
     const Surface joined = join({Surface{}, a, Surface{}}, {1, 2, 3});
     EXPECT_EQ(joined.point_fields.size(), 1u);
     EXPECT_EQ(joined.edge_ends.tuples(), 4u);
-    EXPECT_EQ(joined.origin, a.origin);
+    EXPECT_EQ(joined.positions.type(), a.positions.type());
     EXPECT_EQ(values<double>(joined.cell_fields.at(0).values), (std::vector<double>{2, 2}));
 }
 
-TEST(JoinSurfaces, AddsOriginsThatDiffer) {
+TEST(JoinSurfaces, WidensPositionsOfDifferentTypes) {
     Surface a = surface_of(square()), b = surface_of(square());
-    b.origin = {4e6, 0, 0};
+    b.positions = Array::own(std::vector<double>{4000000.1, 0, 0, 4000001.1, 0, 0, 4000001.1, 1, 0, 4000000.1, 1, 0}, 3);
     const Surface joined = join({a, b}, {});
-    EXPECT_EQ(joined.origin, (std::array<double, 3>{0, 0, 0}));
-    EXPECT_EQ(joined.positions.type(), ScalarType::float64);
-    EXPECT_EQ(joined.positions.at(5, 0), 4000001);
+    EXPECT_EQ(joined.positions.type(), a.positions.type() == ScalarType::float64 ? a.positions.type() : ScalarType::float64);
+    EXPECT_EQ(joined.positions.at(5, 0), 4000001.1);
 }
 
 TEST(JoinSurfaces, KeepsNormalsOnlyOfOneKind) {

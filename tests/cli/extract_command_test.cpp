@@ -23,8 +23,8 @@ SurfaceFile read_back(const std::string& path) {
     return *std::move(file);
 }
 
-const Array* field(const std::vector<SurfaceField>& fields, std::string_view name) {
-    for (const SurfaceField& candidate : fields) {
+const Array* field(const std::vector<Field>& fields, std::string_view name) {
+    for (const Field& candidate : fields) {
         if (candidate.name == name) return &candidate.values;
     }
     return nullptr;

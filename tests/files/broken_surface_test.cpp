@@ -43,7 +43,7 @@ std::string ascii_sample(const std::string& format) {
            "</PolyData></VTKFile>";
 }
 
-bool fits(const std::vector<SurfaceField>& fields, std::size_t tuples) {
+bool fits(const std::vector<Field>& fields, std::size_t tuples) {
     for (const auto& field : fields) {
         if (field.values.tuples() != tuples) return false;
     }

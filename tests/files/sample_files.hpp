@@ -81,14 +81,14 @@ inline void expect_same(const Array& a, const Array& b, std::string_view what) {
     EXPECT_EQ(bits_of(a), bits_of(b)) << what;
 }
 
-inline const SurfaceField* find_field(const std::vector<SurfaceField>& fields, std::string_view name) {
+inline const Field* find_field(const std::vector<Field>& fields, std::string_view name) {
     for (const auto& field : fields) {
         if (field.name == name) return &field;
     }
     return nullptr;
 }
 
-/// Two triangles and a third beside them, float32, origin 0, no fields.
+/// Two triangles and a third beside them, float32, no fields.
 inline Surface bare_surface() {
     Surface surface;
     surface.positions =
@@ -106,7 +106,7 @@ inline Surface rich_surface() {
     surface.source_cells = Array::own(std::vector<std::int64_t>{12, 6000000000, 0});
     surface.point_fields = {
         {"pressure", Array::own(std::vector<float>{1, 2.5F, nan, -4, 0.1F})},
-        {"temperature (K) [mean]", Array::own(std::vector<float>{-1, 0, 1, 2, nan}), 300.125, 0.5},
+        {"temperature (K) [mean]", Array::own(std::vector<double>{298.125, 300.125, 302.125, 304.125, nan})},
         {"gmsh:velocity",
          Array::own(std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.1, 0.2, 0.3, 1e300, -1e-300, 0}, 3)},
         {"caf\xE9 \x01<&\"'>", Array::own(std::vector<std::int32_t>{1, -2, 3, -4, 5})},
@@ -135,6 +135,15 @@ inline Grid tet_grid() {
     grid.point_fields = {{"field one", Array::own(std::vector<float>{1, 2, 3, 4, 5})}};
     grid.cell_fields = {{"v", Array::own(std::vector<double>{1, 2, 3, 4, 5, 6}, 3)}};
     return grid;
+}
+
+/// With float64 positions, moved by `shift`.
+inline Surface moved(Surface surface, const std::array<double, 3>& shift) {
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < surface.positions.size(); ++i)
+        positions.push_back(surface.positions.at(i / 3, i % 3) + shift[i % 3]);
+    surface.positions = Array::own(std::move(positions), 3);
+    return surface;
 }
 
 /// A tet and a pyramid, with offsets that do not start at 0.

@@ -197,9 +197,8 @@ TEST(VtkReadsStl, WithTheSameCorners) {
     }
 }
 
-TEST(VtkReadsVtp, WithTheOriginInDouble) {
-    Surface surface = bare_surface();
-    surface.origin = {4200000.125, -0.1, 1e-9};
+TEST(VtkReadsVtp, WithPositionsInDouble) {
+    const Surface surface = moved(bare_surface(), {4200000.125, -0.1, 1e-9});
     const auto data = written_and_read<vtkXMLPolyDataReader>(surface, "vtp");
     EXPECT_EQ(data->GetPoints()->GetDataType(), VTK_DOUBLE);
     EXPECT_EQ(data->GetPoint(1)[0], 4200001.125);

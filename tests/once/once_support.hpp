@@ -85,13 +85,10 @@ inline void expect_surfaces_of_clusters(const Grid& grid, const PointField& fiel
         SCOPED_TRACE(testing::Message() << "isovalue " << isovalues[i] << ", ties " << int(options.extract.ties));
         const Extraction clusters = extract(packed, isovalues[i], options.extract).value();
         const Surface& surface = once.surfaces[i].surface;
-        EXPECT_EQ(surface.origin, clusters.surface.origin);
         EXPECT_EQ(without_repeats(sets_of(surface), grid), sets_of(clusters.surface));
         expect_same_report(once.surfaces[i].report, clusters.report);
-        for (std::size_t f = 0; f < surface.point_fields.size(); ++f) {
-            EXPECT_EQ(surface.point_fields[f].offset, clusters.surface.point_fields[f].offset);
-            EXPECT_EQ(surface.point_fields[f].scale, clusters.surface.point_fields[f].scale);
-        }
+        for (std::size_t f = 0; f < surface.point_fields.size(); ++f)
+            EXPECT_EQ(surface.point_fields[f].values.type(), clusters.surface.point_fields[f].values.type());
     }
 }
 

@@ -38,7 +38,7 @@ Triangles reference_triangles(const PackedGrid& packed, double isovalue) {
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const auto vertex = static_cast<std::size_t>(surface.triangles.at(t, k));
-                triangle[k][axis] = surface.origin[axis] + surface.positions.at(vertex, axis);
+                triangle[k][axis] = surface.positions.at(vertex, axis);
             }
         const bool flat = triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
         if (!flat) triangles.push_back(triangle);

@@ -15,12 +15,12 @@ inline void append_bytes(std::string& out, const Array& array) {
 }
 
 inline std::string bytes_of(const Surface& s) {
-    std::string out(reinterpret_cast<const char*>(s.origin.data()), sizeof s.origin);
+    std::string out;
     for (const Array* array : {&s.positions, &s.triangles, &s.normals, &s.edge_ends, &s.edge_weights, &s.source_cells})
         append_bytes(out, *array);
     for (const auto* fields : {&s.point_fields, &s.cell_fields})
-        for (const SurfaceField& field : *fields) {
-            out += field.name + " " + std::to_string(field.offset) + " " + std::to_string(field.scale);
+        for (const Field& field : *fields) {
+            out += field.name;
             append_bytes(out, field.values);
         }
     return out;

@@ -82,7 +82,7 @@ inline Ends ends_of(const Surface& surface, std::size_t vertex) {
     return {ends[2 * vertex], ends[2 * vertex + 1]};
 }
 
-/// A position as stored, relative to the origin.
+/// A position in the coordinates of the grid.
 inline std::array<double, 3> position_of(const Surface& surface, std::size_t vertex) {
     return {surface.positions.at(vertex, 0), surface.positions.at(vertex, 1), surface.positions.at(vertex, 2)};
 }

@@ -20,8 +20,6 @@ namespace {
 
 constexpr std::size_t index_grain = std::size_t{1} << 18U;
 
-bool has_origin(const Surface& surface) { return surface.origin != std::array<double, 3>{}; }
-
 /// An error sentence if an array is not what the surface says it is; empty if it fits.
 std::string misfit(std::string_view name, const Array& array, std::size_t tuples, std::size_t components) {
     if (array.tuples() == tuples && array.components() == components) return {};
@@ -74,36 +72,6 @@ Result<void> check_shapes(const Surface& surface) {
             return invalid_argument(message);
     }
     return {};
-}
-
-Column positions_of(const Surface& surface) {
-    if (!has_origin(surface)) return column_of("Points", surface.positions);
-    Column column{"Points", ScalarType::float64, surface.vertices(), 3, {}};
-    column.fill = [positions = surface.positions, origin = surface.origin](std::size_t begin, std::size_t end,
-                                                                           std::byte* out) {
-        auto* target = reinterpret_cast<double*>(out);
-        positions.visit([&](auto values) {
-            for (std::size_t i = begin * 3; i < end * 3; ++i)
-                *target++ = static_cast<double>(values[i]) + origin[i % 3];
-        });
-    };
-    return column;
-}
-
-Column field_column(std::string name, const SurfaceField& field) {
-    if (field.scale == 1 && field.offset == 0) return column_of(std::move(name), field.values);
-    Column column{std::move(name), ScalarType::float64, field.values.tuples(), field.values.components(), {}};
-    column.fill = [values = field.values, scale = field.scale, offset = field.offset](std::size_t begin,
-                                                                                      std::size_t end, std::byte* out) {
-        auto* target = reinterpret_cast<double*>(out);
-        values.visit([&](auto scalars) {
-            const std::size_t last = end * values.components();
-            for (std::size_t i = begin * values.components(); i < last; ++i) {
-                *target++ = static_cast<double>(scalars[i]) / scale + offset;
-            }
-        });
-    };
-    return column;
 }
 
 } // namespace
@@ -180,7 +148,7 @@ std::array<double, 3> position_of(const Surface& surface, std::uint64_t vertex) 
     return surface.positions.visit([&](auto values) {
         std::array<double, 3> position{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            position[axis] = static_cast<double>(values[3 * vertex + axis]) + surface.origin[axis];
+            position[axis] = static_cast<double>(values[3 * vertex + axis]);
         }
         return position;
     });
@@ -194,7 +162,7 @@ Result<SurfaceColumns> columns_of(const Surface& surface, std::vector<std::strin
                                  surface.triangles.at(*bad / 3, *bad % 3), surface.vertices())};
     }
     SurfaceColumns columns;
-    columns.positions = positions_of(surface);
+    columns.positions = column_of("Points", surface.positions);
     columns.positions.components = 3;
     columns.triangles = fits_int32(std::max<std::uint64_t>(surface.vertices(), 3 * surface.triangle_count()))
                             ? converted<std::int32_t>("connectivity", surface.triangles)
@@ -221,10 +189,10 @@ Result<SurfaceColumns> columns_of(const Surface& surface, std::vector<std::strin
             converted<std::int64_t>(take_name("source_cell", cell_names), surface.source_cells));
     }
     for (const auto& field : surface.point_fields) {
-        columns.point_fields.push_back(field_column(take_field_name(field.name, point_names, notes), field));
+        columns.point_fields.push_back(column_of(take_field_name(field.name, point_names, notes), field.values));
     }
     for (const auto& field : surface.cell_fields) {
-        columns.cell_fields.push_back(field_column(take_field_name(field.name, cell_names, notes), field));
+        columns.cell_fields.push_back(column_of(take_field_name(field.name, cell_names, notes), field.values));
     }
     return columns;
 }

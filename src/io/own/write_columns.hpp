@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Surfaces and grids as columns of scalars: checked, origin added, fields in the user's unit, names unique.
+// Surfaces and grids as columns of scalars: checked, names unique.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ using Names = std::set<std::string, std::less<>>;
 
 /// What all surface formats choose from. `surface` must outlive it.
 struct SurfaceColumns {
-    Column positions;                ///< origin added; float64 if there is one or the positions are, else float32
+    Column positions;                ///< float32 or float64
     Column triangles;                ///< int32 while vertices and corners are fewer than 2^31, else int64
     std::optional<Column> point_normals, cell_normals;
     std::vector<Column> edges;       ///< edge_ends (int64, 2) and edge_weights, as far as there are any
@@ -65,7 +65,7 @@ bool holds_indices(ScalarType type) noexcept;
 /// The position of the first index that is negative or not below `limit`. Parallel.
 std::optional<std::size_t> first_bad_index(const Array& indices, std::uint64_t limit);
 
-/// Positions of a vertex in double, origin added.
+/// Position of a vertex in double.
 std::array<double, 3> position_of(const Surface& surface, std::uint64_t vertex);
 
 } // namespace isotet::io

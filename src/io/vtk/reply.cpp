@@ -82,14 +82,6 @@ public:
             array(field.values);
         });
     }
-    void fields(std::vector<SurfaceField>& fields) {
-        out_.list(fields, [&](SurfaceField& field) {
-            out_.text(field.name);
-            out_.number(field.offset);
-            out_.number(field.scale);
-            array(field.values);
-        });
-    }
     void describe(const Error& error) {
         out_.number(error.code);
         out_.text(error.message);
@@ -119,7 +111,6 @@ public:
     }
     void describe(SurfaceFile& file) {
         out_.text(file.format);
-        for (double coordinate : file.surface.origin) out_.number(coordinate);
         array(file.surface.positions);
         array(file.surface.triangles);
         out_.number(file.surface.normals_kind);
@@ -164,17 +155,6 @@ public:
         });
         return result;
     }
-    std::vector<SurfaceField> surface_fields() {
-        std::vector<SurfaceField> result;
-        in_.list([&] {
-            SurfaceField& field = result.emplace_back();
-            field.name = in_.text();
-            field.offset = in_.number<double>();
-            field.scale = in_.number<double>();
-            field.values = array();
-        });
-        return result;
-    }
     Error error() {
         const auto code = in_.enumerator(ErrorCode::internal);
         return {code, in_.text()};
@@ -210,7 +190,6 @@ public:
     SurfaceFile surface() {
         SurfaceFile file;
         file.format = in_.text();
-        for (double& coordinate : file.surface.origin) coordinate = in_.number<double>();
         file.surface.positions = array();
         file.surface.triangles = array();
         file.surface.normals_kind = in_.enumerator(Normals::face);
@@ -218,8 +197,8 @@ public:
         file.surface.edge_ends = array();
         file.surface.edge_weights = array();
         file.surface.source_cells = array();
-        file.surface.point_fields = surface_fields();
-        file.surface.cell_fields = surface_fields();
+        file.surface.point_fields = fields();
+        file.surface.cell_fields = fields();
         return file;
     }
 
