@@ -28,9 +28,9 @@ namespace {
 /// Stored numbers in the user's unit: f(stored, component) as To.
 template <class To, class Real, class F>
 Array restored(std::span<const Real> stored, std::size_t components, const F& f) {
-    constexpr std::size_t grain = 1 << 14;
+    constexpr std::size_t values_per_task = 1 << 14;
     core::Buffer<To> out(stored.size());
-    core::parallel_each(stored.size(), grain,
+    core::parallel_each(stored.size(), values_per_task,
                         [&](std::size_t i) { out[i] = static_cast<To>(f(static_cast<double>(stored[i]), i % components)); });
     return std::move(out).to_array(components);
 }

@@ -21,6 +21,7 @@ public:
 
     /// The owner is gone, or there was none.
     bool expired() const noexcept { return owner_.expired(); }
+    bool is_empty() const noexcept { return tuples_ == 0; }
     bool is(const Array& array) const noexcept {
         return !expired() && data_ == array.data() && tuples_ == array.tuples() && components_ == array.components() &&
                type_ == array.type();

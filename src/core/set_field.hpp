@@ -17,8 +17,8 @@ namespace isotet::core {
 /// Errors   invalid_argument when the field is not one scalar for each of `points` points
 Result<void> check_field(const PointField& field, std::uint64_t points);
 
-/// Stores the values of a field: values, storage and the field's report are new, and so are the arrays of ranges, group
-/// ranges and has_no_data, which are not filled.
+/// Stores the values of a field: values, storage and the field's report. The arrays of ranges and group ranges are new
+/// and not filled, has_no_data is cleared.
 /// Errors   cancelled
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress);

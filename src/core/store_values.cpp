@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "core/set_field.hpp"
 
+#include <algorithm>
+
 #include "core/field_storage.hpp"
 
 namespace isotet::core {
@@ -12,6 +14,7 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
     reals.ranges = SharedBuffer<Range<Real>>(packed.clusters());
     packed.group_ranges = SharedBuffer<GroupRange>(packed.tets.size() / group_size);
     packed.has_no_data = SharedBuffer<std::uint8_t>(packed.clusters());
+    std::fill(packed.has_no_data.begin(), packed.has_no_data.end(), std::uint8_t{0});
     const FieldStorage stored = store_field_values(field.values, packed, progress, reals.values.data());
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "storing the field was cancelled"};
 

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/choose.hpp>
+#include <isotet/plan.hpp>
 
 #include "core/cells.hpp"
 #include "core/guard.hpp"
@@ -14,9 +14,9 @@ namespace isotet {
 
 namespace {
 
-/// Triangles for each cut tet: one where one corner is cut off, two where two are on each side. Of smooth fields on
+/// Triangles for each active tet: one where one corner is cut off, two where two are on each side. Of smooth fields on
 /// regular grids, on perturbed ones and on those of data/, about 1.3.
-constexpr double triangles_a_cut_tet = 1.3;
+constexpr double triangles_per_active_tet = 1.3;
 
 /// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does
 /// not replace: it keeps a look at a few cells within the arrays.
@@ -41,7 +41,7 @@ Result<FieldSample> FieldSample::take(const Grid& grid, const PointField& field)
                                      "contoured field must have 1 component",
                                      field.name, field.values.tuples(), field.values.components(), cells->points())};
         FieldSample sample;
-        const std::uint64_t count = cells->count(), looked_at = std::min(count, most_cells);
+        const std::uint64_t count = cells->count(), looked_at = std::min(count, max_cells);
         sample.points_ = cells->points();
         sample.lower_ = std::numeric_limits<double>::infinity();
         sample.upper_ = -sample.lower_;
@@ -77,9 +77,9 @@ Result<FieldSample> FieldSample::take(const Grid& grid, const PointField& field)
 }
 
 double FieldSample::triangles(double isovalue) const noexcept {
-    const auto cut = std::ranges::count_if(
+    const auto active = std::ranges::count_if(
         tets_seen_, [&](const Range& range) { return range.lower < isovalue && isovalue <= range.upper; });
-    return triangles_a_cut_tet * tets_each_ * static_cast<double>(cut);
+    return triangles_per_active_tet * tets_each_ * static_cast<double>(active);
 }
 
 } // namespace isotet

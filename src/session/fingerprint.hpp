@@ -1,12 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Tells whether an array of the next time step is the same as before, without keeping the one before.
+// Tells whether an array is the same as one before, without keeping the one before.
 #pragma once
 
 #include <cstdint>
 
 #include <isotet/grid.hpp>
 
-namespace isotet::cli {
+namespace isotet::session {
 
 /// 128 bits that depend on every byte and on the shape. Not against forgery: equal by chance once in 2^128.
 struct Fingerprint {
@@ -18,4 +18,4 @@ struct Fingerprint {
 Fingerprint fingerprint(const Array& array);
 Fingerprint fingerprint(const Cells& cells);
 
-} // namespace isotet::cli
+} // namespace isotet::session

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "fingerprint.hpp"
+#include "session/fingerprint.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 #include "core/parallel.hpp"
 
-namespace isotet::cli {
+namespace isotet::session {
 
 namespace {
 
@@ -64,4 +64,4 @@ Fingerprint fingerprint(const Cells& cells) {
     return print;
 }
 
-} // namespace isotet::cli
+} // namespace isotet::session

@@ -1,0 +1,144 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A session: a grid, a field and a way to answer isovalues. What a command, a slider, a pipeline filter and a time
+// series share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isotet/device_grid.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/plan.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+/// What is contoured, and what surfaces carry. Arrays are shared; borrowed ones must live until the next set().
+struct ContourInput {
+    Grid grid;                       ///< its own fields are not looked at
+    PointField field;                ///< to contour
+    std::vector<Field> point_fields; ///< carried onto surfaces, as ExtractOptions::point_fields
+    std::vector<Field> cell_fields;  ///< as ExtractOptions::cell_fields
+};
+
+/// A device to extract on.
+struct ContourDevice {
+    Device device;
+    bool required = false; ///< what the device cannot do is an error; else the CPU does it, with a note
+    DeviceGridOptions options = {};
+};
+
+struct ContourOptions {
+    /// Nothing: by the rule of method_for() for `surfaces`; where packing then finds too little memory, direct
+    /// extraction if that fits, with a note. A device takes clusters only.
+    std::optional<Method> method = {};
+    /// How many surfaces will be asked for, over all fields and time steps. 0: not known; then those that have been
+    /// asked for are counted, and the grid is packed when the rule says so.
+    std::uint64_t surfaces = 0;
+    Engine engine = Engine::cpu;
+    std::optional<ContourDevice> device = {};
+    Precision precision = Precision::single;
+    Ties ties = Ties::merge;
+    Normals normals = Normals::none;
+    bool edge_ends = false;
+    bool source_cells = false;
+};
+
+/// What set() had to do.
+enum class ContourUpdate : std::uint8_t {
+    nothing,      ///< grid and field are the ones from before
+    field,        ///< the same cells and points: only values were stored
+    points,       ///< the same cells: points moved, and values were stored
+    grid,         ///< another grid: what was packed is gone
+};
+
+/// The surfaces of one call, and how they came about.
+struct ContourResult {
+    std::vector<Extraction> surfaces; ///< in the order of the isovalues
+    Method method = Method::direct;
+    bool on_device = false;
+    FieldReport field;
+    std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
+    std::uint64_t coarse_tets = 0;    ///< of direct extraction, as DirectExtraction::coarse_tets
+    double pack_seconds = 0;          ///< packing, or storing another field or points, and uploading; 0 where nothing
+                                      ///< was to be done
+    double extract_seconds = 0;       ///< downloading included
+    DeviceWork work;                  ///< of the device
+    std::vector<std::string> notes;   ///< sentences for the user
+};
+
+/// Answers isovalues for one grid at a time, and keeps what may be kept when the grid or the field changes.
+///
+/// Guarantees   the same calls give the same bytes, on every machine, for any thread count and on every engine, except
+///              where a note says that another method was taken for want of memory
+/// Threads      extract() of many threads at once where nothing is to be packed and no device is used, else one call at
+///              a time: calls wait for each other. A call is stopped through its own Run::progress; a slider cancels
+///              the call for a stale isovalue and makes the next
+class Contour {
+public:
+    /// Checks that the field fits the grid; nothing is packed yet.
+    ///
+    /// Errors   invalid_argument when a field does not fit the grid or options contradict each other; invalid_data when
+    ///          the arrays of the grid do not fit together
+    static Result<Contour> create(ContourInput input, const ContourOptions& options = {});
+
+    Contour(Contour&&) noexcept;
+    Contour& operator=(Contour&&) noexcept;
+    ~Contour();
+
+    /// Another grid, field or time step. What is the same as before is found out: by the memory and owner of arrays,
+    /// else by their contents, and is not packed again.
+    ///
+    /// Cost     at most one pass over the arrays, at the speed of memory, and what the next extract() packs
+    /// Errors   as create(); the session is then as before
+    Result<ContourUpdate> set(ContourInput input, const Run& run = {});
+
+    /// Surfaces of isovalues, in their order: all in one pass by the CPU engine, one after another on a device.
+    ///
+    /// Errors   as pack(), extract() and extract_direct(); of a required device: as DeviceGrid. The session stays usable
+    Result<ContourResult> extract(std::span<const double> isovalues, const Run& run = {});
+    Result<ContourResult> extract(double isovalue, const Run& run = {});
+
+    /// Surfaces that stay on the device, to be drawn there.
+    ///
+    /// Errors   as DeviceGrid::extract(); invalid_argument when the session has no device, or has given it up
+    Result<std::vector<DeviceSurface>> extract_on_device(std::span<const double> isovalues, const Run& run = {});
+
+    /// Packs now what the first extract() would pack; nothing where surfaces are extracted directly.
+    /// Errors   as pack()
+    Result<void> prepare(const Run& run = {});
+
+    /// The next call with so many isovalues extracts by this method, memory permitting.
+    Method method(std::size_t isovalues = 1) const;
+
+    /// What a surface is expected to be and take, before it is asked for. Cost   a few milliseconds once a field
+    struct Prediction {
+        double triangles = 0;
+        Estimate estimate;
+    };
+    Result<Prediction> predict(double isovalue) const;
+
+    /// The range of the field, as extraction sees it. Cost   a pass over the grid where nothing is packed, once a field
+    /// Errors   as extract()
+    Result<FieldReport> field(const Run& run = {});
+
+    /// The packed grid; nothing where surfaces are extracted directly, or before the first of them.
+    std::optional<PackedGrid> packed() const;
+
+    /// Whether a device extracts; false after it failed and the CPU took over.
+    bool has_device() const;
+
+private:
+    struct Data;
+    explicit Contour(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet

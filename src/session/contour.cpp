@@ -1,0 +1,429 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/contour.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <isotet/extract_once.hpp>
+
+#include "core/array_identity.hpp"
+#include "core/errors.hpp"
+#include "core/guard.hpp"
+#include "core/memory.hpp"
+#include "core/parallel.hpp"
+#include "session/fingerprint.hpp"
+
+namespace isotet {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool is_same(const core::ArrayIdentity& before, const Array& now) {
+    return now.empty() ? before.is_empty() : before.is(now);
+}
+
+/// Cells as they were when the grid was packed.
+struct CellsMark {
+    core::ArrayIdentity connectivity, offsets, types;
+    CellType uniform_type;
+    session::Fingerprint print;
+
+    explicit CellsMark(const Cells& cells)
+        : connectivity(cells.connectivity),
+          offsets(cells.offsets),
+          types(cells.types),
+          uniform_type(cells.uniform_type),
+          print(session::fingerprint(cells)) {}
+
+    bool is(const Cells& cells) const {
+        const bool same_memory = is_same(connectivity, cells.connectivity) && is_same(offsets, cells.offsets) &&
+                                 is_same(types, cells.types) && uniform_type == cells.uniform_type;
+        return same_memory || print == session::fingerprint(cells);
+    }
+};
+
+struct PointsMark {
+    core::ArrayIdentity identity;
+    session::Fingerprint print;
+
+    explicit PointsMark(const Array& points) : identity(points), print(session::fingerprint(points)) {}
+    bool is(const Array& points) const { return identity.is(points) || print == session::fingerprint(points); }
+};
+
+Result<void> check(const ContourOptions& options) {
+    if (options.device && options.method == Method::direct)
+        return invalid_argument("a device extracts from clusters, but direct extraction was asked for");
+    if (options.device && options.engine != Engine::cpu)
+        return invalid_argument("a device was given, but the reference engine was asked for, which uses none");
+    return {};
+}
+
+ExtractOptions extract_options(const ContourOptions& options, const ContourInput& input, int threads) {
+    ExtractOptions extract;
+    extract.engine = options.engine;
+    extract.ties = options.ties;
+    extract.normals = options.normals;
+    extract.edge_ends = options.edge_ends;
+    extract.source_cells = options.source_cells;
+    extract.point_fields = input.point_fields;
+    extract.cell_fields = input.cell_fields;
+    extract.threads = threads;
+    return extract;
+}
+
+} // namespace
+
+struct Contour::Data {
+    std::mutex mutex; ///< of all that follows
+    ContourInput input; ///< without the grid when that is packed
+    ContourOptions options;
+    FieldSample sample;
+    std::uint64_t asked = 0; ///< surfaces so far
+    bool direct_for_memory = false;
+    std::optional<PackedGrid> packed; ///< of the input, but for what `behind` says
+    ContourUpdate behind = ContourUpdate::grid;
+    std::optional<CellsMark> cells;
+    std::optional<PointsMark> points;
+    std::optional<core::ArrayIdentity> field;
+    std::optional<DeviceGrid> on_device;
+    DeviceSurface surface; ///< used again for the next isovalue
+    std::optional<FieldReport> range; ///< found by a look at the grid
+    double update_seconds = 0;
+    std::vector<std::string> notes;
+
+    Method method_of_next(std::size_t isovalues) const;
+    Result<void> prepare(std::size_t isovalues, const Run& run);
+    Result<void> bring_up_to_date(const Run& run);
+    Result<void> pack_grid(const Run& run);
+    Result<void> change_points(const Run& run);
+    Result<void> change_field(const Run& run);
+    Result<void> upload(const Run& run);
+    Result<void> without_device(const Error& error);
+    Result<void> extract_on_device(std::span<const double> isovalues, const Run& run, ContourResult& result);
+};
+
+namespace {
+
+Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
+                                       std::span<const double> isovalues, const Run& run) {
+    Result<ExtractedOnce> direct =
+        extract_once(input.grid, input.field, isovalues,
+                     {extract_options(options, input, run.threads), options.precision}, run.progress);
+    if (!direct) return std::move(direct).error();
+    ContourResult result;
+    result.surfaces = std::move(direct->surfaces);
+    result.field = std::move(direct->field);
+    result.cells_left_out = direct->cells_left_out;
+    result.coarse_tets = direct->coarse_tets;
+    return result;
+}
+
+} // namespace
+
+Method Contour::Data::method_of_next(std::size_t isovalues) const {
+    if (options.device) return Method::clusters;
+    if (options.method) return *options.method;
+    if (direct_for_memory) return Method::direct;
+    if (packed) return Method::clusters;
+    const std::uint64_t surfaces = options.surfaces ? options.surfaces : asked + isovalues;
+    return method_for(surfaces, options.normals == Normals::gradient);
+}
+
+/// The error, or nothing after a note where the CPU may stand in.
+Result<void> Contour::Data::without_device(const Error& error) {
+    if (options.device->required || error.code == ErrorCode::cancelled) return error;
+    notes.push_back(error.message + ": the CPU extracts instead");
+    surface = {};
+    on_device.reset();
+    options.device.reset();
+    return {};
+}
+
+Result<void> Contour::Data::upload(const Run& run) {
+    if (!options.device || on_device) return {};
+    DeviceGridOptions device_options = options.device->options;
+    constexpr std::uint64_t smallest_page = 16 << 10, pages_at_least = 16;
+    const std::uint64_t page = std::max(smallest_page, options.device->device.memory_free() / pages_at_least);
+    device_options.page_bytes = std::min(device_options.page_bytes, page);
+    Result<DeviceGrid> uploaded = DeviceGrid::upload(options.device->device, *packed, device_options, run);
+    if (!uploaded) return without_device(uploaded.error());
+    on_device = *std::move(uploaded);
+    if (!on_device->complete())
+        notes.push_back(fmt::format(
+            "not all of the packed grid, {}, fits into the device's memory: its parts come and go",
+            core::format_bytes(DeviceGrid::needs(*packed, device_options).all())));
+    return {};
+}
+
+Result<void> Contour::Data::pack_grid(const Run& run) {
+    on_device.reset();
+    packed.reset(); // the old one goes before the new one comes
+    PackOptions pack_options;
+    pack_options.precision = options.precision;
+    pack_options.source_cells = options.source_cells || !input.cell_fields.empty();
+    pack_options.gradients = options.normals == Normals::gradient;
+    pack_options.threads = run.threads;
+    Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run.progress);
+    if (!made) return made.error();
+    packed = *made;
+    core::with_threads(run.threads, [&] {
+        cells.emplace(input.grid.cells);
+        points.emplace(input.grid.points);
+    });
+    return {};
+}
+
+Result<void> Contour::Data::change_points(const Run& run) {
+    if (on_device) {
+        const Result<void> changed = on_device->set_points(input.grid.points, run);
+        if (changed) packed = on_device->packed();
+        else if (changed.error().code == ErrorCode::invalid_data) return changed;
+        else if (auto instead = without_device(changed.error()); !instead) return instead;
+    }
+    if (!on_device) {
+        Result<PackedGrid> changed = packed->with_points(input.grid.points, run);
+        if (!changed) return changed.error();
+        packed = *changed;
+    }
+    core::with_threads(run.threads, [&] { points.emplace(input.grid.points); });
+    return {};
+}
+
+Result<void> Contour::Data::change_field(const Run& run) {
+    if (on_device) {
+        const Result<void> changed = on_device->set_field(input.field, run);
+        if (changed) {
+            packed = on_device->packed();
+            return {};
+        }
+        if (auto instead = without_device(changed.error()); !instead) return instead;
+    }
+    Result<PackedGrid> changed = packed->with_field(input.field, run);
+    if (!changed) return changed.error();
+    packed = *changed;
+    return {};
+}
+
+/// Packs, or stores what has changed since.
+Result<void> Contour::Data::bring_up_to_date(const Run& run) {
+    const auto start = std::chrono::steady_clock::now();
+    if (packed && behind == ContourUpdate::points) {
+        const Result<void> moved = change_points(run);
+        // A tet that turned over, or coordinates that packing has more to say about.
+        if (!moved && moved.error().code == ErrorCode::invalid_data) behind = ContourUpdate::grid;
+        else if (!moved) return moved;
+        else behind = ContourUpdate::field;
+    }
+    if (!packed || behind == ContourUpdate::grid) {
+        if (auto ok = pack_grid(run); !ok) return ok;
+    } else if (behind == ContourUpdate::field) {
+        if (auto ok = change_field(run); !ok) return ok;
+    }
+    behind = ContourUpdate::nothing;
+    field.emplace(input.field.values);
+    input.grid = {};
+    if (auto ok = upload(run); !ok) return ok;
+    update_seconds += seconds_since(start);
+    return {};
+}
+
+/// For so many more isovalues: afterwards method_of_next() tells what can be done.
+Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
+    if (method_of_next(isovalues) == Method::direct) return {};
+    if (packed && behind == ContourUpdate::nothing) return upload(run);
+    const Result<void> ready = bring_up_to_date(run);
+    if (ready || ready.error().code != ErrorCode::out_of_memory || options.method || options.device) return ready;
+    Workload work;
+    work.points = sample.points();
+    work.tets = sample.tets();
+    if (estimate(Method::direct, work).bytes > core::free_memory()) return ready;
+    notes.push_back(ready.error().message + ": surfaces are extracted directly instead");
+    direct_for_memory = true;
+    return {};
+}
+
+Result<void> Contour::Data::extract_on_device(std::span<const double> isovalues, const Run& run,
+                                              ContourResult& result) {
+    const ExtractOptions extract = extract_options(options, input, run.threads);
+    while (on_device && result.surfaces.size() < isovalues.size()) {
+        const auto one = [&]() -> Result<Extraction> {
+            if (auto ok = on_device->extract(isovalues[result.surfaces.size()], surface, extract, run.progress); !ok)
+                return ok.error();
+            result.work = on_device->work();
+            Result<Extraction> down = on_device->download(surface, run.progress);
+            if (down) result.work.downloaded_bytes += on_device->work().downloaded_bytes;
+            return down;
+        };
+        Result<Extraction> extraction = one();
+        if (extraction) result.surfaces.push_back(*std::move(extraction));
+        else if (auto instead = without_device(extraction.error()); !instead) return instead;
+    }
+    return {};
+}
+
+Result<Contour> Contour::create(ContourInput input, const ContourOptions& options) {
+    return core::guarded("starting to contour", [&]() -> Result<Contour> {
+        if (auto ok = check(options); !ok) return ok.error();
+        Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+        if (!sample) return sample.error();
+        auto data = std::make_unique<Data>();
+        data->input = std::move(input);
+        data->options = options;
+        data->sample = *std::move(sample);
+        return Contour(std::move(data));
+    });
+}
+
+Contour::Contour(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Contour::Contour(Contour&&) noexcept = default;
+Contour& Contour::operator=(Contour&&) noexcept = default;
+Contour::~Contour() = default;
+
+Result<ContourUpdate> Contour::set(ContourInput input, const Run& run) {
+    return core::guarded("setting another grid", [&]() -> Result<ContourUpdate> {
+        Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+        if (!sample) return sample.error();
+        const std::lock_guard lock(data_->mutex);
+        Data& data = *data_;
+        ContourUpdate update = ContourUpdate::grid;
+        const bool needs_cells = data.options.source_cells || !input.cell_fields.empty();
+        const bool usable = data.packed && (!needs_cells || data.packed->report().source_bytes > 0) &&
+                            data.packed->user_points() == input.grid.points.tuples();
+        if (usable && data.behind != ContourUpdate::grid) {
+            core::with_threads(run.threads, [&] {
+                if (!data.cells->is(input.grid.cells)) return;
+                if (!data.points->is(input.grid.points)) update = ContourUpdate::points;
+                else if (data.behind != ContourUpdate::nothing || !data.field->is(input.field.values) ||
+                         data.packed->field().name != input.field.name)
+                    update = ContourUpdate::field;
+                else update = ContourUpdate::nothing;
+            });
+        }
+        if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "setting another grid was cancelled"};
+        data.behind = update;
+        data.input = std::move(input);
+        data.sample = *std::move(sample);
+        data.range.reset();
+        return update;
+    });
+}
+
+Result<void> Contour::prepare(const Run& run) {
+    return core::guarded("preparing to contour", [&]() -> Result<void> {
+        const std::lock_guard lock(data_->mutex);
+        return data_->prepare(1, run);
+    });
+}
+
+Result<ContourResult> Contour::extract(double isovalue, const Run& run) { return extract({&isovalue, 1}, run); }
+
+Result<ContourResult> Contour::extract(std::span<const double> isovalues, const Run& run) {
+    return core::guarded("extraction", [&]() -> Result<ContourResult> {
+        Data& data = *data_;
+        std::unique_lock lock(data.mutex);
+        data.asked += isovalues.size();
+        if (auto ok = data.prepare(0, run); !ok) return ok.error();
+        const auto start = std::chrono::steady_clock::now();
+        const Method method = data.method_of_next(0);
+        ContourResult head;
+        head.notes = std::exchange(data.notes, {});
+        head.pack_seconds = std::exchange(data.update_seconds, 0);
+        Result<ContourResult> result = ContourResult{};
+        if (method == Method::direct) {
+            const ContourInput input = data.input; // shares the arrays
+            const ContourOptions options = data.options;
+            lock.unlock();
+            result = extract_directly(input, options, isovalues, run);
+        } else {
+            if (auto ok = data.extract_on_device(isovalues, run, *result); !ok) return ok.error();
+            std::ranges::move(std::exchange(data.notes, {}), std::back_inserter(head.notes));
+            result->on_device = data.on_device.has_value();
+            const PackedGrid packed = *data.packed;
+            const ExtractOptions options = extract_options(data.options, data.input, run.threads);
+            lock.unlock();
+            result->field = packed.field();
+            result->cells_left_out = packed.report().cells_left_out;
+            if (result->surfaces.size() < isovalues.size()) {
+                auto rest = isotet::extract(packed, isovalues.subspan(result->surfaces.size()), options, run.progress);
+                if (!rest) return rest.error();
+                std::ranges::move(*rest, std::back_inserter(result->surfaces));
+            }
+        }
+        if (!result) return result;
+        result->method = method;
+        result->extract_seconds = seconds_since(start);
+        result->pack_seconds = head.pack_seconds;
+        result->notes = std::move(head.notes);
+        return result;
+    });
+}
+
+Result<std::vector<DeviceSurface>> Contour::extract_on_device(std::span<const double> isovalues, const Run& run) {
+    return core::guarded("extraction", [&]() -> Result<std::vector<DeviceSurface>> {
+        const std::lock_guard lock(data_->mutex);
+        Data& data = *data_;
+        if (auto ok = data.prepare(isovalues.size(), run); !ok) return ok.error();
+        if (!data.on_device) return invalid_argument("the session extracts on the CPU: it has no device");
+        data.asked += isovalues.size();
+        return data.on_device->extract(isovalues, extract_options(data.options, data.input, run.threads),
+                                       run.progress);
+    });
+}
+
+Method Contour::method(std::size_t isovalues) const {
+    const std::lock_guard lock(data_->mutex);
+    return data_->method_of_next(isovalues);
+}
+
+Result<Contour::Prediction> Contour::predict(double isovalue) const {
+    const std::lock_guard lock(data_->mutex);
+    const Data& data = *data_;
+    Prediction prediction;
+    prediction.triangles = data.sample.triangles(isovalue);
+    Workload work;
+    work.points = data.sample.points();
+    work.tets = data.sample.tets();
+    work.gradients = data.options.normals == Normals::gradient;
+    work.triangles = work.triangles_together = prediction.triangles;
+    const Method method = data.method_of_next(1);
+    prediction.estimate = estimate(method, work);
+    if (method == Method::clusters && data.packed && data.behind == ContourUpdate::nothing) {
+        work.surfaces = 0; // packing is done
+        prediction.estimate.seconds -= estimate(method, work).seconds;
+    }
+    return prediction;
+}
+
+Result<FieldReport> Contour::field(const Run& run) {
+    return core::guarded("looking at the field", [&]() -> Result<FieldReport> {
+        const std::lock_guard lock(data_->mutex);
+        Data& data = *data_;
+        if (data.range) return *data.range;
+        if (auto ok = data.prepare(0, run); !ok) return ok.error();
+        if (data.method_of_next(0) == Method::clusters) return data.packed->field();
+        const Result<ContourResult> looked = extract_directly(data.input, data.options, {}, run);
+        if (!looked) return looked.error();
+        data.range = looked->field;
+        return looked->field;
+    });
+}
+
+std::optional<PackedGrid> Contour::packed() const {
+    const std::lock_guard lock(data_->mutex);
+    return data_->behind == ContourUpdate::nothing ? data_->packed : std::nullopt;
+}
+
+bool Contour::has_device() const {
+    const std::lock_guard lock(data_->mutex);
+    return data_->options.device.has_value();
+}
+
+} // namespace isotet
