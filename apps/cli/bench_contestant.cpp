@@ -42,7 +42,7 @@ private:
     std::optional<DeviceMesh> mesh_;
 };
 
-class Brute final : public OnCpu {
+class Direct final : public OnCpu {
 public:
     Result<BenchCosts> prepare(BenchBed&) override { return BenchCosts{}; }
 
@@ -169,7 +169,7 @@ Result<void> BenchBed::pack() {
 std::unique_ptr<Contestant> make_contestant(const BenchPair& pair) {
     if (const std::optional<DrawMethod> method = draw_method_of(pair.method))
         return std::make_unique<InTheVertexShader>(*method, pair.filter);
-    if (pair.method == BenchMethod::brute) return std::make_unique<Brute>();
+    if (pair.method == BenchMethod::direct) return std::make_unique<Direct>();
     if (pair.method == BenchMethod::clusters) return std::make_unique<Clusters>();
     return std::make_unique<ClustersOnDevice>();
 }

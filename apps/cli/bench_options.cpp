@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "option_values.hpp"
+#include "option_tree.hpp"
 
 namespace isotet::cli {
 
@@ -18,7 +18,7 @@ one (--device none) surfaces are extracted and that is all. Prepare is what happ
 uploading. Ask is the filter's search; extract is making triangles, and sending them or the list of tets to the device; draw
 is the rest of the way to the picture. Medians; the best round in JSON and CSV.
 
-Methods: brute and clusters (CPU), clusters_vulkan (device); and those that draw without making a surface: registers,
+Methods: direct and clusters (CPU), clusters_vulkan (device); and those that draw without making a surface: registers,
 registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh shaders. The last four
 draw the tets that a filter finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
 
@@ -34,32 +34,28 @@ Examples:
 
 /// Words separated by commas, each one of `all` by its name.
 template <class Value, class All>
-void add_list(CLI::App& app, const std::string& option, std::vector<Value>& target, const All& all,
+void add_list(const Command& command, const std::string& option, std::vector<Value>& target, const All& all,
               const std::string& description) {
-    app.add_option_function<std::vector<std::string>>(
-           option,
-           [&target, &all, option](const std::vector<std::string>& words) {
-               for (const std::string& word : words) {
-                   const auto found =
-                       std::ranges::find_if(all, [&](Value value) { return std::string_view(name_of(value)) == word; });
-                   std::string names;
-                   for (const Value value : all)
-                       names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(value));
-                   if (found == all.end()) throw wrong_value(option, word, "one or more of " + names);
-                   if (std::ranges::find(target, *found) == target.end()) target.push_back(*found);
-               }
-           },
-           description)
-        ->type_name("A[,B...]")
-        ->delimiter(',')
-        ->allow_extra_args(false);
+    command.add_words(
+        option,
+        [&target, &all, option](const std::vector<std::string>& words) {
+            for (const std::string& word : words) {
+                const auto found =
+                    std::ranges::find_if(all, [&](Value value) { return std::string_view(name_of(value)) == word; });
+                std::string names;
+                for (const Value value : all) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(value));
+                if (found == all.end()) refuse_value(option, word, "one or more of " + names);
+                if (std::ranges::find(target, *found) == target.end()) target.push_back(*found);
+            }
+        },
+        "A[,B...]", description);
 }
 
 } // namespace
 
 const char* name_of(BenchMethod method) noexcept {
     switch (method) {
-    case BenchMethod::brute: return "brute";
+    case BenchMethod::direct: return "direct";
     case BenchMethod::clusters: return "clusters";
     case BenchMethod::clusters_vulkan: return "clusters_vulkan";
     case BenchMethod::registers: return "registers";
@@ -73,7 +69,7 @@ const char* name_of(BenchMethod method) noexcept {
 std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept { return parse_draw_method(name_of(method)); }
 
 bool needs_device(BenchMethod method) noexcept {
-    return method != BenchMethod::brute && method != BenchMethod::clusters;
+    return method != BenchMethod::direct && method != BenchMethod::clusters;
 }
 
 std::string BenchPair::name() const {
@@ -92,34 +88,39 @@ std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const s
     return pairs;
 }
 
-CLI::App& add_bench_command(CLI::App& program, BenchCommand& bench) {
-    CLI::App& app = *program.add_subcommand("bench", "Measure methods and filters on a grid, and say which to take");
-    CLI::Option* file = add_file(app, "FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
-    CLI::Option* paper = app.add_flag(
+Command add_bench_command(const Command& program, BenchCommand& bench) {
+    const Command command =
+        program.add_command("bench", "Measure methods and filters on a grid, and say which to take");
+    const Option file =
+        command.add_file("FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
+    const Option paper = command.add_flag(
         "--paper", bench.paper, "Measure Figure 4 of Buatois, Caumon and Levy (2006) on made grids, without FILE");
-    paper->excludes(file);
-    add_count(
-        app, "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",
-        "Largest grid of --paper; without it 5000000")
-        ->needs(paper);
-    add_text(app, "-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")
-        ->excludes(paper);
-    app.add_flag("--cell-field", bench.field.cell_field,
-                 "Of a name that is both a point and a cell field, the cell field");
-    add_numbers(app, "-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")
-        ->excludes(paper);
-    add_list(app, "--methods", bench.methods, all_bench_methods,
+    paper.excludes(file);
+    command
+        .add_count(
+            "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",
+            "Largest grid of --paper; without it 5000000")
+        .needs(paper);
+    command
+        .add_text("-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")
+        .excludes(paper);
+    command.add_flag("--cell-field", bench.field.cell_field,
+                     "Of a name that is both a point and a cell field, the cell field");
+    command
+        .add_numbers("-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")
+        .excludes(paper);
+    add_list(command, "--methods", bench.methods, all_bench_methods,
              "Methods, separated by commas; without it all that this machine can");
-    add_list(app, "--filters", bench.filters, all_filters,
+    add_list(command, "--filters", bench.filters, all_filters,
              "Filters, separated by commas; without it none and interval_tree");
-    add_count(
-        app, "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",
+    command.add_count(
+        "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",
         "How often everything is measured; without it 5");
-    add_file(app, "--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
-    add_file(app, "--svg", bench.svg, "OUT_FILE",
-             "Draw a chart: with --paper tets a second against tets, else time against surfaces");
-    app.footer(details);
-    return app;
+    command.add_file("--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
+    command.add_file("--svg", bench.svg, "OUT_FILE",
+                     "Draw a chart: with --paper tets a second against tets, else time against surfaces");
+    command.set_details(details);
+    return command;
 }
 
 } // namespace isotet::cli

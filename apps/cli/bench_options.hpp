@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include <isotet/draw_tets.hpp>
 #include <isotet/search.hpp>
 
@@ -17,7 +15,9 @@
 
 namespace isotet::cli {
 
-inline constexpr std::array all_bench_methods{BenchMethod::brute,     BenchMethod::clusters,
+class Command;
+
+inline constexpr std::array all_bench_methods{BenchMethod::direct,    BenchMethod::clusters,
                                               BenchMethod::clusters_vulkan, BenchMethod::registers,
                                               BenchMethod::registers_instanced, BenchMethod::textures,
                                               BenchMethod::mesh};
@@ -29,7 +29,7 @@ std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept;
 bool needs_device(BenchMethod method) noexcept;
 
 struct BenchPair {
-    BenchMethod method = BenchMethod::brute;
+    BenchMethod method = BenchMethod::direct;
     Filter filter = Filter::none; ///< of a method that takes lists
 
     std::string name() const; ///< "textures + interval_tree", "clusters"
@@ -38,6 +38,6 @@ struct BenchPair {
 /// Each method that takes lists with each filter, the others once.
 std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& filters);
 
-CLI::App& add_bench_command(CLI::App& program, BenchCommand& bench);
+Command add_bench_command(const Command& program, BenchCommand& bench);
 
 } // namespace isotet::cli

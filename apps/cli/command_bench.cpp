@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <isotet/choose.hpp>
 #include <isotet/make.hpp>
+#include <isotet/plan.hpp>
 
 #include "bench_report.hpp"
 #include "commands.hpp"

@@ -109,7 +109,7 @@ std::string findings_table(const std::vector<Finding>& findings) {
         table.row({finding.what, fmt::format("at {}, {}, {}", shortest(finding.where[0]), shortest(finding.where[1]),
                                              shortest(finding.where[2]))});
     }
-    return table.empty() ? "" : "\n" + table.text();
+    return table.empty() ? "" : fmt::format("\n{}", table.text());
 }
 
 Json check_json(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {

@@ -2,14 +2,13 @@
 // `isotet docs`: man page, completion and docs/command-line.md, for the build and for a test.
 #include <fmt/format.h>
 
+#include "command_text.hpp"
 #include "commands.hpp"
-#include "option_walker.hpp"
 #include "standard_streams.hpp"
 
 namespace isotet::cli {
 
-Result<ExitCode> run_docs(const DocsCommand& command, const CLI::App& program) {
-    const std::vector<CommandText> commands = walk(program);
+Result<ExitCode> run_docs(const DocsCommand& command, const std::vector<CommandText>& commands) {
     std::string text;
     if (command.kind == "man") text = man_page(commands);
     else if (command.kind == "completion") text = bash_completion(commands);

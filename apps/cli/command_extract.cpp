@@ -5,24 +5,20 @@
 
 #include <fmt/format.h>
 
-#include <isotet/choose.hpp>
-#include <isotet/extract.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/write.hpp>
 
 #include "cells_left_out.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "core/memory.hpp"
+#include "device_choice.hpp"
 #include "extract_plan.hpp"
 #include "extract_report.hpp"
-#include "extractor.hpp"
 #include "number_format.hpp"
 #include "output_paths.hpp"
-#include "packed_series.hpp"
 #include "stopwatch.hpp"
 #include "thread_count.hpp"
-#include "way_choice.hpp"
 
 namespace isotet::cli {
 
@@ -31,45 +27,66 @@ namespace {
 /// One run of the command: what its steps share.
 class ExtractRun {
 public:
-    ExtractRun(const ExtractCommand& command, Console& console)
-        : command_(command), console_(console), extractor_(command, console) {}
+    ExtractRun(const ExtractCommand& command, Console& console) : command_(command), console_(console) {}
 
     Result<void> run();
     const ExtractNumbers& numbers() const noexcept { return numbers_; }
 
 private:
     Result<void> open();
+    Result<void> open_device();
     Result<void> load(std::size_t step);
-    Result<void> choose(const Grid& grid);
+    Result<Contour> start(ContourInput input);
+    void predict(const ContourInput& input);
     bool goes_into_one_file() const {
         return !plan_.names.none() && !plan_.names.by_value();
     } ///< of a step, all surfaces
     std::size_t isovalues_together(std::size_t isovalues) const;
-    Result<void> pack(const Grid& grid);
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::optional<double> time);
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
-    Result<void> look_at_field();
-    Result<std::vector<Extraction>> extract(std::span<const double> isovalues, const ExtractOptions& options);
-    void say_what_the_step_holds(const Grid& grid);
-    void say_what_rounding_moves();
-    void say_what_extracting_found(const SurfaceNumbers& surface);
+    Run run_options() const { return {command_.common.threads, console_.progress()}; }
+    void note_what_the_step_holds();
+    void note_what_extracting_found(const SurfaceNumbers& surface);
 
     const ExtractCommand& command_;
     Console& console_;
     std::optional<GridSource> source_;
     ExtractPlan plan_;
-    std::optional<PackedSeries> series_;
-    Extractor extractor_;
-    Grid grid_; ///< of the step at hand, where nothing is packed
-    PointField field_;
-    StepFields fields_;
+    std::optional<ContourDevice> device_;
+    std::optional<Contour> contour_;
+    Grid grid_;         ///< of the step at hand
+    Array field_;       ///< its values
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
-    std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, where nothing is packed
-    std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step, when its way was chosen
+    std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
+    std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
     ExtractNumbers numbers_;
 };
+
+/// --engine vulkan needs a device; where the engine is left open and a device is named, the CPU may stand in for it.
+Result<void> ExtractRun::open_device() {
+    const bool required = command_.engine == EngineChoice::vulkan;
+    const bool named = !command_.device.name.empty() || command_.device.memory;
+    if (named && (command_.engine == EngineChoice::cpu || command_.engine == EngineChoice::reference))
+        return Error{ErrorCode::invalid_argument, "a device is asked for, but only --engine vulkan and auto use one"};
+    const bool wanted = required || (!command_.device.name.empty() && command_.device.name != "none");
+    if (!wanted) return {};
+    if (command_.method == Method::direct)
+        return Error{ErrorCode::invalid_argument,
+                     "--method direct was asked for, but devices take packed grids only: clusters"};
+    if (command_.device.name == "none")
+        return Error{ErrorCode::invalid_argument, "--engine vulkan needs a device, but --device is none"};
+    Result<std::optional<Device>> device = isotet::cli::open_device(command_.device, console_);
+    if (device) {
+        device_ = ContourDevice{**std::move(device), required};
+        numbers_.device = device_->device.info().name;
+        return {};
+    }
+    if (required || device.error().code != ErrorCode::machine) return device.error();
+    console_.note(device.error().message + ": the CPU extracts instead");
+    return {};
+}
 
 Result<void> ExtractRun::open() {
     const Stopwatch reading;
@@ -80,8 +97,7 @@ Result<void> ExtractRun::open() {
         !paths) {
         return paths;
     }
-    if (Result<void> method = check_method(command_, extractor_); !method) return method;
-    if (Result<void> opened = extractor_.open(); !opened) return opened;
+    if (Result<void> opened = open_device(); !opened) return opened;
     console_.detail("looking at " + command_.grid.file);
     Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
     if (!source) return source.error();
@@ -89,7 +105,6 @@ Result<void> ExtractRun::open() {
     Result<ExtractPlan> plan = plan_extract(command_, *source_, console_);
     if (!plan) return plan.error();
     plan_ = *std::move(plan);
-    series_.emplace(plan_.pack, plan_.steps.size());
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
     numbers_.precision = command_.precision;
@@ -98,13 +113,63 @@ Result<void> ExtractRun::open() {
     return {};
 }
 
-/// Reads one step and packs it or keeps it as it is.
+/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written. What goes
+/// into one file is in memory together anyway.
+std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
+    constexpr std::size_t per_pass = 8;
+    return goes_into_one_file() ? isovalues : per_pass;
+}
+
+Result<Contour> ExtractRun::start(ContourInput input) {
+    ContourOptions options = plan_.contour;
+    const std::size_t isovalues =
+        command_.isovalues.empty() ? std::max<std::uint64_t>(command_.levels, 1) : command_.isovalues.size();
+    options.surfaces = isovalues * plan_.steps.size();
+    options.device = device_;
+    numbers_.why = device_ ? "devices take packed grids"
+                   : options.method
+                       ? "asked for"
+                       : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
+    predict(input);
+    numbers_.peak_before = core::peak_resident_memory().value_or(0);
+    if (core::forget_peak_memory()) resident_before_ = core::resident_memory();
+    return Contour::create(std::move(input), options);
+}
+
+/// What all steps are expected to take, from a look at the first.
+void ExtractRun::predict(const ContourInput& input) {
+    if (device_ || command_.engine == EngineChoice::reference) return;
+    const Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+    if (!sample) return; // an error that Contour::create() gives, too
+    const std::vector<double> levels =
+        levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
+    const std::vector<double>& isovalues = command_.isovalues.empty() ? levels : command_.isovalues;
+    const std::size_t together = isovalues_together(isovalues.size());
+    double all = 0;
+    Workload work;
+    for (std::size_t i = 0; i < isovalues.size(); i += together) {
+        double pass = 0;
+        for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k)
+            pass += sample->triangles(isovalues[k]);
+        all += pass;
+        work.triangles_together = std::max(work.triangles_together, pass);
+    }
+    work.points = sample->points();
+    work.tets = sample->tets();
+    work.surfaces = static_cast<double>(isovalues.size() * plan_.steps.size());
+    work.gradients = command_.normals == Normals::gradient;
+    work.find_range = command_.isovalues.empty();
+    work.triangles = all / static_cast<double>(isovalues.size());
+    const Method method =
+        command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
+    numbers_.predicted = estimate(method, work);
+}
+
+/// Reads one step and gives it to the session.
 Result<void> ExtractRun::load(std::size_t step) {
     const Stopwatch reading;
     console_.detail(fmt::format("reading step {}", step));
-    fields_ = {};
     grid_ = {};
-    field_ = {};
     Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
     const auto prefer = command_.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
@@ -112,108 +177,35 @@ Result<void> ExtractRun::load(std::size_t step) {
         find_field(*grid, plan_.field.name, {.prefer = prefer, .threads = command_.common.threads});
     if (!field) return field.error();
     console_.note(field->note);
-    Result<StepFields> fields = carried_fields(plan_, *grid);
+    Result<StepFields> fields = carried_fields(plan_, *grid, command_.common.threads);
     if (!fields) return fields.error();
-    fields_ = *std::move(fields);
-    field_ = *std::move(field);
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = grid->cells.count();
-    numbers_.averaged = field_.averaged;
-    if (numbers_.surfaces.empty())
-        if (Result<void> chosen = choose(*grid); !chosen) return chosen;
-    if (!numbers_.choice.brute()) {
-        const Result<void> packed = pack(*grid);
-        const bool first = numbers_.surfaces.empty();
-        if (!packed && !(first && numbers_.choice.takes_brute_instead(packed.error()))) return packed;
-        if (!packed) {
-            console_.note(packed.error().message + ": --method brute was taken instead");
-            extractor_.close();
-            series_.emplace(plan_.pack, plan_.steps.size());
-        }
+    numbers_.averaged = field->averaged;
+    field_ = field->values;
+    grid_ = *std::move(grid);
+    coarse_tets_ = 0;
+    ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    if (!contour_) {
+        Result<Contour> started = start(std::move(input));
+        if (!started) return started.error();
+        contour_ = *std::move(started);
+    } else {
+        const Result<ContourUpdate> update = contour_->set(std::move(input), run_options());
+        if (!update) return update.error();
+        if (*update != ContourUpdate::grid)
+            console_.detail("the cells are those of the step before: not packed again");
     }
-    if (numbers_.choice.brute()) {
-        grid_ = *std::move(grid);
-        coarse_tets_ = 0;
-        if (command_.isovalues.empty())
-            if (Result<void> looked = look_at_field(); !looked) return looked;
+    if (command_.isovalues.empty()) {
+        const Stopwatch looking;
+        console_.detail("looking at the field");
+        const Result<FieldReport> range = contour_->field(run_options());
+        if (!range) return range.error();
+        numbers_.field = *range;
+        numbers_.look_seconds += looking.seconds();
     }
+    if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
     return choose_values(step);
-}
-
-/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written. What goes
-/// into one file is in memory together anyway.
-std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
-    constexpr std::size_t a_pass = 8;
-    return goes_into_one_file() ? isovalues : a_pass;
-}
-
-/// How all steps are done, from a look at the first.
-Result<void> ExtractRun::choose(const Grid& grid) {
-    const Result<FieldSample> sample = FieldSample::take(grid, field_);
-    if (!sample) return sample.error();
-    const std::vector<double> levels =
-        levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
-    const std::vector<double>& isovalues = command_.isovalues.empty() ? levels : command_.isovalues;
-    const std::size_t together = isovalues_together(isovalues.size());
-    double all = 0, most = 0;
-    for (std::size_t i = 0; i < isovalues.size(); i += together) {
-        double pass = 0;
-        for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k)
-            pass += sample->triangles(isovalues[k]);
-        all += pass;
-        most = std::max(most, pass);
-    }
-    const auto count = static_cast<double>(isovalues.size());
-    Task task;
-    task.points = sample->points();
-    task.tets = sample->tets();
-    task.surfaces = count * static_cast<double>(plan_.steps.size());
-    task.gradients = command_.normals == Normals::gradient;
-    task.find_range = command_.isovalues.empty();
-    task.triangles = all / count;
-    task.triangles_together = most;
-    task.memory_free = core::free_memory();
-    Result<ChosenWay> choice = choose_way(command_, task, extractor_, console_);
-    if (!choice) return choice.error();
-    numbers_.choice = *std::move(choice);
-    console_.detail(fmt::format("{} ({})", name_of(numbers_.choice.way), numbers_.choice.why));
-    numbers_.peak_before = core::peak_resident_memory().value_or(0);
-    if (core::forget_peak_memory()) resident_before_ = core::resident_memory();
-    return {};
-}
-
-/// For isovalues that are chosen by the range of the field.
-Result<void> ExtractRun::look_at_field() {
-    const Stopwatch looking;
-    console_.detail("looking at the field");
-    const Result<ExtractedOnce> looked =
-        extract_once(grid_, field_, {}, {plan_.extract, command_.precision}, console_.progress());
-    if (!looked) return looked.error();
-    numbers_.field = looked->field;
-    numbers_.look_seconds += looking.seconds();
-    return {};
-}
-
-/// The grid itself is not needed afterwards; the fields to carry stay.
-Result<void> ExtractRun::pack(const Grid& grid) {
-    const Stopwatch packing;
-    console_.detail("packing");
-    const Result<PackedSeries::Work> work = series_->load(grid, field_, extractor_, console_.progress());
-    if (!work) return work.error();
-    const bool packed_again = *work == PackedSeries::Work::packed;
-    if (!packed_again) console_.detail("the cells are those of the step before: not packed again");
-    numbers_.pack_seconds += packing.seconds();
-    numbers_.pack = series_->packed().report();
-    numbers_.field = series_->packed().field();
-    numbers_.cells_left_out = numbers_.pack->cells_left_out;
-    say_what_the_step_holds(grid);
-    say_what_rounding_moves();
-    if (packed_again) {
-        const Stopwatch uploading;
-        if (Result<void> uploaded = extractor_.load(series_->packed()); !uploaded) return uploaded;
-        numbers_.upload_seconds += uploading.seconds();
-    }
-    return {};
 }
 
 Result<void> ExtractRun::choose_values(std::size_t step) {
@@ -230,15 +222,13 @@ Result<void> ExtractRun::choose_values(std::size_t step) {
     return {};
 }
 
-void ExtractRun::say_what_the_step_holds(const Grid& grid) {
-    if (numbers_.cells_left_out > 0) console_.note(cells_left_out_note(grid));
+/// After the surfaces of a step: what was left out, and what rounding did.
+void ExtractRun::note_what_the_step_holds() {
+    if (numbers_.cells_left_out > 0) console_.note(cells_left_out_note(grid_));
     if (numbers_.field.flushed > 0) {
         console_.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0",
                                   grouped(numbers_.field.flushed), numbers_.field.name));
     }
-}
-
-void ExtractRun::say_what_rounding_moves() {
     std::string where;
     if (numbers_.pack && numbers_.pack->coarse_clusters > 0)
         where = fmt::format("in {} of {} clusters", grouped(numbers_.pack->coarse_clusters),
@@ -250,7 +240,7 @@ void ExtractRun::say_what_rounding_moves() {
         " rounding to float32 moves points by over a thousandth of the shortest edge; --precision double keeps them");
 }
 
-void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
+void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
     const FieldReport& field = numbers_.field;
     if (!(field.lower <= field.upper)) {
         console_.note(fmt::format("isovalue {} gives no surface: field '{}' has no finite value",
@@ -276,45 +266,35 @@ void ExtractRun::say_what_extracting_found(const SurfaceNumbers& surface) {
     }
 }
 
-Result<std::vector<Extraction>> ExtractRun::extract(std::span<const double> isovalues, const ExtractOptions& options) {
-    if (!numbers_.choice.brute()) return extractor_.extract(isovalues, options);
-    Result<ExtractedOnce> once =
-        extract_once(grid_, field_, isovalues, {options, command_.precision}, console_.progress());
-    if (!once) return once.error();
-    numbers_.field = once->field;
-    numbers_.cells_left_out = once->cells_left_out;
-    coarse_tets_ += once->coarse_tets;
-    return std::move(once->surfaces);
-}
-
 Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::optional<double> time) {
-    ExtractOptions options = plan_.extract;
-    options.point_fields = fields_.point;
-    options.cell_fields = fields_.cell;
-    const Stopwatch extracting;
     for (const double isovalue : isovalues) console_.detail("extracting " + shortest(isovalue));
-    Result<std::vector<Extraction>> extractions = extract(isovalues, options);
-    if (!extractions) return extractions.error();
-    const double seconds = extracting.seconds() / static_cast<double>(isovalues.size());
-    numbers_.engine = extractor_.engine_name();
-    if (!extractor_.device() && numbers_.choice.way == Way::device_clusters)
-        numbers_.choice.way = Way::clusters; // the CPU stood in
-    numbers_.engine_text = extractor_.engine_text();
+    Result<ContourResult> result = contour_->extract(isovalues, run_options());
+    if (!result) return result.error();
+    console_.notes(result->notes);
+    const double seconds = result->extract_seconds / static_cast<double>(isovalues.size());
+    numbers_.method = result->method;
+    numbers_.on_device = result->on_device;
+    numbers_.reference = command_.engine == EngineChoice::reference;
+    numbers_.field = result->field;
+    numbers_.cells_left_out = result->cells_left_out;
+    numbers_.pack_seconds += result->pack_seconds;
+    if (const auto packed = contour_->packed()) numbers_.pack = packed->report();
+    coarse_tets_ += result->coarse_tets;
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
-        const Surface& surface = surfaces.emplace_back(std::move((*extractions)[i].surface));
+        const Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));
         SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
         numbers.extract_seconds = seconds;
-        numbers.device = extractor_.last();
+        if (result->on_device) numbers.device = result->work;
         numbers.isovalue = isovalues[i];
         numbers.time = time;
-        numbers.report = (*extractions)[i].report;
+        numbers.report = result->surfaces[i].report;
         numbers.vertices = surface.vertices();
         numbers.triangles = surface.triangle_count();
         const Stopwatch measuring;
         numbers.area = area(surface);
         numbers_.measure_seconds += measuring.seconds();
-        say_what_extracting_found(numbers);
+        note_what_extracting_found(numbers);
     }
     return surfaces;
 }
@@ -332,7 +312,7 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const std::optional<double> time = time_of(source_->info(), step);
     const bool one_file = goes_into_one_file();
-    std::size_t at_once = extractor_.in_one_pass() ? isovalues_together(isovalues_.size()) : 1;
+    std::size_t at_once = contour_->has_device() ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));
@@ -351,10 +331,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
             else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
         }
     }
-    if (numbers_.choice.brute()) {
-        say_what_the_step_holds(grid_);
-        say_what_rounding_moves();
-    }
+    note_what_the_step_holds();
     if (!one_file) return {};
     return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());
 }

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <string>
-
-#include <CLI/CLI.hpp>
+#include <vector>
 
 #include <isotet/result.hpp>
 
@@ -12,6 +11,8 @@
 #include "options.hpp"
 
 namespace isotet::cli {
+
+struct CommandText;
 
 Result<ExitCode> run_info(const InfoCommand& command);
 Result<ExitCode> run_extract(const ExtractCommand& command);
@@ -21,7 +22,7 @@ Result<ExitCode> run_check(const CheckCommand& command);
 Result<ExitCode> run_make(const MakeCommand& command);
 Result<ExitCode> run_formats(const FormatsCommand& command);
 Result<ExitCode> run_devices(const DevicesCommand& command);
-Result<ExitCode> run_docs(const DocsCommand& command, const CLI::App& program);
+Result<ExitCode> run_docs(const DocsCommand& command, const std::vector<CommandText>& commands);
 
 /// What --version prints.
 std::string version_text();

@@ -6,35 +6,30 @@
 #include <fmt/format.h>
 
 #include "number_format.hpp"
-#include "option_values.hpp"
+#include "option_tree.hpp"
 
 namespace isotet::cli {
 
-CLI::Option* add_device(CLI::App& app, DeviceChoice& choice) {
-    return app
-        .add_option_function<std::string>(
-            "--device",
-            [&choice](const std::string& name) {
-                if (name.empty()) throw wrong_value("--device", name, "a device of isotet devices, software or none");
-                choice.name = name;
-            },
-            "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the "
-            "best "
-            "graphics card")
-        ->type_name("DEVICE");
+void add_device(const Command& command, DeviceChoice& choice) {
+    command.add_value(
+        "--device",
+        [&choice](const std::string& name) {
+            if (name.empty()) refuse_value("--device", name, "a device of isotet devices, software or none");
+            choice.name = name;
+        },
+        "DEVICE",
+        "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
+        "graphics card");
 }
 
-CLI::Option* add_device_memory(CLI::App& app, DeviceChoice& choice) {
-    return app
-        .add_option_function<std::string>(
-            "--device-memory",
-            [&choice](const std::string& text) {
-                choice.memory = parse_bytes(text);
-                if (!choice.memory || *choice.memory == 0)
-                    throw wrong_value("--device-memory", text, "bytes, such as 2GB");
-            },
-            "Memory of the device to take at most, such as 2GB; without it what is free")
-        ->type_name("BYTES");
+void add_device_memory(const Command& command, DeviceChoice& choice) {
+    command.add_value(
+        "--device-memory",
+        [&choice](const std::string& text) {
+            choice.memory = parse_bytes(text);
+            if (!choice.memory || *choice.memory == 0) refuse_value("--device-memory", text, "bytes, such as 2GB");
+        },
+        "BYTES", "Memory of the device to take at most, such as 2GB; without it what is free");
 }
 
 Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console) {

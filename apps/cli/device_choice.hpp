@@ -4,8 +4,6 @@
 
 #include <optional>
 
-#include <CLI/CLI.hpp>
-
 #include <isotet/device.hpp>
 #include <isotet/result.hpp>
 
@@ -14,8 +12,10 @@
 
 namespace isotet::cli {
 
-CLI::Option* add_device(CLI::App& app, DeviceChoice& choice);
-CLI::Option* add_device_memory(CLI::App& app, DeviceChoice& choice);
+class Command;
+
+void add_device(const Command& command, DeviceChoice& choice);
+void add_device_memory(const Command& command, DeviceChoice& choice);
 
 /// Opens the device that was chosen, and notes what the user should know of it. Nothing for --device none.
 Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console);

@@ -103,17 +103,13 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     plan.carried = *std::move(carried);
     plan.read = fields_to_read(plan);
 
-    const bool cells_carried = plan.carried && !plan.carried->cell.empty();
-    plan.pack.precision = command.precision;
-    plan.pack.source_cells = command.source_cells || cells_carried;
-    plan.pack.gradients = command.normals == Normals::gradient;
-    plan.pack.threads = command.common.threads;
-    plan.extract.engine = command.engine == EngineChoice::reference ? Engine::reference : Engine::cpu;
-    plan.extract.ties = command.keep_degenerate ? Ties::keep : Ties::merge;
-    plan.extract.normals = command.normals;
-    plan.extract.edge_ends = command.edge_ends;
-    plan.extract.source_cells = command.source_cells;
-    plan.extract.threads = command.common.threads;
+    plan.contour.method = command.method;
+    plan.contour.engine = command.engine == EngineChoice::reference ? Engine::reference : Engine::cpu;
+    plan.contour.precision = command.precision;
+    plan.contour.ties = command.keep_degenerate ? Ties::keep : Ties::merge;
+    plan.contour.normals = command.normals;
+    plan.contour.edge_ends = command.edge_ends;
+    plan.contour.source_cells = command.source_cells;
     return plan;
 }
 
@@ -128,7 +124,7 @@ std::vector<double> levels_of(double lower, double upper, std::uint64_t count) {
     return levels;
 }
 
-Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field,
+Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const Array& field,
                                              const FieldReport& packed, Console& console) {
     std::vector<double> isovalues = command.isovalues;
     if (isovalues.empty()) {
@@ -148,7 +144,7 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
     std::vector<double> distinct;
     std::set<double> seen;
     for (double value : isovalues) {
-        if (command.snap) value = snap(field.values, value);
+        if (command.snap) value = snap(field, value);
         if (value == 0) value = 0; // -0 equals +0, and is called 0
         if (seen.insert(value).second) {
             distinct.push_back(value);
@@ -160,7 +156,7 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
     return distinct;
 }
 
-Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid) {
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int threads) {
     StepFields fields;
     if (!plan.carried) {
         fields.point = grid.point_fields;
@@ -176,7 +172,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid) {
         if (has(plan.carried->cell, field)) fields.cell.push_back(field);
     }
     for (const FoundField& component : plan.carried->components) {
-        const Result<PointField> found = find_field(grid, component.name, {.threads = plan.pack.threads});
+        const Result<PointField> found = find_field(grid, component.name, {.threads = threads});
         if (!found) return found.error();
         fields.point.push_back({component.name, found->values});
     }

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <isotet/extract.hpp>
-#include <isotet/pack.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/result.hpp>
 
 #include "console.hpp"
@@ -26,8 +25,7 @@ struct ExtractPlan {
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
     FieldsToRead read;
-    PackOptions pack;
-    ExtractOptions extract; ///< without the fields, which come with each step
+    ContourOptions contour; ///< but for the device and the number of surfaces
 };
 
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
@@ -39,13 +37,13 @@ std::vector<double> levels_of(double lower, double upper, std::uint64_t count);
 
 /// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
 /// Errors   invalid_data: levels of a field without a finite value
-Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const PointField& field,
+Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const Array& field,
                                              const FieldReport& packed, Console& console);
 
 /// The fields of the plan, taken from the grid of one step.
 struct StepFields {
     std::vector<Field> point, cell;
 };
-Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid);
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int threads);
 
 } // namespace isotet::cli

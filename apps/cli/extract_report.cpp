@@ -18,14 +18,14 @@ std::uint64_t ExtractNumbers::transient_peak() const {
 }
 
 double ExtractNumbers::work_seconds() const {
-    double seconds = pack_seconds + upload_seconds + look_seconds;
+    double seconds = pack_seconds + look_seconds;
     for (const SurfaceNumbers& surface : surfaces) seconds += surface.extract_seconds;
     return seconds;
 }
 
 namespace {
 
-/// The system's own count begins anew when a way is chosen.
+/// The system's own count is reset when the first grid is there.
 std::uint64_t process_peak_bytes(const ExtractNumbers& numbers) {
     return std::max(numbers.peak_before, core::peak_resident_memory().value_or(0));
 }
@@ -54,15 +54,15 @@ std::string field_text(const ExtractNumbers& numbers) {
 }
 
 std::string device_text(const ExtractNumbers& numbers) {
-    DeviceNumbers sum;
+    DeviceWork sum;
     for (const SurfaceNumbers& surface : numbers.surfaces) {
         if (!surface.device) continue;
-        sum.seconds += surface.device->seconds;
+        sum.device_seconds += surface.device->device_seconds;
         sum.uploaded_bytes += surface.device->uploaded_bytes;
         sum.downloaded_bytes += surface.device->downloaded_bytes;
         sum.page_loads += surface.device->page_loads;
     }
-    return fmt::format("busy {}; up {}, down {}, {} pages loaded again", seconds_text(sum.seconds),
+    return fmt::format("busy {}; up {}, down {}, {} pages loaded again", seconds_text(sum.device_seconds),
                        bytes_text(sum.uploaded_bytes), bytes_text(sum.downloaded_bytes), grouped(sum.page_loads));
 }
 
@@ -83,17 +83,20 @@ std::string time_text(const ExtractNumbers& numbers) {
     if (numbers.pack) text += ", pack " + seconds_text(numbers.pack_seconds);
     if (numbers.look_seconds > 0) text += ", range " + seconds_text(numbers.look_seconds);
     text += ", areas " + seconds_text(numbers.measure_seconds);
-    if (numbers.engine == "vulkan") text += ", upload " + seconds_text(numbers.upload_seconds);
     return text;
 }
 
 std::string choice_text(const ExtractNumbers& numbers) {
     std::string text = fmt::format("took {}", seconds_text(numbers.work_seconds()));
     if (numbers.peak_bytes) text += " and " + bytes_text(*numbers.peak_bytes);
-    if (const Forecast* forecast = numbers.choice.forecast())
-        text =
-            fmt::format("{} and {} predicted, {}", seconds_text(forecast->seconds), bytes_text(forecast->bytes), text);
+    if (numbers.predicted)
+        text = fmt::format("{} and {} predicted, {}", seconds_text(numbers.predicted->seconds),
+                           bytes_text(numbers.predicted->bytes), text);
     return text;
+}
+
+std::string engine_text(const ExtractNumbers& numbers) {
+    return numbers.on_device ? "vulkan on " + numbers.device : numbers.engine();
 }
 
 std::string facts_table(const ExtractNumbers& numbers) {
@@ -103,33 +106,15 @@ std::string facts_table(const ExtractNumbers& numbers) {
     if (numbers.cells_left_out > 0) table.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
     if (numbers.pack) add_pack_rows(*numbers.pack, table);
     table.row({"field", field_text(numbers)});
-    table.row({"method", fmt::format("{} ({})", numbers.choice.method(), numbers.choice.why)});
+    table.row({"method", fmt::format("{} ({})", name_of(numbers.method), numbers.why)});
     table.row({"", choice_text(numbers)});
-    table.row({"engine", fmt::format("{}, {} precision, {} thread{}", numbers.engine_text,
+    table.row({"engine", fmt::format("{}, {} precision, {} thread{}", engine_text(numbers),
                                      numbers.precision == Precision::single ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
     table.row({"time", time_text(numbers)});
-    if (numbers.engine == "vulkan") table.row({"device", device_text(numbers)});
+    if (numbers.on_device) table.row({"device", device_text(numbers)});
     return table.text();
-}
-
-Json choice_json(const ExtractNumbers& numbers) {
-    Json ways = Json::array();
-    for (const Forecast& one : numbers.choice.forecasts)
-        ways.push_back({{"way", name_of(one.way)},
-                        {"seconds", one.seconds},
-                        {"bytes", one.bytes},
-                        {"device_bytes", one.device_bytes},
-                        {"fits", one.fits}});
-    const Forecast* chosen = numbers.choice.forecast();
-    return {{"way", name_of(numbers.choice.way)},
-            {"speeds", chosen ? Json(numbers.choice.measured ? "measured" : "typical") : Json(nullptr)},
-            {"predicted", chosen ? Json({{"seconds", chosen->seconds}, {"bytes", chosen->bytes}}) : Json(nullptr)},
-            {"measured",
-             {{"seconds", numbers.work_seconds()},
-              {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}}},
-            {"ways", std::move(ways)}};
 }
 
 } // namespace
@@ -163,20 +148,22 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["cells_left_out"] = numbers.cells_left_out;
     report["field"] = json_text(numbers.field.name);
     const bool finite = numbers.field.lower <= numbers.field.upper;
-    report["range"] = finite ? Json({numbers.field.lower, numbers.field.upper}) : Json(nullptr);
+    report["range"] = finite ? Json::array({numbers.field.lower, numbers.field.upper}) : Json(nullptr);
     report["no_data_points"] = numbers.field.no_data;
-    report["engine"] = numbers.engine;
-    report["method"] = numbers.choice.method();
-    report["method_why"] = numbers.choice.why;
-    report["filter"] = numbers.choice.filter();
-    report["choice"] = choice_json(numbers);
+    report["engine"] = numbers.engine();
+    report["method"] = name_of(numbers.method);
+    report["method_why"] = numbers.why;
+    report["predicted"] =
+        numbers.predicted ? Json({{"seconds", numbers.predicted->seconds}, {"bytes", numbers.predicted->bytes}})
+                          : Json(nullptr);
+    report["measured"] = {{"seconds", numbers.work_seconds()},
+                          {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}};
     report["precision"] = numbers.precision == Precision::single ? "float" : "double";
     report["threads"] = numbers.threads;
     report["seconds"] = {{"read", numbers.read_seconds},
                          {"pack", numbers.pack_seconds},
                          {"range", numbers.look_seconds},
                          {"areas", numbers.measure_seconds}};
-    if (numbers.engine == "vulkan") report["seconds"]["upload"] = numbers.upload_seconds;
     const PackReport pack = numbers.pack.value_or(PackReport{});
     report["bytes"] = {{"packed", pack.bytes},
                        {"sources", pack.source_bytes},
@@ -195,7 +182,7 @@ Json extract_json(const ExtractNumbers& numbers) {
                         {"seconds", {{"extract", surface.extract_seconds}, {"write", surface.write_seconds}}},
                         {"file", surface.file.empty() ? Json(nullptr) : json_text(surface.file)}});
         if (surface.device)
-            list.back()["device"] = {{"seconds", surface.device->seconds},
+            list.back()["device"] = {{"seconds", surface.device->device_seconds},
                                      {"bytes_up", surface.device->uploaded_bytes},
                                      {"bytes_down", surface.device->downloaded_bytes},
                                      {"page_loads", surface.device->page_loads}};

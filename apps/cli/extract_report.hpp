@@ -8,14 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <isotet/extract.hpp>
-#include <isotet/pack.hpp>
+#include <isotet/contour.hpp>
 
 #include "extract_plan.hpp"
-#include "extractor.hpp"
 #include "json_output.hpp"
 #include "options.hpp"
-#include "way_choice.hpp"
 
 namespace isotet::cli {
 
@@ -27,7 +24,7 @@ struct SurfaceNumbers {
     std::uint64_t vertices = 0, triangles = 0;
     double area = 0;
     double extract_seconds = 0;
-    std::optional<DeviceNumbers> device;
+    std::optional<DeviceWork> device;
     double write_seconds = 0; ///< of several surfaces in one file the last has it all
     std::string file;         ///< empty without OUT
 };
@@ -40,18 +37,23 @@ struct ExtractNumbers {
     FieldReport field; ///< of the last time step
     bool averaged = false;
     Precision precision = Precision::single;
-    ChosenWay choice;
-    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid since the choice, if the system tells
-    std::string engine = "cpu", engine_text = "cpu"; ///< of the last surface; in words
+    Method method = Method::direct;                  ///< of the last surface
+    std::string why;                                 ///< the method, in words
+    std::optional<Estimate> predicted;               ///< nothing for devices and the reference engine
+    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, if the system tells
+    bool on_device = false, reference = false; ///< of the last surface
+    std::string device;                        ///< its name
     unsigned threads = 1;
-    double read_seconds = 0, pack_seconds = 0, upload_seconds = 0;
-    double look_seconds = 0;    ///< for the range of the field, where nothing is packed and isovalues follow it
+    double read_seconds = 0;
+    double pack_seconds = 0;    ///< uploading included
+    double look_seconds = 0;    ///< for the range of the field, where isovalues follow it
     double measure_seconds = 0; ///< for the areas
-    std::uint64_t peak_before = 0; ///< of the process, until its way was chosen
+    std::uint64_t peak_before = 0; ///< of the process, with the first grid
     std::vector<SurfaceNumbers> surfaces;
 
     std::uint64_t transient_peak() const;
-    double work_seconds() const; ///< packing, uploading, extracting: what is forecast
+    double work_seconds() const; ///< packing, uploading, extracting: what is predicted
+    const char* engine() const { return on_device ? "vulkan" : reference ? "reference" : "cpu"; }
 };
 
 std::string extract_table(const ExtractNumbers& numbers);

@@ -2,7 +2,7 @@
 // --help, from the walk over the option tree.
 #include <fmt/format.h>
 
-#include "option_walker.hpp"
+#include "command_text.hpp"
 #include "text.hpp"
 
 namespace isotet::cli {

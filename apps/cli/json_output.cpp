@@ -1,13 +1,41 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "json_output.hpp"
 
-#include <utility>
+#include <type_traits>
+#include <variant>
+
+#include <nlohmann/json.hpp>
 
 #include "standard_streams.hpp"
 #include "text.hpp"
 #include "text_file.hpp"
 
 namespace isotet::cli {
+
+namespace {
+
+using Tree = nlohmann::ordered_json;
+
+Tree tree_of(const Json& json) {
+    return std::visit(
+        [](const auto& value) -> Tree {
+            using Value = std::remove_cvref_t<decltype(value)>;
+            if constexpr (std::is_same_v<Value, Json::Array>) {
+                Tree array = Tree::array();
+                for (const Json& one : value) array.push_back(tree_of(one));
+                return array;
+            } else if constexpr (std::is_same_v<Value, Json::Object>) {
+                Tree object = Tree::object();
+                for (const Json::Member& member : value) object[member.key] = tree_of(member.value);
+                return object;
+            } else {
+                return value;
+            }
+        },
+        json.value());
+}
+
+} // namespace
 
 Json json_report(const std::string& command) { return {{"schema", json_schema}, {"command", command}}; }
 
@@ -22,7 +50,7 @@ Json json_texts(const std::vector<std::string>& texts) {
 Result<void> write_json(const Json& report, const std::string& where, const Progress& progress) {
     if (where.empty()) return {};
     // All texts are valid by now; "replace" is for the one that somebody forgets.
-    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = tree_of(report).dump(2, ' ', false, Tree::error_handler_t::replace) + "\n";
     if (where == "-") {
         if (stdout_was_closed()) {
             return Error{ErrorCode::machine,

@@ -5,15 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::cli {
+#include "json.hpp"
 
-/// Keys stay in the order in which they were set.
-using Json = nlohmann::ordered_json;
+namespace isotet::cli {
 
 /// The number under "schema": it grows when a key changes its meaning or goes; new keys leave it as it is.
 constexpr int json_schema = 1;

@@ -6,7 +6,7 @@
 
 #include <isotet/version.hpp>
 
-#include "option_walker.hpp"
+#include "command_text.hpp"
 
 namespace isotet::cli {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "option_walker.hpp"
+#include "command_text.hpp"
 
 namespace isotet::cli {
 

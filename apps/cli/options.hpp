@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What the command line asks for, one struct a command. option_tree.cpp says how it is written.
+// What the command line asks for, one struct a command. command_options.cpp says how it is written.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/plan.hpp>
 #include <isotet/render.hpp>
 #include <isotet/search.hpp>
 
@@ -55,9 +56,6 @@ struct DeviceChoice {
     std::optional<std::uint64_t> memory; ///< bytes at most
 };
 
-/// Whether the grid is packed first.
-enum class MethodChoice : std::uint8_t { automatic, clusters, brute };
-
 struct ExtractCommand {
     CommonOptions common;
     GridOptions grid;
@@ -73,7 +71,7 @@ struct ExtractCommand {
     bool edge_ends = false;
     bool source_cells = false;
     Precision precision = Precision::single;
-    MethodChoice method = MethodChoice::automatic;
+    std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
 };
@@ -113,7 +111,7 @@ struct RenderCommand {
 
 /// What `isotet bench` can measure.
 enum class BenchMethod : std::uint8_t {
-    brute, clusters, clusters_vulkan, registers, registers_instanced, textures, mesh
+    direct, clusters, clusters_vulkan, registers, registers_instanced, textures, mesh
 };
 
 struct BenchCommand {
@@ -162,7 +160,8 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices" or "docs"
+    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "docs" or none
+    bool help = false;
     bool version = false;
     InfoCommand info;
     ExtractCommand extract;

@@ -1,26 +1,21 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "program.hpp"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "command_text.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "option_tree.hpp"
-#include "option_walker.hpp"
+#include "options.hpp"
 #include "signals.hpp"
 #include "standard_streams.hpp"
 
 namespace isotet::cli {
 
 namespace {
-
-bool is_command(const CLI::App& program, const std::string& word) {
-    const auto commands = program.get_subcommands([&](const CLI::App* command) { return command->get_name() == word; });
-    return !commands.empty();
-}
 
 /// True for a word that is more likely a mistyped command than a file: short, plain, and no file is called so.
 bool looks_like_command(const std::string& word) {
@@ -30,8 +25,8 @@ bool looks_like_command(const std::string& word) {
 }
 
 /// `isotet FILE` is short for `isotet info FILE`.
-Result<void> complete_bare_file(std::vector<std::string>& words, const CLI::App& program) {
-    if (words.size() < 2 || is_command(program, words[1])) return {};
+Result<void> complete_bare_file(std::vector<std::string>& words, const OptionTree& tree) {
+    if (words.size() < 2 || tree.has_command(words[1])) return {};
     for (const char* own : {"-h", "--help", "--version"}) {
         if (words[1] == own) return {};
     }
@@ -50,12 +45,8 @@ Result<ExitCode> say(const std::string& text) {
     return ExitCode::done;
 }
 
-Result<ExitCode> help(const CLI::App& program) {
-    const std::vector<CLI::App*> parsed = program.get_subcommands();
-    return say(help_text(describe(parsed.empty() ? program : *parsed.back()), walk(program)));
-}
-
-Result<ExitCode> run_command(const CommandLine& line, const CLI::App& program) {
+Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
+    if (line.help) return say(help_text(tree.describe(line.command), tree.describe_all()));
     if (line.command == "info") return run_info(line.info);
     if (line.command == "extract") return run_extract(line.extract);
     if (line.command == "render") return run_render(line.render);
@@ -64,26 +55,17 @@ Result<ExitCode> run_command(const CommandLine& line, const CLI::App& program) {
     if (line.command == "make") return run_make(line.make);
     if (line.command == "formats") return run_formats(line.formats);
     if (line.command == "devices") return run_devices(line.devices);
-    if (line.command == "docs") return run_docs(line.docs, program);
+    if (line.command == "docs") return run_docs(line.docs, tree.describe_all());
     if (line.version) return say(version_text());
     return Error{ErrorCode::invalid_argument, "no command and no file was given; isotet --help lists the commands"};
 }
 
 Result<ExitCode> parse_and_run(std::vector<std::string> words) {
     CommandLine line;
-    const std::unique_ptr<CLI::App> program = make_option_tree(line);
-    if (Result<void> completed = complete_bare_file(words, *program); !completed) return completed.error();
-    try {
-        std::vector<std::string> backwards(words.rbegin(), words.rend() - (words.empty() ? 0 : 1));
-        program->parse(backwards); // CLI11 takes the words from the back
-    } catch (const CLI::CallForHelp&) {
-        return help(*program);
-    } catch (const CLI::ParseError& error) {
-        const std::vector<CLI::App*> parsed = program->get_subcommands();
-        const std::string where = parsed.empty() ? "isotet" : "isotet " + parsed.back()->get_name();
-        return Error{ErrorCode::invalid_argument, fmt::format("{} ({} --help lists the options)", error.what(), where)};
-    }
-    return run_command(line, *program);
+    OptionTree tree(line);
+    if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
+    if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
+    return run_command(line, tree);
 }
 
 } // namespace

@@ -2,7 +2,8 @@
 #include "render_options.hpp"
 
 #include "number_format.hpp"
-#include "option_values.hpp"
+#include "option_tree.hpp"
+#include "options.hpp"
 
 namespace isotet::cli {
 
@@ -27,142 +28,143 @@ Examples:
   isotet render grid.vtu -f pressure -i 0.5 --orbit 90 -o 'frame{frame}.png'
 )";
 
-void add_size(CLI::App& app, PictureOptions& picture) {
-    app.add_option_function<std::string>(
-           "--size",
-           [&picture](const std::string& text) {
-               const std::size_t cross = text.find('x');
-               const auto width = parse_count(text.substr(0, cross));
-               const auto height = cross == std::string::npos ? std::nullopt : parse_count(text.substr(cross + 1));
-               if (!width || !height || *width < 1 || *height < 1 || *width > 32768 || *height > 32768)
-                   throw wrong_value("--size", text, "width x height in pixels, 1 to 32768 each, such as 1200x900");
-               picture.width = static_cast<std::uint32_t>(*width);
-               picture.height = static_cast<std::uint32_t>(*height);
-           },
-           "Width and height of the picture in pixels; without it 1200x900")
-        ->type_name("WxH");
+void add_size(const Command& command, PictureOptions& picture) {
+    command.add_value(
+        "--size",
+        [&picture](const std::string& text) {
+            const std::size_t cross = text.find('x');
+            const auto width = parse_count(text.substr(0, cross));
+            const auto height = parse_count(cross == std::string::npos ? "" : text.substr(cross + 1));
+            if (!width || !height || *width < 1 || *height < 1 || *width > 32768 || *height > 32768)
+                refuse_value("--size", text, "width x height in pixels, 1 to 32768 each, such as 1200x900");
+            picture.width = static_cast<std::uint32_t>(*width);
+            picture.height = static_cast<std::uint32_t>(*height);
+        },
+        "WxH", "Width and height of the picture in pixels; without it 1200x900");
 }
 
 /// A number from 0 to 1.
-void add_part(CLI::App& app, const std::string& name, std::optional<double>& part, const std::string& description) {
-    add_number(
-        app, name,
+void add_part(const Command& command, const std::string& name, std::optional<double>& part,
+              const std::string& description) {
+    command.add_number(
+        name,
         [&part, name](double number) {
-            if (number < 0 || number > 1) throw wrong_value(name, shortest(number), "a number from 0 to 1");
+            if (number < 0 || number > 1) refuse_value(name, shortest(number), "a number from 0 to 1");
             part = number;
         },
         "OPACITY", description);
 }
 
-void add_color(CLI::App& app, const std::string& name, Color& color, const std::string& description) {
-    app.add_option_function<std::string>(
-           name,
-           [&color, name](const std::string& text) {
-               const std::optional<Color> parsed = parse_color(text);
-               if (!parsed)
-                   throw wrong_value(name, text, "white, black, transparent, another plain colour, or #rrggbb");
-               color = *parsed;
-           },
-           description)
-        ->type_name("COLOR");
+void add_color(const Command& command, const std::string& name, Color& color, const std::string& description) {
+    command.add_value(
+        name,
+        [&color, name](const std::string& text) {
+            const std::optional<Color> parsed = parse_color(text);
+            if (!parsed) refuse_value(name, text, "white, black, transparent, another plain colour, or #rrggbb");
+            color = *parsed;
+        },
+        "COLOR", description);
 }
 
 } // namespace
 
-CLI::App& add_render_command(CLI::App& program, RenderCommand& render) {
-    CLI::App& app = *program.add_subcommand("render", "Draw isosurfaces, or a surface, into a picture");
-    add_file(app, "FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")
-        ->required();
-    add_file(app, "-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
-    add_text(app, "-f,--field", render.field.name, "FIELD",
-             "The field to contour; without it the one that varies most");
-    app.add_flag("--cell-field", render.field.cell_field,
-                 "Of a name that is both a point and a cell field, the cell field");
-    CLI::Option* isovalues = add_numbers(app, "-i,--isovalue", render.isovalues, "V[,W...]",
-                                         "Isovalues, separated by commas; may be repeated");
-    add_count(
-        app, "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
-        "N isovalues at round numbers evenly inside the range of the field; without it 3")
-        ->excludes(isovalues);
-    CLI::Option* sweep =
-        add_numbers(app, "--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")->excludes(isovalues);
-    sweep->excludes(app.get_option("--levels"));
-    CLI::Option* orbit = add_count(
-        app, "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N",
+Command add_render_command(const Command& program, RenderCommand& render) {
+    const Command command = program.add_command("render", "Draw isosurfaces, or a surface, into a picture");
+    command.add_file("FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")
+        .required();
+    command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
+    command.add_text("-f,--field", render.field.name, "FIELD",
+                     "The field to contour; without it the one that varies most");
+    command.add_flag("--cell-field", render.field.cell_field,
+                     "Of a name that is both a point and a cell field, the cell field");
+    const Option isovalues = command.add_numbers("-i,--isovalue", render.isovalues, "V[,W...]",
+                                                 "Isovalues, separated by commas; may be repeated");
+    command
+        .add_count(
+            "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
+            "N isovalues at round numbers evenly inside the range of the field; without it 3")
+        .excludes(isovalues);
+    const Option sweep = command.add_numbers("--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")
+                             .excludes(isovalues);
+    sweep.excludes(command.option("--levels"));
+    const Option orbit = command.add_count(
+        "--orbit", {2, 100'000}, [&](std::uint64_t n) { render.orbit = n; }, "N",
         "N pictures, once around from the left to the right");
-    orbit->excludes(sweep);
-    add_number(
-        app, "--fps",
+    orbit.excludes(sweep);
+    command.add_number(
+        "--fps",
         [&](double rate) {
             if (rate <= 0 || rate > 100)
-                throw wrong_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
+                refuse_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
             render.frames_a_second = rate;
         },
         "RATE", "Pictures a second of an animated OUT; without it 12");
-    add_part(app, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
-    app.add_flag("--outline", render.outline, "Draw the edges of the box around");
-    add_part(app, "--opacity", render.opacity,
+    add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
+    command.add_flag("--outline", render.outline, "Draw the edges of the box around");
+    add_part(command, "--opacity", render.opacity,
              "Opacity of the surfaces, 0 to 1; without it 1, and of several isosurfaces 0.35 for all but the smallest");
-    add_size(app, render.picture);
-    add_choice<View>(app, "--view", render.view,
-                     {{"iso", View::iso},
-                      {"+x", View::plus_x},
-                      {"-x", View::minus_x},
-                      {"+y", View::plus_y},
-                      {"-y", View::minus_y},
-                      {"+z", View::plus_z},
-                      {"-z", View::minus_z}},
-                     "From where one looks; without it iso, obliquely from above");
-    app.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
-    add_choice<EngineChoice>(
-        app, "--engine", render.engine,
+    add_size(command, render.picture);
+    command.add_choice<View>("--view", render.view,
+                             {{"iso", View::iso},
+                              {"+x", View::plus_x},
+                              {"-x", View::minus_x},
+                              {"+y", View::plus_y},
+                              {"-y", View::minus_y},
+                              {"+z", View::plus_z},
+                              {"-z", View::minus_z}},
+                             "From where one looks; without it iso, obliquely from above");
+    command.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
+    command.add_choice<EngineChoice>(
+        "--engine", render.engine,
         {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
         "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
         "CPU");
     std::vector<std::pair<std::string, std::optional<DrawMethod>>> methods{{"clusters", std::nullopt}};
     for (const DrawMethod method : all_draw_methods) methods.emplace_back(name_of(method), method);
-    add_choice(app, "--method", render.method, methods,
-               "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be "
-               "compared with; "
-               "without it clusters");
+    command.add_choice(
+        "--method", render.method, methods,
+        "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be "
+        "compared with; "
+        "without it clusters");
     std::vector<std::pair<std::string, std::optional<Filter>>> filters;
     for (const Filter filter : all_filters) filters.emplace_back(name_of(filter), filter);
-    add_choice(app, "--filter", render.filter, filters,
-               "What finds the tets that such a method draws, none: it draws all; without it cluster_ranges");
-    add_text(app, "--color-by", render.color_by, "FIELD",
-             "Colour by this point or cell field; without it each isovalue has its colour");
-    add_choice<ColorMap>(app, "--colormap", render.scale.map,
-                         {{"viridis", ColorMap::viridis},
-                          {"cividis", ColorMap::cividis},
-                          {"plasma", ColorMap::plasma},
-                          {"turbo", ColorMap::turbo},
-                          {"cool-warm", ColorMap::cool_warm}},
-                         "Colour map; without it viridis");
-    CLI::Option* range =
-        add_numbers(app, "--range", render.range, "A,B",
-                    "Values at the ends of the colour map; without it the smallest and the largest of the field");
-    CLI::Option* logarithmic =
-        app.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
-    for (CLI::Option* option : {range, logarithmic}) option->needs(app.get_option("--color-by"));
-    add_color(app, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
-    CLI::Option* reference =
-        add_file(app, "--reference", render.reference, "FILE",
-                 "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
-    reference->excludes(sweep)->excludes(orbit);
-    add_number(
-        app, "--threshold",
-        [&](double share) {
-            if (share < 0 || share > 1)
-                throw wrong_value("--threshold", shortest(share), "a share of the pixels, from 0 to 1");
-            render.threshold = share;
-        },
-        "SHARE", "Share of the pixels that may differ visibly from --reference; without it 0.001")
-        ->needs(reference);
-    app.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
-    add_color(app, "--background", render.picture.background,
+    command.add_choice("--filter", render.filter, filters,
+                       "What finds the tets that such a method draws, none: it draws all; without it cluster_ranges");
+    command.add_text("--color-by", render.color_by, "FIELD",
+                     "Colour by this point or cell field; without it each isovalue has its colour");
+    command.add_choice<ColorMap>("--colormap", render.scale.map,
+                                 {{"viridis", ColorMap::viridis},
+                                  {"cividis", ColorMap::cividis},
+                                  {"plasma", ColorMap::plasma},
+                                  {"turbo", ColorMap::turbo},
+                                  {"cool-warm", ColorMap::cool_warm}},
+                                 "Colour map; without it viridis");
+    const Option range = command.add_numbers(
+        "--range", render.range, "A,B",
+        "Values at the ends of the colour map; without it the smallest and the largest of the field");
+    const Option logarithmic =
+        command.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
+    for (const Option& option : {range, logarithmic}) option.needs(command.option("--color-by"));
+    add_color(command, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
+    const Option reference = command.add_file(
+        "--reference", render.reference, "FILE",
+        "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
+    reference.excludes(sweep).excludes(orbit);
+    command
+        .add_number(
+            "--threshold",
+            [&](double share) {
+                if (share < 0 || share > 1)
+                    refuse_value("--threshold", shortest(share), "a share of the pixels, from 0 to 1");
+                render.threshold = share;
+            },
+            "SHARE", "Share of the pixels that may differ visibly from --reference; without it 0.001")
+        .needs(reference);
+    command.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
+    add_color(command, "--background", render.picture.background,
               "Background: white, black, transparent, or #rrggbb; without it white");
-    app.footer(details);
-    return app;
+    command.set_details(details);
+    return command;
 }
 
 } // namespace isotet::cli

@@ -2,13 +2,12 @@
 // The command `render` in the option tree.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include "options.hpp"
-
 namespace isotet::cli {
 
+class Command;
+struct RenderCommand;
+
 /// Adds the command, apart from what several commands have (reading, device, --json and so on).
-CLI::App& add_render_command(CLI::App& program, RenderCommand& render);
+Command add_render_command(const Command& program, RenderCommand& render);
 
 } // namespace isotet::cli

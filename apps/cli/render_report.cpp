@@ -90,9 +90,11 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     report["input"] = json_text(command.grid.file);
     report["format"] = input.format;
     report["field"] = input.packed ? json_text(input.field) : Json(nullptr);
-    report["range"] = input.packed && input.lower <= input.upper ? Json({input.lower, input.upper}) : Json(nullptr);
+    report["range"] =
+        input.packed && input.lower <= input.upper ? Json::array({input.lower, input.upper}) : Json(nullptr);
     report["color_by"] = input.colors ? json_text(input.colors->name) : Json(nullptr);
-    report["color_range"] = input.colors ? Json({input.colors->scale.lower, input.colors->scale.upper}) : Json(nullptr);
+    report["color_range"] =
+        input.colors ? Json::array({input.colors->scale.lower, input.colors->scale.upper}) : Json(nullptr);
     report["boundary_faces"] = input.boundary ? Json(input.boundary->triangle_count()) : Json(nullptr);
     Json surfaces = Json::array();
     for (const SurfaceCounts& surface : scene.surfaces()) {

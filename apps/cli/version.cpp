@@ -2,7 +2,6 @@
 // What --version prints: which build this is, and of what.
 #include <CLI/Version.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <isotet/version.hpp>
 
@@ -31,10 +30,9 @@ std::string version_text() {
                                        *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
     table.row({"files through VTK", *ISOTET_VTK_VERSION ? "on, VTK " ISOTET_VTK_VERSION : "off (-DISOTET_IO=OFF)"});
     table.row({"Vulkan", ISOTET_VULKAN ? "on, opened at run time" : "off (-DISOTET_VULKAN=OFF)"});
-    table.row({"libraries",
-               fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}.{}.{}", ISOTET_TBB_VERSION,
-                           FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,
-                           NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)});
+    table.row({"libraries", fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}", ISOTET_TBB_VERSION,
+                                        FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,
+                                        ISOTET_JSON_VERSION)});
     return table.text();
 }
 

@@ -1,11 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The one walk over the option tree. What it finds is printed as --help, man page, bash completion and markdown.
+// The option tree as text, found by one walk over it, and what is printed of it: --help, man page, bash completion and
+// markdown.
 #pragma once
 
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 namespace isotet::cli {
 
@@ -27,12 +26,6 @@ struct CommandText {
     std::string details; ///< paragraphs between empty lines; lines that begin with two spaces are kept as they are
     std::vector<OptionText> options; ///< positionals first
 };
-
-/// The program, then its commands in order; hidden ones are left out.
-std::vector<CommandText> walk(const CLI::App& program);
-
-/// The entry of one command, hidden or not.
-CommandText describe(const CLI::App& command);
 
 /// One piece of CommandText::details.
 struct Paragraph {

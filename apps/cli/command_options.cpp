@@ -1,0 +1,308 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "command_options.hpp"
+
+#include "bench_options.hpp"
+#include "device_choice.hpp"
+#include "option_tree.hpp"
+#include "options.hpp"
+#include "render_options.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+constexpr const char* program_details = R"(
+isotet FILE is short for isotet info FILE. FILE may be make:SHAPE:SIDE[:FIELDS] wherever a grid is read: a test grid
+made in memory, make:kuhn:64:gyroid for example.
+
+Tables go to standard output, notes and errors to standard error. Ctrl-C stops within a second and leaves no half
+written file; a second Ctrl-C ends the program at once.
+
+Exit status:
+  0    done
+  1    a check says no
+  2    usage: an option or a name is wrong
+  3    a file, or the data in it
+  4    the machine: memory, disk, device, standard output
+  5    a fault of isotet: please report it
+  130  interrupted
+)";
+
+constexpr const char* info_details = R"(
+A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is not
+that of most; boundary faces are those that the tets do not use equally often in both directions.
+)";
+
+constexpr const char* extract_details = R"(
+FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, mag,
+or a number from 0. x, y and z alone are the coordinates, unless fields are called so. A cell field is averaged to the
+points, weighted by volume.
+
+OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
+isovalue; with {value} or {time} in OUT there is one file each, named by the shortest decimal that reads back. Files
+that were complete when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of
+the range is taken.
+
+A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give the
+same vertices and triangles in a different order. auto chooses by a fixed rule: clusters from 32 surfaces on (isovalues
+times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the same bytes on
+every machine, unless packing finds too little memory: direct is taken instead, with a note.
+
+Examples:
+  isotet extract grid.vtu surface.vtp -f pressure -i 0.5
+  isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
+  isotet extract run.pvd 'front-{time}.vtp' -f c -i 0.5 --all-steps
+  isotet extract make:kuhn:64:gyroid -i 0
+  isotet extract grid.vtu surface.vtp -f pressure -i 0.5 --engine vulkan
+)";
+
+constexpr const char* check_details = R"(
+Says no (exit status 1) when the surface has: an edge that is used unequally often in the two directions where it must
+not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.
+
+Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
+points all lie in one boundary face of the grid's valid tets; with neither they are only counted. --grid needs the
+point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
+a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points.
+
+With --strict it also says no to: triangles of zero area, edges with more than two triangles, double sheets (two
+triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
+vertices.
+
+STL has no vertex numbers: its triangles are welded by exact coordinates first. What that collapses is counted, not
+blamed.
+)";
+
+constexpr const char* make_details = R"(
+Shapes, on the cube from -1 to 1: kuhn (six tets a cube), perturbed (inner points moved), shuffled (perturbed, points
+and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell types).
+The same bytes for any number of threads.
+
+Fields: sphere, torus, plane, gyroid, wavelet, integer (many ties).
+
+Examples:
+  isotet make kuhn --side 64 -o kuhn.vtu
+  isotet make mixed --side 20 --fields sphere,integer -o mixed.vtk
+)";
+
+constexpr const char* formats_details = R"(--format takes the names in the first column.
+)";
+
+constexpr const char* devices_details = R"(
+A device can be used when it has Vulkan 1.2 and what the engine needs; of one that cannot, the reason is told. Software
+devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the CPU.
+
+With --device that device is opened, and its arithmetic is compared with the processor's, bit by bit: in a few thousand
+cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every command
+that uses the device says so.
+)";
+
+void add_common(const Command& command, CommonOptions& common) {
+    command.add_file("--json", common.json, "FILE",
+                     "Write the numbers as JSON too; - is standard output, which then has no table");
+    command.add_count(
+        "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
+        "Threads; 0, and without it: all");
+    const Option quiet = command.add_flag("-q,--quiet", common.quiet, "No table, no notes, no progress: only errors");
+    command.add_flag("-v,--verbose", common.verbose, "Say more").excludes(quiet);
+}
+
+void add_time(const Command& command, GridOptions& grid) {
+    const Option time =
+        command.add_number("--time", [&](double t) { grid.time = t; }, "T", "The time step with this time");
+    command
+        .add_count(
+            "--step", {}, [&](std::uint64_t n) { grid.step = n; }, "N", "The time step with this number, from 0")
+        .excludes(time);
+}
+
+void add_reading(const Command& command, GridOptions& grid, const std::string& format_option) {
+    command.add_text(format_option, grid.format, "FORMAT",
+                     "Format of the grid; without it content decides, then the name");
+    command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
+    command.add_number(
+        "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
+        "Weld points closer than this; 0: exactly equal coordinates");
+    command.add_flag("--merge-pieces", grid.merge_pieces, "Join pieces without global ids by exact coordinates");
+    command.add_flag("--allow-outside", grid.allow_outside, "Index files may name files outside their own folder");
+}
+
+void add_info(const Command& program, InfoCommand& info) {
+    const Command command = program.add_command("info", "Tell what a grid file holds");
+    command.add_file("FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    add_time(command, info.grid);
+    add_reading(command, info.grid, "--format");
+    add_common(command, info.common);
+    command.set_details(info_details);
+}
+
+void add_isovalues(const Command& command, ExtractCommand& extract) {
+    const Option isovalues = command.add_numbers("-i,--isovalue", extract.isovalues, "V[,W...]",
+                                                 "Isovalues, separated by commas; may be repeated");
+    command
+        .add_count(
+            "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
+            "N isovalues evenly inside the range of the field at each time step: min + k (max - min) / (N + 1), k = "
+            "1..N")
+        .excludes(isovalues);
+    command.add_flag("--snap", extract.snap,
+                     "Take the nearest value that the field's type can hold: 0.7 becomes 0.699999988 on float32");
+}
+
+void add_surface_arrays(const Command& command, ExtractCommand& extract) {
+    command.add_choice<Normals>("--normals", extract.normals,
+                                {{"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}},
+                                "Normals: of the field's gradient, a vertex; of the triangles, a face");
+    command.add_texts(
+        "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD",
+        "Carry this point or cell field onto the surface; may be repeated; an empty name carries none. Without it: "
+        "point fields that the format can hold");
+    command.add_flag(
+        "--edge-ends", extract.edge_ends,
+        "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
+    command.add_flag("--source-cells", extract.source_cells,
+                     "Write the grid cell of each triangle (source_cell); .vtp, .vtk");
+}
+
+void add_extract(const Command& program, ExtractCommand& extract) {
+    const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
+    command.add_file("FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    const Option out = command.add_file("OUT", extract.out, "OUT_FILE", "The surface, as -o");
+    command.add_file("-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
+    command.add_text("-f,--field", extract.field.name, "FIELD",
+                     "The field to contour; may be left out where there is only one");
+    command.add_flag("--cell-field", extract.field.cell_field,
+                     "Of a name that is both a point and a cell field, the cell field");
+    add_isovalues(command, extract);
+    add_time(command, extract.grid);
+    command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {time}")
+        .excludes(command.option("--time"))
+        .excludes(command.option("--step"));
+    add_surface_arrays(command, extract);
+    command.add_flag("--keep-degenerate", extract.keep_degenerate,
+                     "One vertex for every crossed edge and one or two triangles for every cut tet, ties or not");
+    command.add_choice<Precision>("--precision", extract.precision,
+                                  {{"float", Precision::single}, {"double", Precision::double_}},
+                                  "Precision of the packed grid");
+    command.add_choice<std::optional<Method>>(
+        "--method", extract.method, {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
+        "How: clusters packs the grid first, which pays for many surfaces; direct goes through all cells for each "
+        "surface; auto chooses by their number");
+    command.add_choice<EngineChoice>(
+        "--engine", extract.engine,
+        {{"auto", EngineChoice::automatic},
+         {"cpu", EngineChoice::cpu},
+         {"vulkan", EngineChoice::vulkan},
+         {"reference", EngineChoice::reference}},
+        "What extracts: auto is the device that --device names, with the CPU where that fails, or "
+        "without --device the CPU; vulkan is a device or an error; "
+        "reference is slow and obvious");
+    add_device(command, extract.device);
+    add_device_memory(command, extract.device);
+    add_reading(command, extract.grid, "--format");
+    add_common(command, extract.common);
+    command.set_details(extract_details);
+}
+
+void add_render(const Command& program, RenderCommand& render) {
+    const Command command = add_render_command(program, render);
+    add_device(command, render.device);
+    add_device_memory(command, render.device);
+    add_time(command, render.grid);
+    add_reading(command, render.grid, "--format");
+    add_common(command, render.common);
+}
+
+void add_bench(const Command& program, BenchCommand& bench) {
+    const Command command = add_bench_command(program, bench);
+    add_device(command, bench.device);
+    add_device_memory(command, bench.device);
+    add_time(command, bench.grid);
+    add_reading(command, bench.grid, "--format");
+    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces",
+                             "--allow-outside", "--cell-field"})
+        command.option(name).excludes(command.option("--paper"));
+    add_common(command, bench.common);
+}
+
+void add_check(const Command& program, CheckCommand& check) {
+    const Command command = program.add_command("check", "Measure a surface and look for what should not be there");
+    command.add_file("SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
+        .required();
+    command.add_flag("--closed", check.closed, "Blame every edge that is used unequally often in the two directions");
+    const Option grid = command.add_file("--grid", check.grid.file, "FILE",
+                                         "Blame such edges unless they lie in one boundary face of this grid");
+    command
+        .add_text("-f,--field", check.field.name, "FIELD",
+                  "The field that was contoured: tets without a value do not count")
+        .needs(grid);
+    command
+        .add_flag("--cell-field", check.field.cell_field,
+                  "Of a name that is both a point and a cell field, the cell field")
+        .needs(grid);
+    add_time(command, check.grid);
+    command.add_flag("--strict", check.strict, "Say no to more: see below");
+    command.add_text("--format", check.format, "FORMAT", "Format of the surface; without it the name decides");
+    add_reading(command, check.grid, "--grid-format");
+    for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--merge-pieces"}) {
+        command.option(name).needs(grid);
+    }
+    add_common(command, check.common);
+    command.set_details(check_details);
+}
+
+void add_make(const Command& program, MakeCommand& make) {
+    const Command command = program.add_command("make", "Make a test grid with analytic fields");
+    command
+        .add_text("SHAPE", make.grid.shape, "SHAPE", "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid or mixed")
+        .required();
+    command.add_count(
+               "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge")
+        .required();
+    command.add_words(
+        "--fields", [&](const std::vector<std::string>& names) { make.grid.fields = names; }, "A[,B...]",
+        "Fields, separated by commas; without it sphere,gyroid");
+    command.add_count(
+        "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; without it 1");
+    command.add_file("-o,--output", make.out, "OUT_FILE", "The grid: .vtu or .vtk").required();
+    add_common(command, make.common);
+    command.set_details(make_details);
+}
+
+void add_formats(const Command& program, FormatsCommand& formats) {
+    const Command command = program.add_command("formats", "List the file formats");
+    add_common(command, formats.common);
+    command.set_details(formats_details);
+}
+
+void add_devices(const Command& program, DevicesCommand& devices) {
+    const Command command = program.add_command("devices", "List the graphics cards and other Vulkan devices");
+    add_device(command, devices.device);
+    add_common(command, devices.common);
+    command.set_details(devices_details);
+}
+
+void add_docs(const Command& program, DocsCommand& docs) {
+    const Command command =
+        program.add_command("docs", "Print the man page, the bash completion or docs/command-line.md");
+    command.add_text("KIND", docs.kind, "man|completion|markdown", "").required();
+    command.hide(); // for the build, not for users
+}
+
+} // namespace
+
+void add_commands(const Command& program, CommandLine& line) {
+    program.set_details(program_details);
+    program.add_flag("--version", line.version, "Print the version and the facts of the build");
+    add_info(program, line.info);
+    add_extract(program, line.extract);
+    add_render(program, line.render);
+    add_bench(program, line.bench);
+    add_check(program, line.check);
+    add_make(program, line.make);
+    add_formats(program, line.formats);
+    add_devices(program, line.devices);
+    add_docs(program, line.docs);
+}
+
+} // namespace isotet::cli
