@@ -60,8 +60,9 @@ function(isotet_target target)
         set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
             UNITY_BUILD ${ISOTET_UNITY} UNITY_BUILD_MODE GROUP)
         if(ISOTET_UNITY)
-            # g++ takes what is private to an included file for shared.
-            target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+            # g++ takes what is private to an included file for shared; and it inlines less in what it takes for large.
+            target_compile_options(${target} PRIVATE
+                "$<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage;--param=large-unit-insns=100000>")
         endif()
     else()
         target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)

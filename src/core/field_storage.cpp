@@ -70,16 +70,17 @@ template <class Number, class Real>
 Pass pass_over(const Array& values, const Packed& packed, std::size_t begin, std::size_t end, const Storage& storage,
                Real* out) {
     constexpr std::size_t lanes = SummaryLanes<Number>::count;
-    const std::size_t components = std::max(values.components(), std::size_t{1});
-    const std::size_t points_at_once = std::max(block / components, std::size_t{1});
+    const std::size_t components = values.components();
+    const std::size_t points_at_once = std::max(block / std::max(components, std::size_t{1}), std::size_t{1});
     std::vector<Number> gathered(points_at_once * components);
+    const bool in_lanes = out || std::is_same_v<Number, float>; // doubles are looked at faster one by one
     SummaryLanes<Number> summary;
     Pass pass;
     for (; begin < end; begin += points_at_once) {
         const auto some = std::span(gathered).first(std::min(points_at_once, end - begin) * components);
         gather(values, packed, begin, some);
         std::size_t i = 0;
-        for (; i + lanes <= some.size(); i += lanes) {
+        for (; in_lanes && i + lanes <= some.size(); i += lanes) {
             typename SummaryLanes<Number>::Values side_by_side;
             std::copy_n(some.begin() + i, lanes, side_by_side.begin());
             const bool finite = summary.add(side_by_side, static_cast<Number>(storage.offset));
