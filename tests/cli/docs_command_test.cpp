@@ -8,7 +8,7 @@ namespace {
 TEST_F(Program, MarkdownIsWhatDocsCommandLineHolds) {
     const RunResult run = isotet({"docs", "markdown"});
     EXPECT_EQ(run.status, 0);
-    EXPECT_EQ(content_of(ISOTET_SOURCE_DIR "/docs/command-line.md"), run.out)
+    EXPECT_EQ(content_of((source_folder() / "docs/command-line.md").string()), run.out)
         << "renew it: isotet docs markdown > docs/command-line.md";
 }
 

@@ -10,12 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "files/sample_files.hpp"
+#include "support/places.hpp"
 #include "support/run_program.hpp"
 
 namespace isotet::test {
 
 inline RunResult isotet(std::vector<std::string> arguments, const RunOptions& options = {}) {
-    arguments.insert(arguments.begin(), ISOTET_PROGRAM);
+    arguments.insert(arguments.begin(), program_path());
     return run_program(std::move(arguments), options);
 }
 

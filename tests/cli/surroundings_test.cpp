@@ -41,8 +41,8 @@ TEST_F(Program, ClosedStandardStreamsDoNotLeakIntoFiles) {
     const std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere", "-i", "99", path("s.vtp")};
     EXPECT_EQ(isotet(arguments).status, 0);
     const std::string expected = content_of(path("s.vtp"));
-    for (const std::vector<int>& closed : {std::vector<int>{0}, {1}, {2}, {0, 1, 2}}) {
-        const RunResult run = isotet(arguments, {.closed = closed});
+    for (const std::vector<int>& streams : {std::vector<int>{0}, {1}, {2}, {0, 1, 2}}) {
+        const RunResult run = isotet(arguments, {.closed = streams});
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_EQ(content_of(path("s.vtp")), expected);
     }
@@ -67,7 +67,7 @@ TEST_F(Program, AFullStandardOutputIsStatusFour) {
 }
 
 TEST_F(Program, AReaderThatGoesAwayIsStatusFourAndNoSignal) {
-    const std::string command = fmt::format("'{}' formats | true; exit ${{PIPESTATUS[0]}}", ISOTET_PROGRAM);
+    const std::string command = fmt::format("'{}' formats | true; exit ${{PIPESTATUS[0]}}", program_path());
     for (int i = 0; i < 20; ++i) { // the reader may also be late
         const RunResult run = run_program({"/bin/bash", "-c", command});
         EXPECT_TRUE(run.status == 4 || run.status == 0) << run.status << " " << run.err;
@@ -86,7 +86,7 @@ TEST_F(Program, OutputThatCannotBeWrittenIsToldBeforeTheWork) {
 TEST_F(Program, AFileTooLargeForTheLimitLeavesNothing) {
     // ulimit -f counts 1,024 bytes in bash.
     const std::string command =
-        fmt::format("ulimit -f 8; exec '{}' make kuhn --side 20 -o '{}'", ISOTET_PROGRAM, path("g.vtu"));
+        fmt::format("ulimit -f 8; exec '{}' make kuhn --side 20 -o '{}'", program_path(), path("g.vtu"));
     const RunResult run = run_program({"/bin/bash", "-c", command});
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(is_one_error(run, "g.vtu"));
@@ -95,7 +95,7 @@ TEST_F(Program, AFileTooLargeForTheLimitLeavesNothing) {
 
 TEST_F(Program, KilledAtAnyMomentItLeavesTheOldFileOrTheNewOne) {
     const auto make = [&](const char* side, const std::string& out) {
-        return std::vector<std::string>{ISOTET_PROGRAM, "make", "kuhn", "--side", side, "-o", out};
+        return std::vector<std::string>{program_path(), "make", "kuhn", "--side", side, "-o", out};
     };
     ASSERT_EQ(run_program(make("3", path("old.vtu"))).status, 0);
     ASSERT_EQ(run_program(make("30", path("new.vtu"))).status, 0);
@@ -115,7 +115,7 @@ TEST_F(Program, KilledAtAnyMomentItLeavesTheOldFileOrTheNewOne) {
 
 TEST_F(Program, TwoProcessesWithOneOutputLeaveOneWholeFile) {
     const auto make = [&](const char* side, const std::string& out) {
-        return std::vector<std::string>{ISOTET_PROGRAM, "make", "kuhn", "--side", side, "-o", out};
+        return std::vector<std::string>{program_path(), "make", "kuhn", "--side", side, "-o", out};
     };
     ASSERT_EQ(run_program(make("20", path("a.vtu"))).status, 0);
     ASSERT_EQ(run_program(make("24", path("b.vtu"))).status, 0);
@@ -135,7 +135,7 @@ TEST_F(Program, TwoProcessesWithOneOutputLeaveOneWholeFile) {
 TEST_F(Program, TooLittleAddressSpaceIsToldWithTheAmounts) {
     // Room to start and to make the grid, not to pack it.
     const std::string command =
-        fmt::format("exec '{}' extract make:kuhn:200:sphere -i 0.5 -q --method clusters", ISOTET_PROGRAM);
+        fmt::format("exec '{}' extract make:kuhn:200:sphere -i 0.5 -q --method clusters", program_path());
     const RunResult run = run_program({"/bin/bash", "-c", "ulimit -v 2200000; " + command});
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(is_one_error(run, " needs "));

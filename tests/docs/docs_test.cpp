@@ -13,12 +13,14 @@
 
 #include <isotet/read.hpp>
 
+#include "support/places.hpp"
+
 namespace isotet::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = ISOTET_SOURCE_DIR;
+const fs::path root = source_folder();
 
 std::string content(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);

@@ -19,6 +19,8 @@
 #include <isotet/grid.hpp>
 #include <isotet/surface.hpp>
 
+#include "support/temporary_folder.hpp"
+
 namespace isotet::test {
 
 /// A folder of its own for one test, removed with all that is in it.
@@ -47,11 +49,6 @@ public:
 private:
     std::filesystem::path path_;
 };
-
-inline std::string content_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 inline void put_content(const std::string& path, std::string_view content) {
     std::ofstream(path, std::ios::binary) << content;

@@ -12,6 +12,7 @@
 #include <isotet/pack.hpp>
 
 #include "golden/golden_files.hpp"
+#include "support/places.hpp"
 #include "support/surface_sets.hpp"
 
 namespace isotet::test {
@@ -73,8 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Data, GoldenCounts, testing::ValuesIn(files_that_can_be
 TEST_P(GoldenCounts, AreThoseOfTheRecord) {
     auto read = read_golden(GetParam().path);
     ASSERT_TRUE(read) << read.error().message;
-    const std::string path =
-        std::string(ISOTET_SOURCE_DIR) + "/tests/golden/record/" + file_name(GetParam().path) + ".txt";
+    const std::string path = source_folder().string() + "/tests/golden/record/" + file_name(GetParam().path) + ".txt";
     std::ifstream file(path);
     const std::string expected((std::istreambuf_iterator<char>(file)), {});
     EXPECT_EQ(lines_of(read->grid), expected) << "differs from " << path;
@@ -82,7 +82,7 @@ TEST_P(GoldenCounts, AreThoseOfTheRecord) {
 
 TEST(GoldenFiles, AreAllThatDataHolds) {
     namespace fs = std::filesystem;
-    const fs::path data = fs::path(ISOTET_SOURCE_DIR) / "data";
+    const fs::path data = source_folder() / "data";
     // Read through another file, or held to an error below.
     const std::set<std::string> others{"README.md",
                                        ".gitattributes",

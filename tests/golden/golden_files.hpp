@@ -9,6 +9,8 @@
 #include <isotet/grid.hpp>
 #include <isotet/read.hpp>
 
+#include "support/places.hpp"
+
 namespace isotet::test {
 
 struct GoldenFile {
@@ -49,7 +51,7 @@ inline constexpr GoldenFile golden_files[] = {
 };
 
 inline Result<ReadResult> read_golden(const std::string& path) {
-    return read(std::string(ISOTET_SOURCE_DIR) + "/data/" + path);
+    return read(source_folder().string() + "/data/" + path);
 }
 
 /// Up to three point fields (the first component of vectors), the first cell field, averaged, and two coordinates.

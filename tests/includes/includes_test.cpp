@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "includes/include_rules.hpp"
+#include "support/places.hpp"
 
 namespace isotet::test {
 namespace {
@@ -18,7 +19,7 @@ bool is_source(const fs::path& path) {
 }
 
 TEST(Includes, GoOnlyTheDirectionsOfTheArchitecture) {
-    const fs::path root = ISOTET_SOURCE_DIR;
+    const fs::path root = source_folder();
     std::size_t includes = 0;
     for (const char* folder : {"include", "src", "apps", "bench", "examples", "tests"}) {
         if (!fs::exists(root / folder)) continue;

@@ -179,23 +179,23 @@ void expect_all_cases(const std::vector<Place>& points, const std::vector<Corner
     }
 }
 
-const std::vector<Place> corners{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 8}};
+const std::vector<Place> two_tets_places{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 8}};
 
 TEST(OneTet, GivesWhatTheContractSaysInAll81CasesAndCornerOrders) {
-    const std::vector<Place> points(corners.begin(), corners.begin() + 4);
+    const std::vector<Place> points(two_tets_places.begin(), two_tets_places.begin() + 4);
     for_corner_orders({0, 1, 2, 3}, [&](const Corners& tet) { expect_all_cases(points, {tet}, nullptr); });
 }
 
 TEST(TwoTets, GiveWhatTheContractSaysInAll243CasesAndAreClosedAcrossTheirFace) {
     const Corners shared{1, 2, 3, 3};
     for_corner_orders({0, 1, 2, 3}, [&](const Corners& first) {
-        expect_all_cases(corners, {first, {1, 2, 3, 4}}, &shared);
-        expect_all_cases(corners, {{4, 1, 2, 3}, first}, &shared);
+        expect_all_cases(two_tets_places, {first, {1, 2, 3, 4}}, &shared);
+        expect_all_cases(two_tets_places, {{4, 1, 2, 3}, first}, &shared);
     });
 }
 
 TEST(TwoTets, GiveADoubleSheetWhereTheirFaceIsTiedAndBothApexesAreBelow) {
-    const Grid grid = tet_grid(corners, {{0, 1, 2, 3}, {1, 2, 3, 4}});
+    const Grid grid = tet_grid(two_tets_places, {{0, 1, 2, 3}, {1, 2, 3, 4}});
     const PackedGrid packed = pack(grid, field_of<float>({-1, 0, 0, 0, -1})).value();
     EXPECT_EQ(extract(packed, 0).value().surface.triangle_count(), 2u);
     EXPECT_EQ(extract(packed, 0).value().surface.vertices(), 3u);
@@ -206,7 +206,8 @@ TEST(TwoTets, GiveADoubleSheetWhereTheirFaceIsTiedAndBothApexesAreBelow) {
 
 TEST(IsolatedPeak, GivesNoVertexInDefaultMode) {
     // Only point 0 reaches the isovalue: it has crossed edges, but no triangle uses them.
-    const PackedGrid packed = pack(tet_grid(corners, {{0, 1, 2, 3}}), field_of<float>({0, -1, -1, -1, 0})).value();
+    const PackedGrid packed =
+        pack(tet_grid(two_tets_places, {{0, 1, 2, 3}}), field_of<float>({0, -1, -1, -1, 0})).value();
     const Extraction merged = extract(packed, 0).value();
     EXPECT_EQ(merged.surface.vertices(), 0u);
     EXPECT_EQ(merged.report.tied_points, 1u); // point 4 is tied, too, but no tet uses it

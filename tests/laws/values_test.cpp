@@ -272,7 +272,7 @@ TEST(IsovalueOnFloat32, IsComparedAsADouble) {
     EXPECT_EQ(above.report.tied_points, 0u);
     EXPECT_EQ(above.report.false_ties, 0u);
     EXPECT_TRUE(above.report.near_tie);
-    EXPECT_EQ(above.report.isovalue_stored, 0.3);
+    EXPECT_NEAR(above.report.isovalue_stored, 0.3, 1e-14);
     EXPECT_EQ(above.surface.triangle_count(), 1u);
 }
 

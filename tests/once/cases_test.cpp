@@ -49,15 +49,16 @@ void for_corner_orders(const Corners& tet, const std::function<void(const Corner
     while (std::next_permutation(order.begin(), order.end()));
 }
 
-const std::vector<Place> corners{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 8}};
+const std::vector<Place> two_tets_places{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 8}};
 
 TEST(OneTetOnce, IsThatOfThePackedGridInAll81CasesAndCornerOrders) {
-    const std::vector<Place> points(corners.begin(), corners.begin() + 4);
+    const std::vector<Place> points(two_tets_places.begin(), two_tets_places.begin() + 4);
     for_corner_orders({0, 1, 2, 3}, [&](const Corners& tet) { expect_all_cases(points, {tet}); });
 }
 
 TEST(TwoTetsOnce, AreThoseOfThePackedGridInAll243Cases) {
-    for_corner_orders({0, 1, 2, 3}, [&](const Corners& first) { expect_all_cases(corners, {first, {1, 2, 3, 4}}); });
+    for_corner_orders({0, 1, 2, 3},
+                      [&](const Corners& first) { expect_all_cases(two_tets_places, {first, {1, 2, 3, 4}}); });
 }
 
 TEST(FlatTetsOnce, KeepTheOrderOfTheFileOrMirrorItWithMostOfTheGrid) {
@@ -100,7 +101,7 @@ TEST(SplitCellsOnce, KeepFlatPiecesAsUprightAsTheirCell) {
 }
 
 TEST(CollapsedTetsOnce, GiveNothing) {
-    const Grid grid = tet_grid(corners, {{0, 1, 2, 2}, {0, 1, 2, 3}, {4, 4, 4, 4}, {1, 0, 1, 3}});
+    const Grid grid = tet_grid(two_tets_places, {{0, 1, 2, 2}, {0, 1, 2, 3}, {4, 4, 4, 4}, {1, 0, 1, 3}});
     expect_agreement(grid, field_of<float>({-1, 1, 1, 1, 0}), {0, 0.5});
 }
 

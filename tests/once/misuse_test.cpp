@@ -15,7 +15,6 @@
 namespace isotet::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::vector<std::array<double, 3>> unit{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, 5, 5}};
 
 Grid one_tet() { return tet_grid(unit, {{0, 1, 2, 3}}); }

@@ -3,6 +3,7 @@
 // triangles, and the same said of field and ties.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "support/surface_bytes.hpp"
 
 namespace isotet::test {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline OnceOptions with_everything(Ties ties, Precision precision) {
     OnceOptions options;

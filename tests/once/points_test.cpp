@@ -10,7 +10,6 @@
 namespace isotet::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 const double nan = std::nan("");
 
 /// How a point that no tet uses differs from one that tells nothing new.

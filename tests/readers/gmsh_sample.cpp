@@ -12,29 +12,29 @@ namespace {
 constexpr int gmsh_types[] = {2, 4, 5, 6, 7};
 
 /// Writes integers, numbers (of nodes and elements) and reals as the variant asks for.
-class Writer {
+class GmshWriter {
 public:
-    explicit Writer(const GmshVariant& variant) : variant_(variant), bytes_(variant.swapped) {}
+    explicit GmshWriter(const GmshVariant& variant) : variant_(variant), bytes_(variant.swapped) {}
 
-    Writer& text(std::string_view text) {
+    GmshWriter& text(std::string_view text) {
         bytes_.text(text);
         return *this;
     }
-    Writer& integer(int value) { return write(value, std::int32_t{value}); }
-    Writer& number(int value) {
+    GmshWriter& integer(int value) { return write(value, std::int32_t{value}); }
+    GmshWriter& number(int value) {
         return variant_.version_4 ? write(value, std::int64_t{value}) : write(value, std::int32_t{value});
     }
-    Writer& real(double value) { return write(value, value); }
+    GmshWriter& real(double value) { return write(value, value); }
     /// Ends a line of an ascii file.
-    Writer& line() { return variant_.binary ? *this : text("\n"); }
+    GmshWriter& line() { return variant_.binary ? *this : text("\n"); }
     /// A count that is text in binary files, too.
-    Writer& count_line(int count) { return text(fmt::format("{}\n", count)); }
+    GmshWriter& count_line(int count) { return text(fmt::format("{}\n", count)); }
 
     std::string str() const { return bytes_.str(); }
 
 private:
     template <class Value, class Raw>
-    Writer& write(Value value, Raw raw) {
+    GmshWriter& write(Value value, Raw raw) {
         if (variant_.binary) bytes_.number(raw);
         else bytes_.text(fmt::format("{} ", value));
         return *this;
@@ -48,7 +48,7 @@ int node_number(const GmshVariant& variant, int index) {
     return variant.sparse ? 900 - 100 * (index / 2) + 7 * (index % 2) : index + 1;
 }
 
-void write_nodes_2(Writer& out, const GmshVariant& variant) {
+void write_nodes_2(GmshWriter& out, const GmshVariant& variant) {
     const char* name = variant.parametric ? "ParametricNodes" : "Nodes";
     out.text(fmt::format("${}\n", name)).count_line(9);
     for (int i = 0; i < 9; ++i) {
@@ -64,7 +64,7 @@ void write_nodes_2(Writer& out, const GmshVariant& variant) {
     out.text(fmt::format("{}$End{}\n", variant.binary ? "\n" : "", name));
 }
 
-void write_elements_2(Writer& out, const GmshVariant& variant) {
+void write_elements_2(GmshWriter& out, const GmshVariant& variant) {
     out.text("$Elements\n").count_line(5);
     for (int e = 0; e < 5; ++e) {
         const int type = gmsh_types[e];
@@ -77,7 +77,7 @@ void write_elements_2(Writer& out, const GmshVariant& variant) {
     out.text(variant.binary ? "\n$EndElements\n" : "$EndElements\n");
 }
 
-void write_entities_4(Writer& out, const GmshVariant& variant) {
+void write_entities_4(GmshWriter& out, const GmshVariant& variant) {
     out.text("$Entities\n");
     out.number(1).number(1).number(1).number(1).line();
     out.integer(1).real(0).real(0).real(0).number(0).line();
@@ -94,7 +94,7 @@ void write_entities_4(Writer& out, const GmshVariant& variant) {
     out.text(variant.binary ? "\n$EndEntities\n" : "$EndEntities\n");
 }
 
-void write_nodes_4(Writer& out, const GmshVariant& variant) {
+void write_nodes_4(GmshWriter& out, const GmshVariant& variant) {
     out.text("$Nodes\n");
     out.number(2).number(9).number(1).number(907).line();
     for (int block = 0; block < 2; ++block) {
@@ -110,7 +110,7 @@ void write_nodes_4(Writer& out, const GmshVariant& variant) {
     out.text(variant.binary ? "\n$EndNodes\n" : "$EndNodes\n");
 }
 
-void write_elements_4(Writer& out, const GmshVariant& variant) {
+void write_elements_4(GmshWriter& out, const GmshVariant& variant) {
     out.text("$Elements\n");
     out.number(5).number(5).number(1).number(5).line();
     for (int e = 0; e < 5; ++e) {
@@ -122,11 +122,12 @@ void write_elements_4(Writer& out, const GmshVariant& variant) {
     out.text(variant.binary ? "\n$EndElements\n" : "$EndElements\n");
 }
 
-void open_data(Writer& out, const char* section, const char* name, double time, int step, int components, int count) {
+void open_data(GmshWriter& out, const char* section, const char* name, double time, int step, int components,
+               int count) {
     out.text(fmt::format("${}\n1\n\"{}\"\n1\n{}\n3\n{}\n{}\n{}\n", section, name, time, step, components, count));
 }
 
-void write_data(Writer& out, const GmshVariant& variant) {
+void write_data(GmshWriter& out, const GmshVariant& variant) {
     const auto close = [&](const char* section) {
         out.text(fmt::format("{}$End{}\n", variant.binary ? "\n" : "", section));
     };
@@ -166,7 +167,7 @@ std::vector<GmshVariant> gmsh_variants() {
 }
 
 std::string gmsh_sample(const GmshVariant& variant) {
-    Writer out(variant);
+    GmshWriter out(variant);
     out.text(fmt::format("$MeshFormat\n{} {} 8\n", variant.version_4 ? "4.1" : "2.2", variant.binary ? 1 : 0));
     if (variant.binary) out.integer(1).text("\n");
     out.text("$EndMeshFormat\n$PhysicalNames\n1\n3 8 \"a $ in a name\"\n$EndPhysicalNames\n");

@@ -30,15 +30,9 @@ void expect_values(const std::vector<Field>& fields, std::string_view name, cons
     }
 }
 
-std::string error_of(const std::string& bytes) {
+std::string gmsh_error(const std::string& bytes) {
     const auto result = io::parse_gmsh(bytes, {}, {});
     return result ? "no error" : result.error().message;
-}
-
-std::string replaced(std::string text, std::string_view old, std::string_view with) {
-    const std::size_t at = text.find(old);
-    EXPECT_NE(at, std::string::npos) << old;
-    return text.replace(at, old.size(), with);
 }
 
 class ReadGmsh : public testing::TestWithParam<GmshVariant> {};
@@ -132,33 +126,34 @@ TEST(ReadGmshTets, MayHaveElementsBeforeNodes) {
 }
 
 TEST(ReadGmshErrors, NameTheValueAndTheRule) {
-    EXPECT_EQ(error_of(replaced(tets, "1 2 3 4\n2 4", "1 2 3 9\n2 4")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "1 2 3 4\n2 4", "1 2 3 9\n2 4")),
               "$Elements: element 1 has node 9, which is not among the nodes");
-    EXPECT_EQ(error_of(replaced(tets, "\n2 1 0 0", "\n1 1 0 0")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "\n2 1 0 0", "\n1 1 0 0")),
               "$Nodes: node 1 occurs twice, but numbers must be unique");
-    EXPECT_EQ(error_of(replaced(tets, "5 1 1 1", "5 1 x 1")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "5 1 1 1", "5 1 x 1")),
               "$Nodes: states 5 nodes, but node 5 is broken or missing at line 6 ('x') of the section");
-    EXPECT_EQ(error_of(replaced(tets, "$Nodes\n5", "$Nodes\n4")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "$Nodes\n5", "$Nodes\n4")),
               "$Nodes: holds more than it states, at line 6 ('5') of the section");
-    EXPECT_EQ(error_of(replaced(tets, "$Nodes\n5", "$Nodes\n-5")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "$Nodes\n5", "$Nodes\n-5")),
               "$Nodes: states -5 nodes, but there is room for 5 at most");
-    EXPECT_EQ(error_of(replaced(tets, "$Nodes\n5", "$Nodes\n99999999999999")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "$Nodes\n5", "$Nodes\n99999999999999")),
               "$Nodes: states 99999999999999 nodes, but there is room for 5 at most");
-    EXPECT_EQ(error_of(replaced(tets, "\n2 4 0", "\n2 34 0")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "\n2 4 0", "\n2 34 0")),
               "$Elements: element 2 has type 34, which isotet does not know");
-    EXPECT_EQ(error_of(replaced(tets, "$EndElements\n", "")), "$Elements: has no $EndElements: the file is cut short");
-    EXPECT_EQ(error_of(replaced(tets, "2.2 0", "4.0 0")),
+    EXPECT_EQ(gmsh_error(replaced(tets, "$EndElements\n", "")),
+              "$Elements: has no $EndElements: the file is cut short");
+    EXPECT_EQ(gmsh_error(replaced(tets, "2.2 0", "4.0 0")),
               "$MeshFormat: says version 4, but isotet reads 2.0 to 2.2 and 4.1 (gmsh -save -format msh41 converts)");
-    EXPECT_EQ(error_of(""), "has no $MeshFormat section, so it is no MSH file");
+    EXPECT_EQ(gmsh_error(""), "has no $MeshFormat section, so it is no MSH file");
 }
 
 TEST(ReadGmshErrors, NameTheSectionThatIsMissing) {
-    EXPECT_EQ(error_of(tets.substr(0, tets.find("$Elements"))), "has no $Elements section");
+    EXPECT_EQ(gmsh_error(tets.substr(0, tets.find("$Elements"))), "has no $Elements section");
 }
 
 TEST(ReadGmshErrors, RefuseValuesForWhatIsNotThere) {
     const std::string data = "$NodeData\n1\n\"T\"\n1\n0\n3\n0\n1\n1\n77 1.5\n$EndNodeData\n";
-    EXPECT_EQ(error_of(tets + data), "$NodeData: 'T' has a value for node 77, which the file does not have");
+    EXPECT_EQ(gmsh_error(tets + data), "$NodeData: 'T' has a value for node 77, which the file does not have");
 }
 
 TEST(ReadGmshSteps, AreByStepNumberWhereTimesRepeat) {

@@ -15,13 +15,7 @@ ReadResult read_text(const std::string& text, const ReadOptions& options = {}) {
     return io::parse_gocad(text, options, {}).value();
 }
 
-std::string replaced(std::string text, std::string_view old, std::string_view with) {
-    const std::size_t at = text.find(old);
-    EXPECT_NE(at, std::string::npos) << old;
-    return text.replace(at, old.size(), with);
-}
-
-std::string error_of(const std::string& text) {
+std::string gocad_error(const std::string& text) {
     const auto result = io::parse_gocad(text, {}, {});
     return result ? "no error" : result.error().message;
 }
@@ -104,24 +98,25 @@ TEST(ReadGocad, FollowsAtomsThatReferForward) {
 }
 
 TEST(ReadGocadErrors, NameTheValueAndTheRule) {
-    EXPECT_EQ(error_of(replaced(gocad_sample, "TETRA 8 1 2 3", "TETRA 8 1 2 33")),
+    EXPECT_EQ(gocad_error(replaced(gocad_sample, "TETRA 8 1 2 3", "TETRA 8 1 2 33")),
               "TETRA: number 3 (from 1) has vertex 33, which is not in the file");
-    EXPECT_EQ(error_of(replaced(gocad_sample, "ATOM 9 7", "ATOM 9 9")),
+    EXPECT_EQ(gocad_error(replaced(gocad_sample, "ATOM 9 7", "ATOM 9 9")),
               "ATOM: 9 refers to 9, which leads to no vertex");
-    EXPECT_EQ(error_of(replaced(gocad_sample, "ATOM 9 7", "ATOM 9 70")),
+    EXPECT_EQ(gocad_error(replaced(gocad_sample, "ATOM 9 7", "ATOM 9 70")),
               "ATOM: 9 refers to 70, which leads to no vertex");
-    EXPECT_EQ(error_of(replaced(gocad_sample, "PVRTX 8 1 1 99", "PVRTX 1 1 1 99")),
+    EXPECT_EQ(gocad_error(replaced(gocad_sample, "PVRTX 8 1 1 99", "PVRTX 1 1 1 99")),
               "vertex 1 occurs twice, but numbers must be unique");
-    EXPECT_EQ(error_of(replaced(gocad_sample, "TETRA 8 1 2 3 0.5", "TETRA 8 1 2")),
+    EXPECT_EQ(gocad_error(replaced(gocad_sample, "TETRA 8 1 2 3 0.5", "TETRA 8 1 2")),
               "TETRA: has a broken line, at line 37 (its end)");
-    EXPECT_EQ(error_of(replaced(gocad_sample, "ZPOSITIVE Depth", "ZPOSITIVE Sideways")),
+    EXPECT_EQ(gocad_error(replaced(gocad_sample, "ZPOSITIVE Depth", "ZPOSITIVE Sideways")),
               "ZPOSITIVE: is 'Sideways', but Elevation or Depth is the rule");
-    EXPECT_EQ(error_of("GOCAD TSurf 1\nEND\n"), "does not begin with GOCAD TSolid, but 'GOCAD TSurf 1\\x0aEND\\x0a'");
+    EXPECT_EQ(gocad_error("GOCAD TSurf 1\nEND\n"),
+              "does not begin with GOCAD TSolid, but 'GOCAD TSurf 1\\x0aEND\\x0a'");
 }
 
 TEST(ReadGocadErrors, SayThatAFileWithoutEndIsCutShort) {
     const std::string text = gocad_sample;
-    EXPECT_EQ(error_of(text.substr(0, text.rfind("END"))), "has no END: the file is cut short");
+    EXPECT_EQ(gocad_error(text.substr(0, text.rfind("END"))), "has no END: the file is cut short");
 }
 
 } // namespace

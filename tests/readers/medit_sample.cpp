@@ -10,14 +10,14 @@ namespace isotet::test {
 namespace {
 
 /// Sections of text or binary files; of binary ones the position of the next is filled in when it comes.
-class Writer {
+class MeditWriter {
 public:
-    explicit Writer(const MeditVariant& variant) : variant_(variant), bytes_(variant.swapped) {
+    explicit MeditWriter(const MeditVariant& variant) : variant_(variant), bytes_(variant.swapped) {
         if (text()) bytes_.text("# a comment\nMeshVersionFormatted 2\n");
         else bytes_.number(std::int32_t{1}).number(std::int32_t{variant.version});
     }
 
-    Writer& section(const char* name, std::int32_t keyword) {
+    MeditWriter& section(const char* name, std::int32_t keyword) {
         if (text()) {
             bytes_.text(fmt::format("\n{}\n", name));
             return *this;
@@ -28,17 +28,17 @@ public:
         variant_.version >= 3 ? bytes_.number(std::int64_t{0}) : bytes_.number(std::int32_t{0});
         return *this;
     }
-    Writer& integer(int value) {
+    MeditWriter& integer(int value) {
         if (text()) return word(fmt::format("{}", value));
         variant_.version == 4 ? bytes_.number(std::int64_t{value}) : bytes_.number(std::int32_t{value});
         return *this;
     }
-    Writer& small(int value) {
+    MeditWriter& small(int value) {
         if (text()) return word(fmt::format("{}", value));
         bytes_.number(std::int32_t{value});
         return *this;
     }
-    Writer& real(double value) {
+    MeditWriter& real(double value) {
         if (text()) return word(fmt::format("{}", value));
         variant_.version == 1 ? bytes_.number(static_cast<float>(value)) : bytes_.number(value);
         return *this;
@@ -53,7 +53,7 @@ public:
 
 private:
     bool text() const { return variant_.version == 0; }
-    Writer& word(const std::string& word) {
+    MeditWriter& word(const std::string& word) {
         bytes_.text(word + " ");
         return *this;
     }
@@ -85,7 +85,7 @@ std::vector<MeditVariant> medit_variants() {
 }
 
 std::string medit_sample(const MeditVariant& variant) {
-    Writer out(variant);
+    MeditWriter out(variant);
     out.section("Dimension", 3).small(3);
     out.section("Vertices", 4).integer(9);
     for (int i = 0; i < 9; ++i) {
@@ -107,7 +107,7 @@ std::string medit_sample(const MeditVariant& variant) {
 }
 
 std::string medit_solution_sample(const MeditVariant& variant) {
-    Writer out(variant);
+    MeditWriter out(variant);
     out.section("Dimension", 3).small(3);
     out.section("SolAtVertices", 62).integer(9).small(3).small(1).small(2).small(3);
     for (int n = 0; n < 9; ++n) {

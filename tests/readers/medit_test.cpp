@@ -70,7 +70,7 @@ TEST_P(ReadMedit, PassesOverFieldsThatNobodyWants) {
 INSTANTIATE_TEST_SUITE_P(EveryVariant, ReadMedit, testing::ValuesIn(medit_variants()),
                          [](const auto& variant) { return name_of(variant.param); });
 
-std::string error_of(std::string_view mesh, std::optional<std::string_view> solution = std::nullopt) {
+std::string medit_error(std::string_view mesh, std::optional<std::string_view> solution = std::nullopt) {
     const auto result = io::parse_medit(mesh, solution, {}, {});
     return result ? "no error" : result.error().message;
 }
@@ -106,26 +106,26 @@ TEST(ReadMeditText, OfTwoDimensionsGetsZeroForZ) {
 }
 
 TEST(ReadMeditErrors, NameTheValueAndTheRule) {
-    EXPECT_EQ(error_of(head + "Tetrahedra 1 1 2 3 5 5 End"), "a cell has vertex 5, but there are 4 Vertices");
-    EXPECT_EQ(error_of(head + "Tetrahedra 1 0 2 3 4 5 End"),
+    EXPECT_EQ(medit_error(head + "Tetrahedra 1 1 2 3 5 5 End"), "a cell has vertex 5, but there are 4 Vertices");
+    EXPECT_EQ(medit_error(head + "Tetrahedra 1 0 2 3 4 5 End"),
               "Tetrahedra: entry 1 has vertex 0, but vertices are counted from 1 to 4");
-    EXPECT_EQ(error_of(head + "Tetrahedra 2 1 2 3 4 5 End"),
+    EXPECT_EQ(medit_error(head + "Tetrahedra 2 1 2 3 4 5 End"),
               "Tetrahedra: states 2 entries, but there is room for 1 at most");
-    EXPECT_EQ(error_of(head + "Tetrahedra 1 1 2 3 4 End"),
+    EXPECT_EQ(medit_error(head + "Tetrahedra 1 1 2 3 4 End"),
               "Tetrahedra: states 1 entries, but entry 1 is broken or missing at line 1 ('End')");
-    EXPECT_EQ(error_of(head + "Tetrahedra 1 1 2 3 4 5 6 End"),
+    EXPECT_EQ(medit_error(head + "Tetrahedra 1 1 2 3 4 5 6 End"),
               "a keyword should stand at line 1 ('6'): a section holds more than it states");
-    EXPECT_EQ(error_of("MeshVersionFormatted 2 Dimension 3 End"), "has no section Vertices");
-    EXPECT_EQ(error_of("something else"), "begins with 'something else', but a Medit file begins with "
-                                          "MeshVersionFormatted, a binary one with the number 1");
+    EXPECT_EQ(medit_error("MeshVersionFormatted 2 Dimension 3 End"), "has no section Vertices");
+    EXPECT_EQ(medit_error("something else"), "begins with 'something else', but a Medit file begins with "
+                                             "MeshVersionFormatted, a binary one with the number 1");
 }
 
 TEST(ReadMeditErrors, OfTheSolutionSaySo) {
     const std::string mesh = head + "Tetrahedra 1 1 2 3 4 5 End";
-    EXPECT_EQ(error_of(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 3 1 1 1 2 3 End"),
+    EXPECT_EQ(medit_error(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 3 1 1 1 2 3 End"),
               "the .sol file beside it has values for 3 vertices, but there are 4");
     EXPECT_EQ(
-        error_of(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 4 1 9 1 2 3 4 End"),
+        medit_error(mesh, "MeshVersionFormatted 2 Dimension 3 SolAtVertices 4 1 9 1 2 3 4 End"),
         "the .sol file beside it: SolAtVertices: field 1 is of kind 9, but 1 to 4 are the rule, at line 1 (its end)");
 }
 

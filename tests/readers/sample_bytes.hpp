@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include <isotet/grid.hpp>
 #include <isotet/read.hpp>
 
@@ -46,6 +48,13 @@ private:
     std::string bytes_;
     bool swapped_;
 };
+
+/// `text` with the first `old` replaced, which must be there.
+inline std::string replaced(std::string text, std::string_view old, std::string_view with) {
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return text.replace(at, old.size(), with);
+}
 
 /// All scalars of an array.
 inline std::vector<double> values_of(const Array& array) {

@@ -7,21 +7,22 @@
 namespace isotet::test {
 namespace {
 
-const std::string nodes = "# points\n5 3 2 1\n\n0 0 0 0 1.5 10 -1\n1 1 0 0 2.5 11 0 # a comment\n2 0 1 0 3.5 12 1\n"
-                          "3 0 0 1 4.5 13 2\n4 1 1 1 5.5 14 3\n# made by a program\n";
-const std::string tets = "2 4 1\n0 0 1 2 3 0.5\n1 1 2 3 4 0.25\n";
+const std::string sample_nodes =
+    "# points\n5 3 2 1\n\n0 0 0 0 1.5 10 -1\n1 1 0 0 2.5 11 0 # a comment\n2 0 1 0 3.5 12 1\n"
+    "3 0 0 1 4.5 13 2\n4 1 1 1 5.5 14 3\n# made by a program\n";
+const std::string sample_tets = "2 4 1\n0 0 1 2 3 0.5\n1 1 2 3 4 0.25\n";
 
 ReadResult read_text(const std::string& node_text, const std::string& element_text, const ReadOptions& options = {}) {
     return io::parse_tetgen(node_text, element_text, options, {}).value();
 }
 
-std::string error_of(const std::string& node_text, const std::string& element_text) {
+std::string tetgen_error(const std::string& node_text, const std::string& element_text) {
     const auto result = io::parse_tetgen(node_text, element_text, {}, {});
     return result ? "no error" : result.error().message;
 }
 
 TEST(ReadTetgen, GivesPointsTetsAttributesAndMarkers) {
-    const ReadResult result = read_text(nodes, tets);
+    const ReadResult result = read_text(sample_nodes, sample_tets);
     const Grid& grid = result.grid;
     EXPECT_EQ(values_of(grid.points), (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}));
     EXPECT_EQ(values_of(grid.cells.connectivity), (std::vector<double>{0, 1, 2, 3, 1, 2, 3, 4}));
@@ -35,7 +36,7 @@ TEST(ReadTetgen, GivesPointsTetsAttributesAndMarkers) {
 }
 
 TEST(ReadTetgen, AnnouncesWhatItReads) {
-    const FileInfo info = io::inspect_tetgen(nodes, tets, {}).value();
+    const FileInfo info = io::inspect_tetgen(sample_nodes, sample_tets, {}).value();
     ASSERT_EQ(info.fields.size(), 4U);
     EXPECT_EQ(info.fields[2].name, "boundary_marker");
     EXPECT_EQ(info.fields[2].type, ScalarType::int32);
@@ -64,32 +65,33 @@ TEST(ReadTetgen, ReadsOnlyTheFieldsThatAreWanted) {
     ReadOptions options;
     options.point_fields = {"attribute_1"};
     options.cell_fields.emplace();
-    const ReadResult result = read_text(nodes, tets, options);
+    const ReadResult result = read_text(sample_nodes, sample_tets, options);
     ASSERT_EQ(result.grid.point_fields.size(), 1U);
     EXPECT_EQ(result.grid.point_fields[0].values.at(4), 14);
     EXPECT_TRUE(result.grid.cell_fields.empty());
 }
 
 TEST(ReadTetgen, NotesALastLineWithoutEnd) {
-    const ReadResult result = read_text(nodes, tets.substr(0, tets.size() - 2));
+    const ReadResult result = read_text(sample_nodes, sample_tets.substr(0, sample_tets.size() - 2));
     ASSERT_EQ(result.notes.size(), 1U);
     EXPECT_NE(result.notes[0].find(".ele"), std::string::npos);
 }
 
 TEST(ReadTetgenErrors, NameTheValueAndTheRule) {
-    EXPECT_EQ(error_of(nodes, "2 4 1\n0 0 1 2 3 0.5\n"),
+    EXPECT_EQ(tetgen_error(sample_nodes, "2 4 1\n0 0 1 2 3 0.5\n"),
               "the .ele file states 2 records of 6 numbers, but there is room for 1 at most");
-    EXPECT_EQ(error_of(nodes, "2 4 1\n0 0 1 2 3 0.5\n1 1 2 3 4 oops\n"),
+    EXPECT_EQ(tetgen_error(sample_nodes, "2 4 1\n0 0 1 2 3 0.5\n1 1 2 3 4 oops\n"),
               "the .ele file states 2 records, but record 2 is broken or missing at line 3 ('oops')");
-    EXPECT_EQ(error_of(nodes, "2 4 0\n0 0 1 2 3\n1 1 2 3\n# and so on\n"),
+    EXPECT_EQ(tetgen_error(sample_nodes, "2 4 0\n0 0 1 2 3\n1 1 2 3\n# and so on\n"),
               "the .ele file states 2 records, but record 2 is broken or missing at line 3 (its end)");
-    EXPECT_EQ(error_of(nodes, tets + "3 1 2 3 4 0\n"),
+    EXPECT_EQ(tetgen_error(sample_nodes, sample_tets + "3 1 2 3 4 0\n"),
               "the .ele file holds more records than it states, at line 4 ('3')");
-    EXPECT_EQ(error_of(nodes, "1 4 0\n0 0 1 2 5\n"),
+    EXPECT_EQ(tetgen_error(sample_nodes, "1 4 0\n0 0 1 2 5\n"),
               "the .ele file has tet 0 with point 5, which is not in the .node file");
-    EXPECT_EQ(error_of(nodes, "1 5 0\n0 0 1 2 3 4\n"), "the .ele file says 5 nodes a tet, but 4 or 10 is the rule");
-    EXPECT_EQ(error_of("1 2 0 0\n1 0 0\n", tets), "the .node file says dimension 2, but 3 is the rule");
-    EXPECT_EQ(error_of("-4 3 0 0\n", tets),
+    EXPECT_EQ(tetgen_error(sample_nodes, "1 5 0\n0 0 1 2 3 4\n"),
+              "the .ele file says 5 nodes a tet, but 4 or 10 is the rule");
+    EXPECT_EQ(tetgen_error("1 2 0 0\n1 0 0\n", sample_tets), "the .node file says dimension 2, but 3 is the rule");
+    EXPECT_EQ(tetgen_error("-4 3 0 0\n", sample_tets),
               "the .node file states -4 records of 4 numbers, but there is room for 0 at most");
 }
 

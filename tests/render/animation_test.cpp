@@ -26,12 +26,12 @@ Picture plain(std::uint32_t width, std::uint32_t height, std::array<std::uint8_t
     return {width, height, std::vector(std::size_t{width} * height, color)};
 }
 
-constexpr std::array<std::array<std::uint8_t, 4>, 3> colors{
+constexpr std::array<std::array<std::uint8_t, 4>, 3> frame_colors{
     {{200, 40, 40, 255}, {40, 180, 60, 255}, {250, 250, 250, 255}}};
 
 std::uint64_t write_colors(const std::string& path) {
     Animation animation = Animation::begin(path, 8).value();
-    for (const auto& color : colors) EXPECT_TRUE(animation.add(plain(70, 50, color)));
+    for (const auto& color : frame_colors) EXPECT_TRUE(animation.add(plain(70, 50, color)));
     return animation.finish().value();
 }
 
@@ -48,13 +48,14 @@ TEST_F(Animations, HoldTheirPicturesAndTimes) {
     EXPECT_EQ(info.canvas_height, 50u);
     EXPECT_EQ(info.frame_count, 3u);
     EXPECT_EQ(info.loop_count, 0u) << "for ever";
-    for (std::size_t i = 0; i < colors.size(); ++i) {
+    for (std::size_t i = 0; i < frame_colors.size(); ++i) {
         std::uint8_t* pixels = nullptr;
         int end = 0;
         ASSERT_TRUE(WebPAnimDecoderGetNext(decoder, &pixels, &end));
         EXPECT_EQ(end, 125 * (static_cast<int>(i) + 1));
         for (std::size_t pixel = 0; pixel < 70 * 50; ++pixel)
-            for (std::size_t k = 0; k < 4; ++k) ASSERT_LE(std::abs(pixels[4 * pixel + k] - colors[i][k]), 6) << pixel;
+            for (std::size_t k = 0; k < 4; ++k)
+                ASSERT_LE(std::abs(pixels[4 * pixel + k] - frame_colors[i][k]), 6) << pixel;
     }
     WebPAnimDecoderDelete(decoder);
 }
@@ -69,7 +70,7 @@ TEST_F(Animations, LeaveTheOldFileUntilTheyAreFinished) {
     std::ofstream(path("a.webp")) << "old";
     {
         Animation animation = Animation::begin(path("a.webp"), 8).value();
-        ASSERT_TRUE(animation.add(plain(8, 8, colors[0])));
+        ASSERT_TRUE(animation.add(plain(8, 8, frame_colors[0])));
     }
     EXPECT_EQ(content_of(path("a.webp")), "old");
 }
@@ -81,12 +82,12 @@ TEST_F(Animations, RefuseWhatCannotBeOne) {
     Animation animation = Animation::begin(path("a.webp"), 8).value();
     EXPECT_EQ(animation.finish().error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(animation.add({}).error().code, ErrorCode::invalid_argument);
-    EXPECT_EQ(animation.add(plain(16384, 1, colors[0])).error().code, ErrorCode::invalid_argument);
-    ASSERT_TRUE(animation.add(plain(8, 8, colors[0])));
-    EXPECT_EQ(animation.add(plain(8, 9, colors[0])).error().message,
+    EXPECT_EQ(animation.add(plain(16384, 1, frame_colors[0])).error().code, ErrorCode::invalid_argument);
+    ASSERT_TRUE(animation.add(plain(8, 8, frame_colors[0])));
+    EXPECT_EQ(animation.add(plain(8, 9, frame_colors[0])).error().message,
               "a picture of 8 x 9, but those before it are 8 x 8");
     Animation nowhere = Animation::begin(path("no/where.webp"), 8).value();
-    ASSERT_TRUE(nowhere.add(plain(8, 8, colors[0])));
+    ASSERT_TRUE(nowhere.add(plain(8, 8, frame_colors[0])));
     EXPECT_EQ(nowhere.finish().error().code, ErrorCode::file);
 }
 

@@ -10,8 +10,6 @@ namespace {
 
 class Blending : public Drawing {};
 
-constexpr Color red{0.9F, 0.1F, 0.1F, 1}, green{0.1F, 0.7F, 0.2F, 1}, blue{0.1F, 0.3F, 0.8F, 1};
-
 double light(double part) { return part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4); }
 double coded(double part) { return part <= 0.0031308 ? part * 12.92 : 1.055 * std::pow(part, 1 / 2.4) - 0.055; }
 

@@ -19,6 +19,8 @@ namespace isotet::test {
 
 using Pixel = std::array<std::uint8_t, 4>;
 
+inline constexpr Color red{0.9F, 0.1F, 0.1F, 1}, green{0.1F, 0.7F, 0.2F, 1}, blue{0.1F, 0.3F, 0.8F, 1};
+
 /// A square of two triangles at right angles to x, of half a side 1, wound to be seen from +x or -x.
 inline Surface square_at(float x, bool from_minus_x = false) {
     Surface surface;

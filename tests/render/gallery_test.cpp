@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = ISOTET_SOURCE_DIR;
+const fs::path root = source_folder();
 
 /// The words of each line of the page that is a command, without the program.
 std::vector<std::vector<std::string>> commands() {
@@ -41,7 +41,7 @@ TEST_F(Gallery, ShowsWhatItsCommandsDraw) {
         EXPECT_LT(fs::file_size(shown), 200'000u) << shown;
         words.back() = path("again.png");
         words.insert(words.end(), {"--device", "software", "--reference", shown, "--threshold", "0.01"});
-        words.insert(words.begin(), ISOTET_PROGRAM);
+        words.insert(words.begin(), program_path());
         RunOptions here;
         here.folder = root.string();
         const RunResult run = run_program(words, here);

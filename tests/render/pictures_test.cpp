@@ -9,8 +9,6 @@ namespace {
 
 class Pictures : public Drawing {};
 
-constexpr Color blue{0.1F, 0.3F, 0.8F, 1};
-
 double covered(const Picture& picture) {
     double sum = 0;
     for (const Pixel& pixel : picture.pixels) sum += pixel[3] / 255.0;
@@ -42,7 +40,6 @@ TEST_F(Pictures, BothSidesAreLitAlike) {
 }
 
 TEST_F(Pictures, WhatIsNearerHidesWhatIsFarther) {
-    constexpr Color red{0.9F, 0.1F, 0.1F, 1};
     add(square_at(0.5), red);
     add(square_at(-0.5), blue);
     EXPECT_LE(difference(centre(draw()), pixel_of(red)), 1);

@@ -88,7 +88,6 @@ TEST_F(Wrong, DegenerateTrianglesAndNormalsDoNoHarm) {
     surface.triangles = Array::own(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 1, 1, 1, 0, 0, 2}, 3);
     surface.normals_kind = Normals::gradient;
     surface.normals = Array::own(std::vector<float>(12, 0), 3);
-    constexpr Color blue{0.1F, 0.3F, 0.8F, 1};
     add(surface, blue);
     EXPECT_LE(difference(centre(draw()), pixel_of(blue)), 1) << "faces tell where normals are zero";
 }

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "test_shaders.hpp"
+#include "vulkan/add_push.hpp"
 #include "vulkan/failing_calls.hpp"
 #include "vulkan/software_device.hpp"
 
@@ -21,11 +22,7 @@ using vulkan::Buffer;
 using vulkan::Context;
 using vulkan::Settings;
 
-/// Push constants of add.comp and spin.comp.
-struct AddPush {
-    VkDeviceAddress words;
-    std::uint32_t count, term;
-};
+/// Push constants of spin.comp.
 struct SpinPush {
     VkDeviceAddress words;
     std::uint32_t rounds, unused;

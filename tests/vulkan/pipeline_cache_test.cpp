@@ -84,7 +84,7 @@ TEST_F(CompiledPipelines, AreNotReadFromABrokenFile) {
 // Drivers and builds change: their files must not gather for ever.
 TEST_F(CompiledPipelines, OfOtherBuildsGoWhenThereAreMany) {
     open();
-    const fs::path own = file();
+    const fs::path of_this_build = file();
     const auto add = [&](const std::string& name, int hours_old) {
         std::ofstream(folder() / name) << "x";
         fs::last_write_time(folder() / name, fs::file_time_type::clock::now() - std::chrono::hours(hours_old));
@@ -96,12 +96,12 @@ TEST_F(CompiledPipelines, OfOtherBuildsGoWhenThereAreMany) {
     const fs::path killed = add("pipelines-0000000000000000.bin.123", 2),
                    writing = add("pipelines-0000000000000000.bin.456", 0);
     const fs::path foreign = add("notes.txt", 1000);
-    fs::last_write_time(own, fs::file_time_type::clock::now() - std::chrono::hours(100));
+    fs::last_write_time(of_this_build, fs::file_time_type::clock::now() - std::chrono::hours(100));
     EXPECT_GT(open(), 0u);
     for (std::size_t i = 0; i < others.size(); ++i)
         EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::most_files)
             << "file " << i << " of others, newest first";
-    EXPECT_TRUE(fs::exists(own)) << "it is the newest now";
+    EXPECT_TRUE(fs::exists(of_this_build)) << "it is the newest now";
     EXPECT_FALSE(fs::exists(killed));
     EXPECT_TRUE(fs::exists(writing)) << "somebody may be at it";
     EXPECT_TRUE(fs::exists(foreign));

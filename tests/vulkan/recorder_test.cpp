@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "test_shaders.hpp"
+#include "vulkan/add_push.hpp"
 #include "vulkan/software_device.hpp"
 
 namespace isotet::test {
@@ -19,11 +20,6 @@ using vulkan::Recorder;
 using vulkan::Timings;
 using vulkan::writes;
 
-/// Push constants of add.comp.
-struct AddPush {
-    VkDeviceAddress words;
-    std::uint32_t count, term;
-};
 constexpr std::uint64_t add_size = 32;
 
 class Recording : public OnDevice {

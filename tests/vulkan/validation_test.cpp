@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "test_shaders.hpp"
+#include "vulkan/add_push.hpp"
 #include "vulkan/software_device.hpp"
 
 namespace isotet::test {
@@ -13,12 +14,6 @@ namespace {
 using vulkan::Buffer;
 using vulkan::Context;
 using vulkan::Settings;
-
-/// Push constants of add.comp.
-struct AddPush {
-    VkDeviceAddress words;
-    std::uint32_t count, term;
-};
 
 Settings assisted() {
     Settings settings = watched();

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The tests' main function: also the reader process in which VTK's readers run.
+// The main function of tests that read through VTK: also the reader process that they start.
 #include <gtest/gtest.h>
 
 #include <isotet/read.hpp>
