@@ -62,7 +62,7 @@ Reply IsotetContestant::answer(const Words& words) {
     if (command == "open") return open(word(words, 1), whole_number(words, 2));
     if (command == "pack") return pack_as(word(words, 1), rest(2));
     if (command == "extract") return extract_from(word(words, 1), number(words, 2), rest(3));
-    if (command == "once") return extract_once(number(words, 1));
+    if (command == "once") return extract_direct(number(words, 1));
     if (command == "set_field") return set_field(word(words, 1));
     if (command == "copy") return Reply().number("bytes_per_second", copy_bandwidth(whole_number(words, 1)));
     if (command == "arrays")
@@ -151,11 +151,11 @@ Reply IsotetContestant::extract_from(const std::string& name, double isovalue, c
     return describe(extraction, seconds).count("must_move", extraction_must_move(from, isovalue, extraction.surface));
 }
 
-Reply IsotetContestant::extract_once(double isovalue) {
-    OnceOptions options;
+Reply IsotetContestant::extract_direct(double isovalue) {
+    DirectOptions options;
     options.extract.threads = threads_;
     const Stopwatch watch;
-    const ExtractedOnce once = isotet::extract_once(grid_, field_, {&isovalue, 1}, options).value();
+    const DirectExtraction once = isotet::extract_direct(grid_, field_, {&isovalue, 1}, options).value();
     const double seconds = watch.seconds();
     const Extraction& extraction = once.surfaces.front();
     const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();

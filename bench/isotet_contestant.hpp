@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <isotet/extract.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 
@@ -28,7 +28,7 @@ private:
     Reply open(const std::string& folder, int threads);
     Reply pack_as(const std::string& name, const Words& options);
     Reply extract_from(const std::string& name, double isovalue, const Words& attributes);
-    Reply extract_once(double isovalue);
+    Reply extract_direct(double isovalue);
     Reply set_field(const std::string& name);
 
     PackedGrid& packed(const std::string& name);

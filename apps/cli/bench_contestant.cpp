@@ -7,7 +7,7 @@
 #include <isotet/device_grid.hpp>
 #include <isotet/draw_tets.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/search.hpp>
 
 #include "stopwatch.hpp"
@@ -48,9 +48,9 @@ public:
 
 private:
     Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
-        OnceOptions options;
+        DirectOptions options;
         options.extract.threads = bed.threads;
-        Result<ExtractedOnce> once = extract_once(bed.grid, bed.field, std::span(&isovalue, 1), options, bed.progress);
+        Result<DirectExtraction> once = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), options, bed.progress);
         if (!once) return once.error();
         return std::move(once->surfaces.front());
     }

@@ -202,7 +202,7 @@ Result<void> ExtractRun::load(std::size_t step) {
         const Result<FieldReport> range = contour_->field(run_options());
         if (!range) return range.error();
         numbers_.field = *range;
-        numbers_.look_seconds += looking.seconds();
+        if (contour_->method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
     }
     if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
     return choose_values(step);

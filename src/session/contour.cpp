@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 
 #include "core/array_identity.hpp"
 #include "core/errors.hpp"
@@ -114,8 +114,8 @@ namespace {
 
 Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
                                        std::span<const double> isovalues, const Run& run) {
-    Result<ExtractedOnce> direct =
-        extract_once(input.grid, input.field, isovalues,
+    Result<DirectExtraction> direct =
+        extract_direct(input.grid, input.field, isovalues,
                      {extract_options(options, input, run.threads), options.precision}, run.progress);
     if (!direct) return std::move(direct).error();
     ContourResult result;

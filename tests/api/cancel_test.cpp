@@ -7,7 +7,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/small_grid.hpp"
@@ -43,13 +43,13 @@ public:
                  options.engine = Engine::reference;
                  return code_of(extract(packed_, 0.1, options, p));
              }},
-            {"extract_once",
-             [this](const Progress& p) { return code_of(extract_once(grid_, point_field(grid_), isovalues_, {}, p)); }},
-            {"extract_once by reference",
+            {"extract_direct",
+             [this](const Progress& p) { return code_of(extract_direct(grid_, point_field(grid_), isovalues_, {}, p)); }},
+            {"extract_direct by reference",
              [this](const Progress& p) {
-                 OnceOptions options;
+                 DirectOptions options;
                  options.extract.engine = Engine::reference;
-                 return code_of(extract_once(grid_, point_field(grid_), isovalues_, options, p));
+                 return code_of(extract_direct(grid_, point_field(grid_), isovalues_, options, p));
              }},
             {"check", [this](const Progress& p) { return code_of(check(surface_, {}, p)); }},
             {"make_grid",

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/contour.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/make.hpp>
 
 #include "support/small_grid.hpp"
@@ -42,7 +42,7 @@ Grid copy_of(const Grid& grid) {
 }
 
 std::string direct_bytes(const Grid& grid, std::size_t field, double isovalue) {
-    return bytes_of(extract_once(grid, point_field(grid, field), std::span(&isovalue, 1)).value().surfaces[0].surface);
+    return bytes_of(extract_direct(grid, point_field(grid, field), std::span(&isovalue, 1)).value().surfaces[0].surface);
 }
 
 std::string packed_bytes(const Grid& grid, std::size_t field, double isovalue) {

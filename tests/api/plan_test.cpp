@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/make.hpp>
 #include <isotet/plan.hpp>
 
@@ -31,7 +31,7 @@ TEST(FieldSample, PredictsTheTrianglesOfALargeSurface) {
         const auto tets = static_cast<double>(survey(on.grid, {.faces = false}).value().tets);
         EXPECT_NEAR(static_cast<double>(sample.tets()), tets, 0.05 * tets) << shape;
         for (const double isovalue : {-0.8, 0.1}) {
-            const ExtractedOnce once = extract_once(on.grid, on.field, std::span(&isovalue, 1)).value();
+            const DirectExtraction once = extract_direct(on.grid, on.field, std::span(&isovalue, 1)).value();
             const auto triangles = static_cast<double>(once.surfaces.front().surface.triangle_count());
             EXPECT_NEAR(sample.triangles(isovalue), triangles, 0.2 * triangles) << shape << " at " << isovalue;
         }

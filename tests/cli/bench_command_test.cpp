@@ -21,12 +21,12 @@ std::vector<std::string> bench(const std::vector<std::string>& more) {
 
 TEST_F(Program, BenchMeasuresWhatNeedsNoDeviceAndSaysWhichToTake) {
     const json report = json_of(bench({"make:kuhn:8:sphere", "-i", "0.5,0.7"}));
-    EXPECT_EQ(report["schema"], 1);
+    EXPECT_EQ(report["schema"], 2);
     EXPECT_EQ(report["field"], "sphere");
     EXPECT_EQ(report["isovalues"], json({0.5, 0.7}));
     EXPECT_TRUE(report["device"].is_null());
     ASSERT_EQ(report["rows"].size(), 2u);
-    const char* const methods[] = {"brute", "clusters"};
+    const char* const methods[] = {"direct", "clusters"};
     for (std::size_t i = 0; i < 2; ++i) {
         const json& row = report["rows"][i];
         EXPECT_EQ(row["method"], methods[i]);
@@ -66,7 +66,7 @@ TEST_F(Program, BenchWritesRowsAndCharts) {
     const RunResult run =
         isotet(bench({"--paper", "--max-tets", "3000", "--csv", path("rows.csv"), "--svg", path("chart.svg")}));
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.out.find("2,058 brute"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("2,058 direct"), std::string::npos) << run.out;
     const std::string rows = content_of(path("rows.csv")), chart = content_of(path("chart.svg"));
     EXPECT_EQ(std::ranges::count(rows, '\n'), 3);
     for (std::size_t begin = 0; begin < rows.size();) { // every line has the columns of the first
@@ -74,7 +74,7 @@ TEST_F(Program, BenchWritesRowsAndCharts) {
         EXPECT_EQ(std::ranges::count(line, ','), 18) << line;
         begin += line.size() + 1;
     }
-    for (const char* part : {"<svg", ">brute<", ">clusters<", ">GPU(R) in the paper, 2006<", "</svg>"})
+    for (const char* part : {"<svg", ">direct<", ">clusters<", ">GPU(R) in the paper, 2006<", "</svg>"})
         EXPECT_NE(chart.find(part), std::string::npos) << part;
     ASSERT_EQ(isotet(bench({"make:kuhn:4:sphere", "--svg", path("one.svg")})).status, 0);
     EXPECT_NE(content_of(path("one.svg")).find("make:kuhn:4:sphere: sphere"), std::string::npos);
@@ -89,7 +89,7 @@ TEST_F(Program, BenchSaysWhenThereIsNoSurface) {
 TEST_F(Program, BenchRefusesWhatItCannotMeasure) {
     EXPECT_TRUE(is_one_error(isotet({"bench"}), "takes a FILE, or --paper"));
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--paper"})), "--paper"));
-    EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "brute,texture"})), "--methods got 'texture'"));
+    EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "direct,texture"})), "--methods got 'texture'"));
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "textures"})),
                              "--methods has textures, which needs a device"));
     EXPECT_TRUE(

@@ -33,7 +33,7 @@ const Array* field(const std::vector<Field>& fields, std::string_view name) {
 TEST_F(Program, ExtractHasEveryPromisedKey) {
     const json report = json_of({"extract", "make:kuhn:6:sphere", path("s.vtp"), "-i", "0.5"});
     for (const char* key : {"schema", "points", "tets", "cells_left_out", "field", "engine", "method", "method_why",
-                            "threads", "seconds", "bytes", "surfaces"}) {
+                            "predicted", "measured", "threads", "seconds", "bytes", "surfaces"}) {
         EXPECT_TRUE(report.contains(key)) << key;
     }
     for (const char* key : {"read", "pack"}) EXPECT_TRUE(report["seconds"][key].is_number()) << key;
@@ -56,53 +56,47 @@ TEST_F(Program, ExtractGivesTheSameSurfaceByEveryMethod) {
         return json_of({"extract", "make:mixed:6:integer", path(out), "-i", "2", "-i", "2.5", "--method", method,
                         "--normals", "gradient"});
     };
-    const json clusters = extracted("clusters", "c.vtp"), brute = extracted("brute", "b.vtp");
+    const json clusters = extracted("clusters", "c.vtp"), direct = extracted("direct", "d.vtp");
     for (const char* key : {"vertices", "triangles", "tied_points", "false_ties"})
-        for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(clusters["surfaces"][i][key], brute["surfaces"][i][key]) << key;
-    EXPECT_EQ(clusters["range"], brute["range"]);
-    EXPECT_EQ(read_back(path("b.vtp")).surface.triangle_count(), read_back(path("c.vtp")).surface.triangle_count());
+        for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(clusters["surfaces"][i][key], direct["surfaces"][i][key]) << key;
+    EXPECT_EQ(clusters["range"], direct["range"]);
+    EXPECT_EQ(read_back(path("d.vtp")).surface.triangle_count(), read_back(path("c.vtp")).surface.triangle_count());
     EXPECT_EQ(clusters["method"], "clusters");
     EXPECT_EQ(clusters["points"], 451);
     EXPECT_TRUE(clusters["tets"].is_number_unsigned());
     EXPECT_GT(clusters["bytes"]["packed"], 0);
-    EXPECT_EQ(brute["method"], "brute");
-    EXPECT_TRUE(brute["points"].is_null());
-    EXPECT_EQ(brute["bytes"]["packed"], 0);
-    for (const json& report : {clusters, brute}) EXPECT_EQ(report["method_why"], "asked for");
+    EXPECT_EQ(direct["method"], "direct");
+    EXPECT_TRUE(direct["points"].is_null());
+    EXPECT_EQ(direct["bytes"]["packed"], 0);
+    for (const json& report : {clusters, direct}) EXPECT_EQ(report["method_why"], "asked for");
 }
 
-TEST_F(Program, ExtractPacksForManySurfacesOnlyAndSaysWhy) {
-    const auto choice = [&](const std::vector<std::string>& more) {
+TEST_F(Program, ExtractChoosesTheMethodByTheNumberOfSurfacesAlone) {
+    const auto method = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        const json report = json_of(arguments);
-        EXPECT_NE(report["method_why"].get<std::string>().find("auto: "), std::string::npos);
-        return report;
+        return json_of(arguments)["method"].get<std::string>();
     };
-    EXPECT_EQ(choice({})["method"], "brute");
-    EXPECT_EQ(choice({"-i", "0.5"})["filter"], "none");
-    EXPECT_EQ(choice({"--levels", "5000"})["method"], "clusters");
-    EXPECT_EQ(choice({"--levels", "5000", "--engine", "reference"})["method"], "clusters");
-    const json weighed = choice({"-i", "0.5"})["choice"];
-    ASSERT_EQ(weighed["ways"].size(), 2u);
-    EXPECT_EQ(weighed["ways"][0]["way"], weighed["way"]);
-    EXPECT_EQ(weighed["ways"][0]["seconds"], weighed["predicted"]["seconds"]);
-    EXPECT_LE(weighed["ways"][0]["seconds"], weighed["ways"][1]["seconds"]);
-    EXPECT_GT(weighed["measured"]["seconds"], 0);
+    EXPECT_EQ(method({}), "direct");
+    EXPECT_EQ(method({"--levels", "31"}), "direct");
+    EXPECT_EQ(method({"--levels", "32"}), "clusters");
+    EXPECT_EQ(method({"--levels", "32", "--engine", "reference"}), "clusters");
+    EXPECT_EQ(method({"--levels", "3", "--normals", "gradient"}), "direct");
+    EXPECT_EQ(method({"--levels", "4", "--normals", "gradient"}), "clusters");
     const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "0.5"});
-    EXPECT_NE(run.out.find("brute (auto: 1 surface, brute on the CPU "), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("direct (1 surface)"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find(" predicted, took "), std::string::npos) << run.out;
 }
 
-TEST_F(Program, ExtractForecastsWhatIsAskedFor) {
-    for (const char* method : {"brute", "clusters"}) {
+TEST_F(Program, ExtractPredictsTimeAndMemory) {
+    for (const char* method : {"direct", "clusters"}) {
         const json report = json_of({"extract", "make:hex:6:sphere", "-i", "0.5", "--method", method});
         EXPECT_EQ(report["method_why"], "asked for");
-        ASSERT_EQ(report["choice"]["ways"].size(), 1u);
-        EXPECT_GT(report["choice"]["predicted"]["seconds"], 0);
+        EXPECT_GT(report["predicted"]["seconds"], 0);
+        EXPECT_GT(report["measured"]["seconds"], 0);
     }
     const json reference = json_of({"extract", "make:hex:6:sphere", "-i", "0.5", "--engine", "reference"});
-    EXPECT_TRUE(reference["choice"]["predicted"].is_null());
+    EXPECT_TRUE(reference["predicted"].is_null());
 }
 
 TEST_F(Program, ExtractNotesTiesThatComeFromRoundingAndTheRemedy) {
@@ -112,7 +106,7 @@ TEST_F(Program, ExtractNotesTiesThatComeFromRoundingAndTheRemedy) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return isotet(arguments);
     };
-    for (const char* method : {"brute", "clusters"}) {
+    for (const char* method : {"direct", "clusters"}) {
         const RunResult single = run({"--method", method});
         EXPECT_NE(
             single.err.find("isovalue 1: 1 point is tied (equal to it) only by rounding; --precision double keeps "
@@ -125,10 +119,10 @@ TEST_F(Program, ExtractNotesTiesThatComeFromRoundingAndTheRemedy) {
     }
 }
 
-TEST_F(Program, ExtractByBruteTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {
+TEST_F(Program, ExtractDirectlyTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {
     std::string grid = small_grid({{"p", {1, 2, 3, 4, 8}}});
     put_content(path("g.msh"), grid);
-    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--method", "brute"});
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--method", "direct"});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.err.find("isotet: note: no isovalue was given: 4.5"), std::string::npos) << run.err;
 }
@@ -136,7 +130,7 @@ TEST_F(Program, ExtractByBruteTakesTheMiddleOfTheRangeAndTellsWhatItLeavesOut) {
 TEST_F(Program, ExtractSaysWhenAFieldHasNoFiniteValue) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     put_content(path("g.msh"), small_grid({{"p", {nan, nan, nan, nan, nan}}}));
-    for (const char* method : {"brute", "clusters"}) {
+    for (const char* method : {"direct", "clusters"}) {
         const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "--method", method});
         EXPECT_EQ(run.status, 3) << method;
         EXPECT_NE(run.err.find("field 'p' has no finite value"), std::string::npos) << run.err;
@@ -146,10 +140,10 @@ TEST_F(Program, ExtractSaysWhenAFieldHasNoFiniteValue) {
     }
 }
 
-TEST_F(Program, ExtractOnADeviceByBruteIsRefused) {
+TEST_F(Program, ExtractOnADeviceDirectlyIsRefused) {
     const RunResult run =
-        isotet({"extract", "make:kuhn:4:sphere", "--engine", "vulkan", "--device", "software", "--method", "brute"});
-    EXPECT_EQ(run.status, run.err.find("--method brute") == std::string::npos ? 4 : 2) << run.err;
+        isotet({"extract", "make:kuhn:4:sphere", "--engine", "vulkan", "--device", "software", "--method", "direct"});
+    EXPECT_EQ(run.status, run.err.find("--method direct") == std::string::npos ? 4 : 2) << run.err;
 }
 
 TEST_F(Program, ExtractWritesTheNumbersThatItTells) {

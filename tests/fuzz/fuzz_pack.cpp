@@ -9,7 +9,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/surface_bytes.hpp"
@@ -95,15 +95,15 @@ void extract_and_check(const Grid& grid, const PointField& field, const PackedGr
 /// From the arrays alone: both engines give the same bytes, as many vertices as the packed grid, and the same refusal.
 void expect_same_once(const Grid& grid, const PointField& field, const Result<PackedGrid>& packed, double isovalue,
                       Precision precision, Ties ties) {
-    OnceOptions options;
+    DirectOptions options;
     options.precision = precision;
     options.extract.ties = ties;
     options.extract.edge_ends = true;
     options.extract.normals = Normals::gradient;
     options.extract.threads = 1;
-    const auto once = extract_once(grid, field, std::span(&isovalue, 1), options);
+    const auto once = extract_direct(grid, field, std::span(&isovalue, 1), options);
     options.extract.engine = Engine::reference;
-    const auto reference = extract_once(grid, field, std::span(&isovalue, 1), options);
+    const auto reference = extract_direct(grid, field, std::span(&isovalue, 1), options);
     expect(bool(once) == bool(packed) && bool(reference) == bool(packed));
     if (!packed) {
         expect(once.error().message == packed.error().message && reference.error().message == packed.error().message);

@@ -8,7 +8,7 @@
 
 #include <isotet/check.hpp>
 #include <isotet/extract.hpp>
-#include <isotet/extract_once.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/close_values.hpp"
@@ -49,7 +49,7 @@ void expect_the_surface_of_a_double_packing(const Grid& grid, const PointField& 
         options.edge_ends = true;
         const Extraction expected = extract(exact, isovalue, options).value();
         expect_same_surface(extract(single, isovalue, options).value(), expected);
-        const ExtractedOnce once = extract_once(grid, field, {&isovalue, 1}, {options}).value();
+        const DirectExtraction once = extract_direct(grid, field, {&isovalue, 1}, {options}).value();
         expect_same_surface(once.surfaces.at(0), expected);
         options.engine = Engine::reference;
         expect_same_surface(extract(single, isovalue, options).value(), expected);

@@ -217,7 +217,7 @@ TEST_F(Render, IsNothingThatBenchCouldMeasureWithoutMemory) {
         isotet({"bench", "make:kuhn:4:sphere", "--device", "software", "--device-memory", "1kB", "--rounds", "1"});
     EXPECT_EQ(run.status, 4);
     EXPECT_NE(run.err.find("nothing could be measured: "), std::string::npos) << run.err;
-    EXPECT_NE(run.out.find("not measured: brute on make:kuhn:4:sphere: "), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("not measured: direct on make:kuhn:4:sphere: "), std::string::npos) << run.out;
 }
 
 TEST_F(Render, RefusesWhatCannotBe) {

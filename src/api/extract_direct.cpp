@@ -1,0 +1,93 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/extract_direct.hpp>
+
+#include <fmt/core.h>
+
+#include "api/finish.hpp"
+#include "core/cells.hpp"
+#include "core/errors.hpp"
+#include "core/guard.hpp"
+#include "core/parallel.hpp"
+#include "cpu/direct/direct.hpp"
+#include "reference/direct.hpp"
+
+namespace isotet {
+
+namespace {
+
+/// Fields against the grid; the contoured one in the words of pack().
+Result<void> check_fields(const Grid& grid, const PointField& field, const ExtractOptions& options) {
+    const std::size_t points = grid.points.tuples(), cells = grid.cells.count();
+    if (field.values.components() != 1 && !field.values.empty())
+        return invalid_argument(fmt::format("field '{}' has {} components, but the contoured field must have 1",
+                                            field.name, field.values.components()));
+    if (field.values.tuples() != points)
+        return invalid_argument(fmt::format("field '{}' has {} values, but the grid has {} points", field.name,
+                                            field.values.tuples(), points));
+    for (const Field& carried : options.point_fields)
+        if (carried.values.tuples() != points)
+            return invalid_argument(fmt::format("point field '{}' has {} tuples, but the grid has {} points",
+                                                carried.name, carried.values.tuples(), points));
+    for (const Field& carried : options.cell_fields)
+        if (carried.values.tuples() != cells)
+            return invalid_argument(fmt::format("cell field '{}' has {} tuples, but the grid has {} cells",
+                                                carried.name, carried.values.tuples(), cells));
+    return {};
+}
+
+template <class Real>
+Result<DirectExtraction> extract_as(const ops::DirectInput& input, std::span<const double> isovalues,
+                                 const ExtractOptions& options, const Progress& progress) {
+    ops::DirectRequest request;
+    request.isovalues = isovalues;
+    request.ties = options.ties;
+    request.ends = options.edge_ends || !options.point_fields.empty();
+    request.normals = options.normals == Normals::gradient;
+    request.source_cells = options.source_cells || !options.cell_fields.empty();
+    auto result = options.engine == Engine::reference ? reference::extract_direct<Real>(input, request, progress)
+                                                      : cpu::extract_direct<Real>(input, request, progress);
+    if (!result) return std::move(result).error();
+    progress("extract", 0.8);
+
+    DirectExtraction out;
+    out.field = result->field;
+    out.cells_left_out = result->cells_left_out;
+    for (ops::DirectSurface& surface : result->surfaces) {
+        Extraction& extraction = out.surfaces.emplace_back();
+        ExtractReport& report = extraction.report;
+        extraction.surface = api::finish<Real>(result->origin, options, result->carried, surface.raw);
+        report.tied_points = surface.raw.tied_points;
+        report.false_ties = surface.false_ties;
+        report.near_tie = surface.near_tie;
+        report.isovalue_stored = surface.isovalue_stored;
+        report.surface_bytes = api::bytes_of(extraction.surface);
+        report.transient_bytes = result->transient_bytes;
+        report.predicted_bytes = result->predicted_bytes;
+        out.coarse_tets += surface.coarse_tets;
+        surface = {}; // parts that only attributes needed go as soon as they can
+    }
+    progress("extract", 1);
+    return out;
+}
+
+} // namespace
+
+Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
+                                   const DirectOptions& options, const Progress& progress) {
+    return core::guarded("extraction", [&]() -> Result<DirectExtraction> {
+        if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
+        const auto cells = core::CellReader::open(grid);
+        if (!cells) return cells.error();
+        if (auto ok = check_fields(grid, field, options.extract); !ok) return ok.error();
+        const ops::DirectInput input{grid, *cells, field, options.extract.point_fields};
+        Result<DirectExtraction> result = Error{};
+        core::with_threads(options.extract.threads, [&] {
+            result = options.precision == Precision::single
+                         ? extract_as<float>(input, isovalues, options.extract, progress)
+                         : extract_as<double>(input, isovalues, options.extract, progress);
+        });
+        return result;
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,85 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Memory that the pass over the cells takes bit by bit, and a budget that all threads share: how much a surface will
+// need is only known afterwards.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/buffer.hpp"
+#include "core/memory.hpp"
+
+namespace isotet::cpu::direct {
+
+/// What all arenas have taken, against what is free. It is asked how much that is once, and only when a lot is taken.
+class Budget {
+public:
+    /// Thrown when there is not enough; nothing has been taken then.
+    struct Exceeded {};
+
+    void take(std::uint64_t bytes) {
+        const std::uint64_t before = taken_.fetch_add(bytes, std::memory_order_relaxed);
+        if (before + bytes <= unasked) return;
+        std::uint64_t free = free_.load(std::memory_order_relaxed);
+        if (free == unknown) {
+            free = core::free_memory() + before;
+            free_.store(free, std::memory_order_relaxed);
+        }
+        if (before + bytes > free) throw Exceeded{};
+    }
+    std::uint64_t taken() const { return taken_.load(std::memory_order_relaxed); }
+
+private:
+    static constexpr std::uint64_t unasked = std::uint64_t{1} << 26;
+    static constexpr std::uint64_t unknown = 0;
+    std::atomic<std::uint64_t> taken_{0}, free_{unknown};
+};
+
+/// One thread's memory, in blocks that grow; given back as a whole.
+class BudgetedArena {
+public:
+    explicit BudgetedArena(Budget& budget) : budget_(&budget) {}
+
+    /// Uninitialized; stays where it is.
+    template <class T>
+    T* take(std::size_t count) {
+        constexpr std::size_t alignment = 8;
+        static_assert(alignof(T) <= alignment);
+        const std::size_t bytes = (count * sizeof(T) + alignment - 1) / alignment * alignment;
+        if (bytes > left_) add_block(bytes);
+        std::byte* const piece = next_;
+        next_ += bytes;
+        left_ -= bytes;
+        return reinterpret_cast<T*>(piece);
+    }
+
+    /// Gives the end of what was taken last back.
+    template <class T>
+    void keep(T* first, std::size_t count) {
+        std::byte* const end = reinterpret_cast<std::byte*>(first) + (count * sizeof(T) + 7) / 8 * 8;
+        left_ += static_cast<std::size_t>(next_ - end);
+        next_ = end;
+    }
+
+private:
+    static constexpr std::size_t first_block = std::size_t{4} << 20, largest_block = std::size_t{4} << 20;
+
+    void add_block(std::size_t bytes) {
+        const std::size_t grown = blocks_.empty() ? first_block : std::min(largest_block, 2 * blocks_.back().size());
+        const std::size_t size = std::max(bytes, grown);
+        budget_->take(size);
+        blocks_.emplace_back(size);
+        next_ = blocks_.back().data();
+        left_ = size;
+    }
+
+    Budget* budget_;
+    std::vector<core::Buffer<std::byte>> blocks_;
+    std::byte* next_ = nullptr;
+    std::size_t left_ = 0;
+};
+
+} // namespace isotet::cpu::direct

@@ -1,0 +1,246 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "cpu/direct/cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "core/parallel.hpp"
+
+namespace isotet::cpu::direct {
+
+namespace {
+
+constexpr std::size_t chunks_a_report = 1 << 10;
+
+using core::CellReader;
+
+bool is_collapsed(const core::Tet& t) {
+    return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
+}
+
+constexpr std::size_t tets_at_once =
+    1 << 10; ///< few enough that their corners are still near when cut ones are fetched
+
+/// Adds up the flags of each tet's corners. False when a number has no flags, and so is no point; numbers that have
+/// none are masked before they are looked up.
+template <class Index>
+bool add_up_sides(const Sides& sides, const Index* corners, std::size_t tets, std::uint16_t* sums) {
+    using Unsigned = std::make_unsigned_t<Index>; // a negative number becomes one that is too large
+    const auto mask = static_cast<Unsigned>(std::min<std::uint64_t>(sides.mask(), std::numeric_limits<Index>::max()));
+    std::uint64_t all = 0;
+    if constexpr (sizeof(Index) == 4) {
+        // Two corners at once: a tet is two words to load, check and mask.
+        const std::uint64_t both = mask * std::uint64_t{0x1'0000'0001};
+        for (std::size_t i = 0; i < tets; ++i) {
+            std::array<std::uint64_t, 2> words;
+            std::memcpy(words.data(), corners + 4 * i, sizeof words);
+            all |= words[0] | words[1];
+            const std::uint64_t p = words[0] & both, q = words[1] & both;
+            const unsigned sum = sides[static_cast<std::uint32_t>(p)] + sides[p >> 32] +
+                                 sides[static_cast<std::uint32_t>(q)] + sides[q >> 32];
+            sums[i] = static_cast<std::uint16_t>(sum);
+        }
+        return (all & ~both) == 0;
+    } else {
+        for (std::size_t i = 0; i < tets; ++i) {
+            unsigned sum = 0;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto corner = static_cast<Unsigned>(corners[4 * i + k]);
+                all |= corner;
+                sum += sides[corner & mask];
+            }
+            sums[i] = static_cast<std::uint16_t>(sum);
+        }
+        return (all & ~std::uint64_t{mask}) == 0;
+    }
+}
+
+/// Writes the places of tets with corners on both sides, or with one that needs attention; returns how many.
+std::size_t find_worth_looking(const std::array<std::uint16_t, tets_at_once>& sums, std::uint32_t* places) {
+    std::size_t found = 0;
+#if defined(__SSE2__)
+    const __m128i one = _mm_set1_epi8(1), two = _mm_set1_epi8(2), attention = _mm_set1_epi8(16);
+    for (std::uint32_t i = 0; i < tets_at_once; i += 16) {
+        const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i]));
+        const __m128i high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i + 8]));
+        const __m128i sum = _mm_packus_epi16(low, high); // 255 where it is more
+        const __m128i less_one = _mm_sub_epi8(sum, one);
+        const __m128i both_sides = _mm_cmpeq_epi8(_mm_min_epu8(less_one, two), less_one); // 1, 2 or 3
+        const __m128i worth = _mm_or_si128(both_sides, _mm_cmpeq_epi8(_mm_max_epu8(sum, attention), sum));
+        for (auto bits = static_cast<unsigned>(_mm_movemask_epi8(worth)); bits; bits &= bits - 1)
+            places[found++] = i + static_cast<std::uint32_t>(std::countr_zero(bits));
+    }
+#else
+    for (std::uint32_t i = 0; i < tets_at_once; ++i) {
+        places[found] = i;
+        found += sums[i] % 4 != 0 || sums[i] >= 16;
+    }
+#endif
+    return found;
+}
+
+/// The pass over one chunk of cells.
+template <class Point>
+class ChunkPass {
+public:
+    ChunkPass(CutContext& context, Cutter<Point>& cutter)
+        : context_(context), cells_(context.input.cells), cutter_(cutter) {}
+
+    /// Cells that are nothing but four numbers, `corners` those of the first.
+    template <class Index>
+    void pass_tets(const Index* corners, std::size_t count) {
+        std::array<std::uint16_t, tets_at_once> sums;
+        std::array<std::uint32_t, tets_at_once> places;
+        for (std::size_t begin = 0; begin < count; begin += tets_at_once) {
+            const Index* const part = corners + 4 * begin;
+            const std::size_t size = std::min(tets_at_once, count - begin);
+            if (!add_up_sides(context_.sides, part, size, sums.data())) return broken();
+            std::fill(sums.begin() + static_cast<std::ptrdiff_t>(size), sums.end(), 0);
+            const std::size_t found = find_worth_looking(sums, places.data());
+            for (std::size_t i = 0; i < found; ++i) {
+                const std::uint32_t place = places[i];
+                const Index* const v = part + 4 * std::size_t{place};
+                const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]),
+                                               static_cast<Point>(v[2]), static_cast<Point>(v[3])};
+                if (sums[place] >= 16) [[unlikely]]
+                    look_at({tet[0], tet[1], tet[2], tet[3]});
+                if (sums[place] % 4 != 0) cutter_.add(tet, static_cast<std::uint32_t>(begin + place));
+            }
+            if (context_.broken.load(std::memory_order_relaxed)) return;
+        }
+    }
+
+    /// Cells of any type, with offsets or not, `corners` those of the whole grid.
+    template <class Index>
+    void pass_cells(const Index* corners, std::size_t begin, std::size_t end) {
+        for (std::size_t cell = begin; cell < end; ++cell)
+            if (!pass_cell(corners, cell, static_cast<std::uint32_t>(cell - begin))) {
+                broken();
+                return;
+            }
+    }
+
+private:
+    void broken() { context_.broken.store(true, std::memory_order_relaxed); }
+
+    /// Some corner is not just above or below.
+    void look_at(const core::Tet& tet) {
+        for (const std::uint64_t point : tet)
+            if (context_.sides[point] & side::unsound) broken();
+        if (is_collapsed(tet)) return;
+        for (const std::uint64_t point : tet) context_.sides.saw(point);
+    }
+
+    /// False when the cell is broken.
+    template <class Index>
+    bool pass_cell(const Index* corners, std::size_t cell, std::uint32_t place) {
+        const std::uint64_t begin = cells_.first(cell), count = cells_.corners(cell);
+        if (count > cells_.connectivity_size() || begin > cells_.connectivity_size() - count) return false;
+        const auto expected = static_cast<std::uint64_t>(core::corners_of(cells_.type(cell)));
+        if (expected == 0) {
+            cutter_.leave_out_cell();
+            return true;
+        }
+        if (count != expected) return false;
+        unsigned any = 0, all = side::above;
+        for (std::uint64_t k = 0; k < count; ++k) {
+            const std::uint64_t point = core::widened(corners[begin + k]);
+            if (point >= cells_.points()) return false;
+            const unsigned flags = context_.sides[point];
+            any |= flags;
+            all &= flags;
+        }
+        if (any & side::unsound) return false;
+        const bool both_sides = (any & side::above) != all, watched = any & side::watched;
+        if (!both_sides && !watched) return true;
+        for (const core::Tet& tet : cells_.tets(cell)) {
+            const unsigned above = [&] {
+                unsigned sum = 0;
+                for (const std::uint64_t point : tet) sum += context_.sides[point] & side::above;
+                return sum;
+            }();
+            if (watched)
+                for (const std::uint64_t point : tet) context_.sides.saw(point);
+            if (above % 4 != 0)
+                cutter_.add({static_cast<Point>(tet[0]), static_cast<Point>(tet[1]), static_cast<Point>(tet[2]),
+                             static_cast<Point>(tet[3])},
+                            place);
+        }
+        return true;
+    }
+
+    CutContext& context_;
+    const CellReader& cells_;
+    Cutter<Point>& cutter_;
+};
+
+} // namespace
+
+template <class Point>
+CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
+    const CellReader& cells = context.input.cells;
+    const std::size_t chunks = (cells.count() + cells_a_chunk - 1) / cells_a_chunk;
+    CutCells<Point> out;
+    out.chunks.resize(chunks + 1);
+    std::atomic<std::size_t> cutters{0};
+    tbb::enumerable_thread_specific<std::shared_ptr<Cutter<Point>>> local(
+        [&] { return std::make_shared<Cutter<Point>>(context, cutters.fetch_add(1)); });
+    const auto pass_chunk = [&](std::size_t chunk) {
+        if (progress.cancelled() || context.broken.load(std::memory_order_relaxed)) return;
+        Cutter<Point>& cutter = *local.local();
+        const std::size_t begin = chunk * cells_a_chunk, end = std::min(cells.count(), begin + cells_a_chunk);
+        cutter.begin(out.chunks[chunk], begin);
+        ChunkPass<Point> pass(context, cutter);
+        cells.connectivity().visit([&](const auto* corners) {
+            if (cells.bare_tets()) pass.pass_tets(corners + 4 * begin, end - begin);
+            else pass.pass_cells(corners, begin, end);
+        });
+        if (!context.broken.load(std::memory_order_relaxed)) cutter.end();
+    };
+    for (std::size_t first = 0; first < chunks; first += chunks_a_report) {
+        core::parallel_each(std::min(chunks_a_report, chunks - first), 1,
+                            [&](std::size_t chunk) { pass_chunk(first + chunk); });
+        if (progress.cancelled() || context.broken) break;
+        progress("extract", static_cast<double>(first) / static_cast<double>(chunks));
+    }
+    out.cutters.resize(cutters);
+    for (std::shared_ptr<Cutter<Point>>& cutter : local) out.cutters[cutter->number()] = std::move(cutter);
+    return out;
+}
+
+template CutCells<std::uint32_t> cut_cells<std::uint32_t>(CutContext&, const Progress&);
+template CutCells<std::uint64_t> cut_cells<std::uint64_t>(CutContext&, const Progress&);
+
+void see_used_points(const CellReader& cells, Sides& sides) {
+    core::parallel_each(cells.count(), cells_a_chunk, [&](std::size_t cell) {
+        for (const core::Tet& tet : cells.tets(cell))
+            for (const std::uint64_t point : tet) sides.saw(point);
+    });
+}
+
+std::uint64_t count_cut_tets(const CellReader& cells, const Sides& sides) {
+    std::atomic<std::uint64_t> total{0};
+    core::parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t count = 0;
+        for (std::size_t cell = begin; cell < end; ++cell)
+            for (const core::Tet& tet : cells.tets(cell)) {
+                unsigned above = 0;
+                for (const std::uint64_t point : tet) above += sides[point] & side::above;
+                count += above % 4 != 0;
+            }
+        total.fetch_add(count, std::memory_order_relaxed);
+    });
+    return total;
+}
+
+} // namespace isotet::cpu::direct

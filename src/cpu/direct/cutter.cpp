@@ -1,0 +1,257 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "cpu/direct/cutter.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "core/case_table.hpp"
+#include "cpu/direct/orient.hpp"
+#include "cpu/level.hpp"
+
+namespace isotet::cpu::direct {
+
+namespace {
+
+/// The polygon of a tet with its corners ascending: from which to which corner each of its edges goes. The fourth
+/// repeats the third when there are three.
+struct SortedPolygon {
+    std::array<std::uint8_t, 4> lower{}, higher{};
+    std::uint8_t triangles = 0;
+};
+
+/// By case, and 16 more where the volume is negative: the stored form then has its last two corners exchanged.
+constexpr std::array<SortedPolygon, 32> sorted_polygons = [] {
+    std::array<SortedPolygon, 32> table{};
+    for (unsigned code = 0; code < 32; ++code) {
+        const std::array<std::uint8_t, 4> place =
+            code & 16 ? std::array<std::uint8_t, 4>{0, 1, 3, 2} : std::array<std::uint8_t, 4>{0, 1, 2, 3};
+        unsigned stored_case = 0;
+        for (unsigned k = 0; k < 4; ++k) stored_case |= (code >> place[k] & 1) << k;
+        const core::TetCase& c = core::case_table[stored_case];
+        table[code].triangles = c.triangles;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint8_t a = place[c.polygon[k].above], b = place[c.polygon[k].below];
+            table[code].lower[k] = std::min(a, b);
+            table[code].higher[k] = std::max(a, b);
+        }
+    }
+    return table;
+}();
+
+/// Coordinates of a batch, [corner][axis][tet].
+template <class Coordinate, std::size_t batch>
+using Gathered = std::array<std::array<std::array<Coordinate, batch>, 3>, 4>;
+
+template <class Point, class Coordinate, std::size_t batch>
+inline void sort_and_sign(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                          std::size_t count, const Coordinate* coordinates) {
+    sort_corners(sorted, codes, count);
+    alignas(64) Gathered<Coordinate, batch> xyz;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t i = 0; i < count; ++i) {
+            const Coordinate* const p = coordinates + 3 * static_cast<std::size_t>(sorted[k][i] >> 1);
+            for (std::size_t axis = 0; axis < 3; ++axis) xyz[k][axis][i] = p[axis];
+        }
+    sign_volumes(xyz, codes, count);
+}
+
+#if defined(__x86_64__)
+// Everything is inlined into these, and so compiled for their instruction set.
+template <class Point, class Coordinate, std::size_t batch>
+[[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2"), gnu::flatten]] void
+sort_and_sign_avx512(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                     std::size_t count, const Coordinate* coordinates) {
+    sort_and_sign(sorted, codes, count, coordinates);
+}
+template <class Point, class Coordinate, std::size_t batch>
+[[gnu::target("avx2,bmi,bmi2"), gnu::flatten]] void
+sort_and_sign_avx2(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                   std::size_t count, const Coordinate* coordinates) {
+    sort_and_sign(sorted, codes, count, coordinates);
+}
+#endif
+
+template <class Point, class Coordinate, std::size_t batch>
+void sort_and_sign_best(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
+                        std::size_t count, const Coordinate* coordinates) {
+    switch (level()) {
+#if defined(__x86_64__)
+    case Level::avx512: return sort_and_sign_avx512(sorted, codes, count, coordinates);
+    case Level::avx2: return sort_and_sign_avx2(sorted, codes, count, coordinates);
+#endif
+    default: return sort_and_sign(sorted, codes, count, coordinates);
+    }
+}
+
+double squared_distance(const core::Point& a, const core::Point& b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+} // namespace
+
+template <class Point>
+Cutter<Point>::Cutter(CutContext& context, std::size_t number)
+    : context_(context),
+      number_(number),
+      points_(context.input.grid.points),
+      arena_(context.budget),
+      in_range_(context.ranges.count, 0),
+      memory_(std::size_t{1} << memory_bits, Remembered{{0, 0}, 0, 0}) {}
+
+template <class Point>
+void Cutter<Point>::begin(Chunk<Point>& chunk, std::uint64_t first_cell) {
+    chunk_ = &chunk;
+    first_cell_ = first_cell;
+    chunk.cutter = number_;
+    ++chunks_;
+    edges_ = 0;
+    pending_ = 0;
+}
+
+template <class Point>
+void Cutter<Point>::end() {
+    if (pending_) cut();
+    chunk_->edges = edges_;
+    counts_.edges += edges_;
+    counts_.triangles += chunk_->triangles;
+}
+
+template <class Point>
+void Cutter<Point>::cut() {
+    const std::size_t count = std::exchange(pending_, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        unsigned seen = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Point point = corners_[k][i];
+            const unsigned flags = context_.sides[point];
+            sorted_[k][i] = static_cast<Point>(2 * point + (flags & side::above));
+            seen |= flags;
+        }
+        codes_[i] = seen & (side::tied | side::no_data) ? tet_code::special : 0;
+    }
+    const Array& points = context_.input.grid.points;
+    if (points.type() == ScalarType::float32) sort_and_sign_best(sorted_, codes_, count, points.as<float>().data());
+    else sort_and_sign_best(sorted_, codes_, count, points.as<double>().data());
+
+    auto* const polygons = arena_.template take<std::array<std::uint32_t, 4>>(count);
+    auto* const triangles = arena_.template take<std::uint8_t>(count);
+    auto* const cells = context_.keep_cells ? arena_.template take<std::uint32_t>(count) : nullptr;
+    auto* const found = arena_.template take<CrossedEdge<Point>>(4 * count + 1);
+    // Bytes are written below, which might be anything: what is needed again and again stands in variables of its own.
+    CrossedEdge<Point>* next = found;
+    std::uint32_t edges = edges_, tets = 0;
+    std::uint64_t made_triangles = 0;
+    Remembered* const memory = memory_.data();
+    const std::uint32_t chunk = chunks_;
+    const auto number_of = [&](CrossedEdge<Point> edge) {
+        Remembered& last = memory[edge.mixed() >> (64 - memory_bits)];
+        // Found lately or not is nearly a toss, so what happens to a new edge happens to all, and only new ones count.
+        const unsigned is_new = !(last.edge == edge) | (last.chunk != chunk);
+        const std::uint32_t number = is_new ? edges : last.number;
+        last = {edge, number, chunk};
+        *next = edge;
+        next += is_new;
+        edges += is_new;
+        return number;
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        unsigned made;
+        std::array<std::uint32_t, 4>& numbers = polygons[tets];
+        if (codes_[i] & tet_code::unusual) [[unlikely]] {
+            std::array<CrossedEdge<Point>, 4> polygon;
+            made = unusual_polygon(i, polygon);
+            if (made == 0) continue;
+            for (std::size_t k = 0; k < 4; ++k) numbers[k] = number_of(polygon[k]);
+        } else {
+            const SortedPolygon& p = sorted_polygons[codes_[i]];
+            made = p.triangles;
+            for (std::size_t k = 0; k < 4; ++k)
+                numbers[k] = number_of({sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1});
+        }
+        triangles[tets] = static_cast<std::uint8_t>(made);
+        if (cells) cells[tets] = cells_[i];
+        made_triangles += made;
+        ++tets;
+        if (context_.rounds_coordinates) counts_.coarse_tets += is_coarse(i);
+    }
+    edges_ = edges;
+    for (const CrossedEdge<Point>* edge = found; edge < next; ++edge) ++in_range_[context_.ranges.of(edge->lower)];
+    chunk_->triangles += made_triangles;
+    const auto new_edges = static_cast<std::uint32_t>(next - found);
+    arena_.keep(found, new_edges);
+    if (tets) chunk_->pieces.push_back({tets, new_edges, polygons, triangles, cells, found});
+}
+
+/// The polygon of a tet that the batch leaves open, with equal edges at a tied point; the fourth repeats the third when
+/// there is one triangle. Returns the number of triangles.
+template <class Point>
+unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<CrossedEdge<Point>, 4>& polygon) {
+    std::uint8_t code = codes_[tet];
+    if (code & tet_code::collapsed) return 0;
+    std::array<Point, 4> corner;
+    std::array<bool, 4> is_tied;
+    for (std::size_t k = 0; k < 4; ++k) {
+        corner[k] = sorted_[k][tet] >> 1;
+        const std::uint8_t flags = context_.sides[corner[k]];
+        if (flags & side::no_data) return 0;
+        is_tied[k] = flags & side::tied;
+    }
+    if (code & tet_code::unsure) {
+        const int sign = points_.orientation({corner[0], corner[1], corner[2], corner[3]});
+        const bool negative = sign < 0 || (sign == 0 && is_mirrored_flat(tet));
+        code = static_cast<std::uint8_t>((code & tet_code::case_mask) | (negative ? tet_code::negative : 0));
+    }
+    const SortedPolygon& p = sorted_polygons[code & (tet_code::case_mask | tet_code::negative)];
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t a = p.lower[k], b = p.higher[k], above = code >> a & 1 ? a : b;
+        polygon[k] = is_tied[above] ? CrossedEdge<Point>{corner[above], corner[above]}
+                                    : CrossedEdge<Point>{corner[a], corner[b]};
+    }
+    const auto differ = [&](std::size_t a, std::size_t b, std::size_t c) {
+        return polygon[a] != polygon[b] && polygon[b] != polygon[c] && polygon[c] != polygon[a];
+    };
+    const bool first = differ(0, 1, 2), second = p.triangles == 2 && differ(0, 2, 3);
+    if (first && second) return 2;
+    if (!first && !second) return 0;
+    if (second) polygon[1] = polygon[2], polygon[2] = polygon[3];
+    polygon[3] = polygon[2];
+    return 1;
+}
+
+/// Whether the stored form of a flat tet, which keeps the order of the file or mirrors it, has its last two corners
+/// exchanged.
+template <class Point>
+bool Cutter<Point>::is_mirrored_flat(std::size_t tet) {
+    bool odd = false; // the order of the file, against ascending
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = a + 1; b < 4; ++b) odd ^= corners_[a][tet] > corners_[b][tet];
+    const core::CellReader& reader = context_.input.cells;
+    const std::uint64_t cell = first_cell_ + cells_[tet];
+    if (core::Orienter::is_whole(reader.type(cell))) {
+        context_.saw_flat.store(true, std::memory_order_relaxed);
+        return odd != context_.mostly_negative;
+    }
+    return odd != (core::Orienter::six_volumes(points_, reader.tets(cell)) < 0);
+}
+
+template <class Point>
+bool Cutter<Point>::is_coarse(std::size_t tet) const {
+    std::array<core::Point, 4> exact;
+    double moved = 0, shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < 4; ++a) {
+        exact[a] = points_[corners_[a][tet]];
+        core::Point stored;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            stored[axis] = core::store_coordinate<float>(exact[a][axis], context_.origin[axis]) + context_.origin[axis];
+        moved = std::max(moved, squared_distance(exact[a], stored));
+        for (std::size_t b = 0; b < a; ++b) shortest = std::min(shortest, squared_distance(exact[a], exact[b]));
+    }
+    return moved > 1e-6 * shortest;
+}
+
+template class Cutter<std::uint32_t>;
+template class Cutter<std::uint64_t>;
+
+} // namespace isotet::cpu::direct

@@ -1,0 +1,247 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "cpu/direct/direct.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "core/memory.hpp"
+#include "core/parallel.hpp"
+#include "core/tet_survey.hpp"
+#include "cpu/direct/emit.hpp"
+#include "cpu/direct/normals.hpp"
+#include "cpu/extract.hpp"
+
+namespace isotet::cpu::direct {
+
+namespace {
+
+Error cancelled() { return {ErrorCode::cancelled, "extraction was cancelled"}; }
+
+/// Asking how much is free takes longer than extracting a small surface.
+Result<void> require_if_much(std::string_view what, std::uint64_t bytes) {
+    if (bytes <= std::uint64_t{1} << 26) return {};
+    return core::require_memory(what, bytes);
+}
+
+/// The same progress, its fractions between `begin` and `end`.
+Progress part_of(const Progress& progress, double begin, double end) {
+    Progress part;
+    part.cancel = progress.cancel;
+    if (progress.report)
+        part.report = [&report = progress.report, begin, end](std::string_view step, double fraction) {
+            report(step, begin + fraction * (end - begin));
+        };
+    return part;
+}
+
+bool any_unseen(Sides& sides) {
+    std::atomic<bool> any{false};
+    core::parallel_ranges(sides.points(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        unsigned flags = 0;
+        for (std::size_t point = begin; point < end; ++point) flags |= sides.flags()[point];
+        if (flags & side::watched) any.store(true, std::memory_order_relaxed);
+    });
+    return any;
+}
+
+/// One call of extract_direct().
+template <class Real>
+class DirectRun {
+public:
+    DirectRun(const ops::DirectInput& input, const ops::DirectRequest& request)
+        : input_(input), request_(request), wide_(input.grid.points.tuples() >= wide_points_from) {}
+
+    Result<ops::DirectResult> run(const Progress& progress) {
+        if (auto ok = require_if_much("extraction", std::bit_ceil(input_.grid.points.tuples())); !ok) return ok.error();
+        sides_ = Sides(input_.grid.points.tuples());
+        if (auto ok = request_.isovalues.empty() ? look_only(progress) : extract_all(progress); !ok) return ok.error();
+        result_.origin = survey_.origin;
+        result_.field = survey_.report(input_.field.name);
+        for (const StoredField& field : survey_.carried) result_.carried.push_back(field.storage);
+        return std::move(result_);
+    }
+
+private:
+    /// No isovalue: what is told of cells and field.
+    Result<void> look_only(const Progress& progress) {
+        if (auto ok = core::check_cells(input_.grid, input_.cells, progress); !ok) return ok.error();
+        if (auto ok = require_a_tet(); !ok) return ok.error();
+        survey_used_points();
+        for (std::size_t cell = 0; cell < input_.cells.count(); ++cell)
+            result_.cells_left_out += !core::is_contoured(input_.cells.type(cell));
+        return {};
+    }
+
+    Result<void> extract_all(const Progress& progress) {
+        survey_ = survey_points<Real>(input_, nullptr);
+        const std::size_t count = request_.isovalues.size();
+        const auto share = [&](std::size_t done) {
+            return 0.8 * static_cast<double>(done) / static_cast<double>(count);
+        };
+        for (std::size_t i = 0; i < count; ++i) {
+            const Progress part = part_of(progress, share(i), share(i + 1));
+            std::optional<ops::DirectSurface> surface;
+            while (!surface) { // again when what was assumed turned out wrong: each assumption once
+                auto tried = wide_ ? extract<std::uint64_t>(request_.isovalues[i], part)
+                                   : extract<std::uint32_t>(request_.isovalues[i], part);
+                if (!tried) return tried.error();
+                surface = *std::move(tried);
+            }
+            result_.surfaces.push_back(*std::move(surface));
+        }
+        return {};
+    }
+
+    /// The surface; nothing when an assumption was wrong, which has then been set right.
+    template <class Point>
+    Result<std::optional<ops::DirectSurface>> extract(double isovalue, const Progress& progress) {
+        const core::StoredIsovalue<Real> stored = core::store_isovalue<Real>(isovalue, survey_.field.storage);
+        const SidesFound found = find_sides(input_, survey_, isovalue, stored, request_.ties,
+                                            settled_ ? Watch::nothing : Watch::deciding, sides_);
+        CutContext context{input_, sides_, Ranges(sides_.points())};
+        context.mostly_negative = mostly_negative_.value_or(false);
+        context.rounds_coordinates = survey_.rounds_coordinates;
+        context.origin = survey_.origin;
+        context.keep_cells = request_.source_cells;
+        auto cut = try_to_cut<Point>(context, part_of(progress, 0, 0.5));
+        if (!cut) return cut.error();
+        if (!is_as_assumed(context)) return std::optional<ops::DirectSurface>{};
+        const CutCounts counts = cut->counts();
+        if (counts.edges >= wide_points_from && !wide_) {
+            wide_ = true;
+            return std::optional<ops::DirectSurface>{};
+        }
+        result_.cells_left_out = counts.left_out;
+        if (counts.triangles == 0)
+            if (auto ok = require_a_tet(); !ok) return ok.error();
+
+        auto surface = make_surface(VertexSource<Real>(input_, survey_, stored), *std::move(cut), context, progress);
+        if (!surface) return surface.error();
+        surface->coarse_tets = counts.coarse_tets;
+        report_ties(input_, survey_, isovalue, stored, found, sides_, *surface);
+        return std::optional(*std::move(surface));
+    }
+
+    template <class Point>
+    Result<CutCells<Point>> try_to_cut(CutContext& context, const Progress& progress) {
+        try {
+            CutCells<Point> cut = cut_cells<Point>(context, progress);
+            if (progress.cancelled()) return cancelled();
+            if (!context.broken) return cut;
+        } catch (const Budget::Exceeded&) {
+            const std::uint64_t tets = count_cut_tets(input_.cells, sides_);
+            const std::uint64_t most =
+                tets * (24 + 4 * (sizeof(CrossedEdge<Point>) + sizeof(FoundEdge<Point>) + 3 * sizeof(Real)));
+            return Error{ErrorCode::out_of_memory,
+                         fmt::format("extraction may need {} for {} cut tets, but {} are free",
+                                     core::format_bytes(most), tets, core::format_bytes(core::free_memory()))};
+        }
+        if (auto sound = core::check_cells(input_.grid, input_.cells, progress); !sound) return sound.error();
+        return Error{ErrorCode::internal, "extraction found a broken cell that the check of cells does not find"};
+    }
+
+    template <class Point>
+    Result<ops::DirectSurface> make_surface(const VertexSource<Real>& source, CutCells<Point> cut,
+                                           const CutContext& context, const Progress& progress) {
+        const CutCounts counts = cut.counts();
+        EmitOptions options{request_.ends || request_.normals, request_.source_cells, counts.edges >= wide_from};
+        const std::uint64_t needed =
+            welding_memory<Point>(counts.edges) +
+            emitting_memory<Real, Point>(counts.edges, counts.triangles, counts.edges, options);
+        if (auto ok = require_if_much("the surface", needed); !ok) return ok.error();
+        Welded<Point> welded = weld(cut, context.ranges);
+        if (progress.cancelled()) return cancelled();
+        progress("extract", 0.7);
+        options.wide = welded.vertices() >= wide_from;
+        const std::uint64_t kept = sides_.bytes() + context.budget.taken();
+        result_.transient_bytes = std::max(result_.transient_bytes, kept + welding_memory<Point>(counts.edges) +
+                                                                        counts.edges * (options.wide ? 8 : 4));
+        result_.predicted_bytes = std::max(result_.predicted_bytes, kept + needed);
+
+        ops::DirectSurface out;
+        auto surface = emit(source, cut, std::move(welded), options, progress);
+        if (!surface) return surface.error();
+        out.raw = *std::move(surface);
+        cut = {};
+        if (!request_.normals) return out;
+        auto normals = gradients(source, out.raw, progress);
+        if (!normals) return normals.error();
+        out.raw.normals = *std::move(normals);
+        if (!request_.ends) out.raw.ends = out.raw.weights = {};
+        return out;
+    }
+
+    Result<Array> gradients(const VertexSource<Real>& source, const ops::RawSurface& surface,
+                            const Progress& progress) {
+        auto normals = gradient_normals(source, sides_, mostly_negative_.value_or(false), surface, progress);
+        if (normals && normals->saw_flat && !mostly_negative_ && ask_for_most())
+            normals = gradient_normals(source, sides_, true, surface, progress);
+        if (!normals) return normals.error();
+        return normals->normals;
+    }
+
+    bool is_as_assumed(const CutContext& context) {
+        if (!settled_) {
+            settled_ = true;
+            if (any_unseen(sides_)) {
+                const PointSurvey without_them = survey_points<Real>(input_, &sides_);
+                if (!without_them.decides_as(survey_)) {
+                    survey_used_points();
+                    return false;
+                }
+                survey_ = without_them;
+            }
+        }
+        return !(context.saw_flat && !mostly_negative_ && ask_for_most());
+    }
+
+    /// Whether most tetrahedra are negative; asked once.
+    bool ask_for_most() {
+        mostly_negative_ = core::survey_tets(input_.grid, input_.cells).mostly_negative;
+        return *mostly_negative_;
+    }
+
+    /// The survey of just the points that tets use.
+    void survey_used_points() {
+        std::fill(sides_.flags().begin(), sides_.flags().end(), side::watched);
+        see_used_points(input_.cells, sides_);
+        survey_ = survey_points<Real>(input_, &sides_);
+        settled_ = true;
+    }
+
+    Result<void> require_a_tet() const {
+        for (std::size_t cell = 0; cell < input_.cells.count(); ++cell)
+            if (input_.cells.tets(cell).count) return {};
+        return core::nothing_to_contour(input_.grid, input_.cells);
+    }
+
+    const ops::DirectInput& input_;
+    const ops::DirectRequest& request_;
+    Sides sides_;
+    PointSurvey survey_;
+    bool settled_ = false;                ///< the survey is that of the points that tets use, not only of all points
+    std::optional<bool> mostly_negative_; ///< nothing: never asked, and assumed not to be
+    bool wide_;                           ///< point numbers
+    ops::DirectResult result_;
+};
+
+} // namespace
+} // namespace isotet::cpu::direct
+
+namespace isotet::cpu {
+
+template <class Real>
+Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
+                                       const Progress& progress) {
+    return direct::DirectRun<Real>(input, request).run(progress);
+}
+
+template Result<ops::DirectResult> extract_direct<float>(const ops::DirectInput&, const ops::DirectRequest&,
+                                                       const Progress&);
+template Result<ops::DirectResult> extract_direct<double>(const ops::DirectInput&, const ops::DirectRequest&,
+                                                        const Progress&);
+
+} // namespace isotet::cpu

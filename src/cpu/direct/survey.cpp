@@ -1,0 +1,179 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// survey_points(): ranges, magnitudes and bounds, in lanes that the compiler can turn into vectors.
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include "core/bounds.hpp"
+#include "core/orientation.hpp"
+#include "core/value_summary.hpp"
+#include "cpu/direct/points.hpp"
+
+namespace isotet::cpu::direct {
+
+namespace {
+
+constexpr std::size_t survey_grain = 1 << 15;
+
+/// Of all values of the points [begin, end) that count.
+template <class T>
+core::ValueSummary summarize(std::span<const T> values, std::size_t components, const Sides* seen, std::size_t begin,
+                             std::size_t end, double offset) {
+    using Number = std::conditional_t<std::is_same_v<T, float>, float, double>; // floats have no offset
+    core::ValueSummary summary;
+    if (seen) {
+        for (std::size_t point = begin; point < end; ++point)
+            for (std::size_t k = 0; k < components && !seen->is_unseen(point); ++k)
+                summary.add(static_cast<double>(values[point * components + k]), offset);
+        return summary;
+    }
+    core::SummaryLanes<Number> lanes;
+    std::size_t i = begin * components;
+    for (; i + lanes.count <= end * components; i += lanes.count) {
+        typename core::SummaryLanes<Number>::Values some;
+        for (std::size_t k = 0; k < lanes.count; ++k) some[k] = static_cast<Number>(values[i + k]);
+        lanes.add(some, static_cast<Number>(offset));
+    }
+    for (; i < end * components; ++i) summary.add(static_cast<double>(values[i]), offset);
+    summary.combine(lanes.summary());
+    return summary;
+}
+
+core::ValueSummary summarize(const Array& values, const Sides* seen, double offset) {
+    return values.visit([&]<class T>(std::span<const T> typed) {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, values.tuples(), survey_grain), core::ValueSummary{},
+            [&](const tbb::blocked_range<std::size_t>& range, core::ValueSummary summary) {
+                summary.combine(summarize(typed, values.components(), seen, range.begin(), range.end(), offset));
+                return summary;
+            },
+            [](core::ValueSummary a, const core::ValueSummary& b) {
+                a.combine(b);
+                return a;
+            });
+    });
+}
+
+/// Stored values that are 0 though the values are not.
+template <class Real>
+std::uint64_t count_flushed(const Array& values, const Sides* seen, const core::Storage& storage) {
+    return values.visit([&](auto typed) {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, values.tuples(), survey_grain), std::uint64_t{0},
+            [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t count) {
+                for (std::size_t point = range.begin(); point < range.end(); ++point) {
+                    const auto value = static_cast<double>(typed[point]);
+                    count += core::store_value<Real>(value, storage) == 0 && value != storage.offset &&
+                             !(seen && seen->is_unseen(point));
+                }
+                return count;
+            },
+            std::plus<>());
+    });
+}
+
+StoredField survey_field(const Array& values, const Sides* seen, Precision precision) {
+    core::ValueSummary summary = summarize(values, seen, 0);
+    StoredField out{summary.statistics, core::choose_offset(values.type(), summary.statistics, precision), 0};
+    if (out.storage.offset != 0) summary = summarize(values, seen, out.storage.offset);
+    core::choose_scale(out.storage, summary.smallest, summary.largest);
+    out.smallest = summary.smallest * out.storage.scale;
+    return out;
+}
+
+/// Bounds of sound points, and whether there are others.
+struct Bounds : core::Bounds {
+    bool has_unsound = false;
+
+    void combine(const Bounds& other) {
+        core::Bounds::combine(other);
+        has_unsound |= other.has_unsound;
+    }
+};
+
+template <class T>
+bool all_are_sound(const T* coordinates, std::size_t count) {
+    bool sound = true;
+    for (std::size_t i = 0; i < count; ++i) sound &= std::abs(coordinates[i]) < static_cast<T>(0x1p91); // false for NaN
+    return sound;
+}
+
+/// `wanted`: bounds, not only soundness.
+Bounds bounds_of(const Array& array, const Sides* seen, bool wanted) {
+    const core::PointReader points(array);
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, array.tuples(), survey_grain), Bounds{},
+        [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
+            const bool sound = array.type() == ScalarType::float32
+                                   ? all_are_sound(array.as<float>().data() + 3 * range.begin(), 3 * range.size())
+                                   : all_are_sound(array.as<double>().data() + 3 * range.begin(), 3 * range.size());
+            bounds.has_unsound |= !sound;
+            for (std::size_t point = range.begin(); wanted && point < range.end(); ++point)
+                if (!(seen && seen->is_unseen(point)) && (sound || is_sound(points[point]))) bounds.add(points[point]);
+            return bounds;
+        },
+        [](Bounds a, const Bounds& b) {
+            a.combine(b);
+            return a;
+        });
+}
+
+} // namespace
+
+template <class Real>
+PointSurvey survey_points(const ops::DirectInput& input, const Sides* seen) {
+    constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::single : Precision::double_;
+    PointSurvey out;
+    out.field = survey_field(input.field.values, seen, precision);
+    if (out.field.may_flush()) out.flushed = count_flushed<Real>(input.field.values, seen, out.field.storage);
+    for (const Field& field : input.carried) out.carried.push_back(survey_field(field.values, seen, precision));
+
+    const Array& points = input.grid.points;
+    out.rounds_coordinates = points.type() == ScalarType::float64 && precision == Precision::single;
+    const Bounds bounds = bounds_of(points, seen, out.rounds_coordinates);
+    out.has_unsound = bounds.has_unsound;
+    if (out.rounds_coordinates && bounds.lower[0] <= bounds.upper[0]) {
+        out.lower = bounds.lower;
+        out.upper = bounds.upper;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            out.origin[axis] =
+                core::rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
+    }
+    return out;
+}
+
+template PointSurvey survey_points<float>(const ops::DirectInput&, const Sides*);
+template PointSurvey survey_points<double>(const ops::DirectInput&, const Sides*);
+
+namespace {
+
+bool same_storage(const core::Storage& a, const core::Storage& b) {
+    return a.offset == b.offset && a.scale == b.scale && a.unchanged == b.unchanged;
+}
+
+} // namespace
+
+bool PointSurvey::decides_as(const PointSurvey& other) const {
+    return same_storage(field.storage, other.field.storage) && field.statistics.lower == other.field.statistics.lower &&
+           field.statistics.upper == other.field.statistics.upper && origin == other.origin &&
+           std::equal(carried.begin(), carried.end(), other.carried.begin(),
+                      [](const StoredField& a, const StoredField& b) { return same_storage(a.storage, b.storage); });
+}
+
+FieldReport PointSurvey::report(const std::string& name) const {
+    FieldReport report;
+    report.name = name;
+    report.lower = field.statistics.lower;
+    report.upper = field.statistics.upper;
+    report.no_data = field.statistics.no_data;
+    report.infinite = field.statistics.infinite;
+    report.flushed = flushed;
+    report.offset = field.storage.offset;
+    report.scale = field.storage.scale;
+    report.unchanged = field.storage.unchanged;
+    return report;
+}
+
+} // namespace isotet::cpu::direct

@@ -1,0 +1,306 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "reference/direct.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "core/arithmetic.hpp"
+#include "core/case_table.hpp"
+#include "core/orientation.hpp"
+#include "core/storage.hpp"
+#include "core/tet_gradient.hpp"
+
+namespace isotet::reference {
+
+namespace {
+
+using core::Point;
+using core::PointReader;
+
+/// A tet in its stored form.
+struct UserTet {
+    core::Tet corners;
+    std::size_t cell;
+};
+
+std::vector<UserTet> all_tets(const Grid& grid, const core::CellReader& cells) {
+    const PointReader points(grid.points);
+    std::int64_t balance = 0;
+    for (std::size_t cell = 0; cell < cells.count(); ++cell)
+        if (cells.type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron))
+            for (const core::Tet& tet : cells.tets(cell)) balance += points.orientation(tet);
+    const core::Orienter orienter(grid.points, balance < 0);
+    std::vector<UserTet> tets;
+    core::Orienter::Counts counts;
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        const core::CellTets pieces = cells.tets(cell);
+        for (int piece = 0; piece < pieces.count; ++piece)
+            tets.push_back({orienter.stored(cells.type(cell), pieces, static_cast<unsigned>(piece), counts), cell});
+    }
+    return tets;
+}
+
+/// How a field is stored, from its values at the used points.
+struct Looked {
+    core::ValueStatistics statistics;
+    core::Storage storage;
+};
+
+Looked look_at(const Array& values, const std::set<std::uint64_t>& used, Precision precision) {
+    Looked out;
+    const auto for_values = [&](const auto& f) {
+        for (const std::uint64_t point : used)
+            for (std::size_t k = 0; k < values.components(); ++k) f(values.at(point, k));
+    };
+    for_values([&](double value) { out.statistics.add(value); });
+    out.storage = core::choose_offset(values.type(), out.statistics, precision);
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+    for_values([&](double value) {
+        const double magnitude = std::abs(value - out.storage.offset);
+        if (!(magnitude > 0) || std::isinf(magnitude)) return;
+        smallest = std::min(smallest, magnitude);
+        largest = std::max(largest, magnitude);
+    });
+    core::choose_scale(out.storage, smallest, largest);
+    return out;
+}
+
+FieldReport report_on(const PointField& field, const Looked& looked) {
+    FieldReport report;
+    report.name = field.name;
+    report.lower = looked.statistics.lower;
+    report.upper = looked.statistics.upper;
+    report.no_data = looked.statistics.no_data;
+    report.infinite = looked.statistics.infinite;
+    report.offset = looked.storage.offset;
+    report.scale = looked.storage.scale;
+    report.unchanged = looked.storage.unchanged;
+    return report;
+}
+
+std::array<double, 3> origin_of(const PointReader& points, const std::set<std::uint64_t>& used) {
+    std::array<double, 3> origin{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+        for (const std::uint64_t point : used) {
+            lower = std::min(lower, points[point][axis]);
+            upper = std::max(upper, points[point][axis]);
+        }
+        origin[axis] = core::rounded_to_float(lower + (upper - lower) / 2);
+    }
+    return origin;
+}
+
+/// A grid with everything stored: what surfaces are made from.
+template <class Real>
+class StoredGrid {
+public:
+    StoredGrid(const ops::DirectInput& input, std::vector<UserTet> tets, ops::DirectResult& result)
+        : tets_(std::move(tets)), field_(input.field.values), points_(input.grid.points) {
+        for (const UserTet& tet : tets_) used_.insert(tet.corners.begin(), tet.corners.end());
+        const Precision precision = sizeof(Real) == sizeof(float) ? Precision::single : Precision::double_;
+        const Looked looked = look_at(field_, used_, precision);
+        storage_ = looked.storage;
+        result.field = report_on(input.field, looked);
+        for (const Field& field : input.carried)
+            result.carried.push_back(look_at(field.values, used_, precision).storage);
+        rounds_ = input.grid.points.type() == ScalarType::float64 && precision == Precision::single;
+        if (rounds_) origin_ = origin_of(points_, used_);
+        result.origin = origin_;
+        for (const std::uint64_t point : used_) {
+            values_[point] = core::store_value<Real>(field_.at(point), storage_);
+            result.field.flushed += values_[point] == 0 && field_.at(point) != storage_.offset;
+        }
+    }
+
+    ops::DirectSurface extract(double isovalue, const ops::DirectRequest& request);
+
+private:
+    /// The user's points of an edge, lower first; twice the same for a tied point.
+    using Edge = std::pair<std::uint64_t, std::uint64_t>;
+
+    bool is_valid(const UserTet& tet) const {
+        return std::none_of(tet.corners.begin(), tet.corners.end(),
+                            [&](std::uint64_t p) { return core::is_nan(values_.at(p)); });
+    }
+    core::Vector<Real> position(std::uint64_t point) const {
+        const Point p = points_[point];
+        core::Vector<Real> stored;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            stored[axis] = core::store_coordinate<Real>(p[axis], origin_[axis]);
+        return stored;
+    }
+    bool is_coarse(const UserTet& tet) const;
+    void report_ties(double isovalue, const core::StoredIsovalue<Real>& stored, ops::DirectSurface& surface) const;
+    std::map<std::uint64_t, std::uint32_t> gradients() const;
+
+    std::vector<UserTet> tets_;
+    Array field_;
+    PointReader points_;
+    std::set<std::uint64_t> used_;
+    core::Storage storage_;
+    bool rounds_ = false; ///< coordinates
+    std::array<double, 3> origin_{};
+    std::map<std::uint64_t, Real> values_; ///< stored ones, of the used points
+};
+
+template <class Real>
+bool StoredGrid<Real>::is_coarse(const UserTet& tet) const {
+    if (!rounds_) return false;
+    const auto squared_distance = [](const Point& a, const Point& b) {
+        const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+        return x * x + y * y + z * z;
+    };
+    double moved = 0, shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < 4; ++a) {
+        Point back;
+        const core::Vector<Real> stored = position(tet.corners[a]);
+        for (std::size_t axis = 0; axis < 3; ++axis) back[axis] = stored[axis] + origin_[axis];
+        moved = std::max(moved, squared_distance(points_[tet.corners[a]], back));
+        for (std::size_t b = a + 1; b < 4; ++b)
+            shortest = std::min(shortest, squared_distance(points_[tet.corners[a]], points_[tet.corners[b]]));
+    }
+    return moved > 1e-6 * shortest;
+}
+
+template <class Real>
+void StoredGrid<Real>::report_ties(double isovalue, const core::StoredIsovalue<Real>& stored,
+                                   ops::DirectSurface& surface) const {
+    const auto holds_exactly = [&](std::uint64_t point, double value) {
+        return field_.visit([&](auto values) { return core::equals_exactly(values[point], value); });
+    };
+    surface.isovalue_stored = core::restore_value(stored.sum(), storage_);
+    for (const std::uint64_t point : used_)
+        if (values_.at(point) == stored.tied) {
+            ++surface.raw.tied_points;
+            surface.false_ties += !holds_exactly(point, isovalue);
+        }
+    const double nearest = snap(field_, isovalue);
+    if (nearest == isovalue || surface.raw.tied_points != 0) return;
+    for (const std::uint64_t point : used_) surface.near_tie |= holds_exactly(point, nearest);
+}
+
+template <class Real>
+std::map<std::uint64_t, std::uint32_t> StoredGrid<Real>::gradients() const {
+    std::map<std::uint64_t, Point> sums;
+    for (const UserTet& tet : tets_) {
+        if (!is_valid(tet)) continue;
+        std::array<Point, 4> corners;
+        std::array<double, 4> values;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const core::Vector<Real> p = position(tet.corners[k]);
+            corners[k] = {p[0], p[1], p[2]};
+            values[k] = values_.at(tet.corners[k]);
+        }
+        const Point gradient = core::six_volumes_times_gradient(corners, values);
+        for (const std::uint64_t corner : tet.corners)
+            for (std::size_t axis = 0; axis < 3; ++axis) sums[corner][axis] += gradient[axis];
+    }
+    std::map<std::uint64_t, std::uint32_t> codes;
+    for (const auto& [point, sum] : sums) codes[point] = core::encode_normal(sum);
+    return codes;
+}
+
+template <class Real>
+ops::DirectSurface StoredGrid<Real>::extract(double user_isovalue, const ops::DirectRequest& request) {
+    const core::StoredIsovalue<Real> isovalue = core::store_isovalue<Real>(user_isovalue, storage_);
+    const auto value = [&](std::uint64_t p) { return values_.at(p); };
+    const auto edge_of = [&](std::uint64_t above, std::uint64_t below) -> Edge {
+        if (request.ties == Ties::merge && value(above) == isovalue.tied) return {above, above};
+        return {std::min(above, below), std::max(above, below)};
+    };
+    ops::DirectSurface surface;
+    std::vector<std::array<Edge, 3>> triangles;
+    std::vector<std::int64_t> source_cells;
+    std::map<Edge, std::uint64_t> numbers;
+    for (const UserTet& tet : tets_) {
+        if (!is_valid(tet)) continue;
+        unsigned index = 0;
+        for (std::size_t k = 0; k < 4; ++k) index |= unsigned{value(tet.corners[k]) >= isovalue.value} << k;
+        const core::TetCase& c = core::case_table[index];
+        const std::size_t before = triangles.size();
+        for (std::size_t t = 0; t < c.triangles; ++t) {
+            std::array<Edge, 3> triangle;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const core::CrossedEdge edge = c.polygon[core::triangle_corners[t][k]];
+                triangle[k] = edge_of(tet.corners[edge.above], tet.corners[edge.below]);
+            }
+            if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+            triangles.push_back(triangle);
+            for (const Edge& edge : triangle) numbers[edge] = 0;
+            if (request.source_cells) source_cells.push_back(static_cast<std::int64_t>(tet.cell));
+        }
+        surface.coarse_tets += triangles.size() > before && is_coarse(tet);
+    }
+
+    const auto codes = request.normals ? gradients() : std::map<std::uint64_t, std::uint32_t>{};
+    std::vector<Real> positions, weights;
+    std::vector<float> normals;
+    std::vector<std::int64_t> ends;
+    std::uint64_t next = 0;
+    for (auto& [edge, number] : numbers) {
+        number = next++;
+        const bool lower_is_above = value(edge.first) >= isovalue.value;
+        const std::uint64_t below = lower_is_above ? edge.second : edge.first,
+                            above = lower_is_above ? edge.first : edge.second;
+        const Real t = below == above ? Real(0) : core::edge_weight(isovalue, value(below), value(above));
+        const core::Vector<Real> a = position(below), b = position(above);
+        for (std::size_t axis = 0; axis < 3; ++axis) positions.push_back(core::interpolate(a[axis], b[axis], t));
+        if (request.ends) {
+            ends.push_back(static_cast<std::int64_t>(below));
+            ends.push_back(static_cast<std::int64_t>(above));
+            weights.push_back(t);
+        }
+        if (request.normals)
+            for (const Real x : core::vertex_normal(codes.at(below), codes.at(above), t))
+                normals.push_back(static_cast<float>(x));
+    }
+
+    ops::RawSurface& raw = surface.raw;
+    const auto number_triangles = [&]<class Index>(std::vector<Index> out) {
+        for (const auto& triangle : triangles)
+            for (const Edge& edge : triangle) out.push_back(static_cast<Index>(numbers.at(edge)));
+        raw.triangles = Array::own(std::move(out), 3);
+    };
+    if (numbers.size() < std::uint64_t{1} << 32) number_triangles(std::vector<std::uint32_t>{});
+    else number_triangles(std::vector<std::uint64_t>{});
+    raw.positions = Array::own(std::move(positions), 3);
+    if (request.ends) {
+        raw.ends = Array::own(std::move(ends), 2);
+        raw.weights = Array::own(std::move(weights));
+    }
+    if (request.normals) raw.normals = Array::own(std::move(normals), 3);
+    if (request.source_cells) raw.source_cells = Array::own(std::move(source_cells));
+    report_ties(user_isovalue, isovalue, surface);
+    return surface;
+}
+
+} // namespace
+
+template <class Real>
+Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
+                                       const Progress& progress) {
+    if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
+    std::vector<UserTet> tets = all_tets(input.grid, input.cells);
+    if (tets.empty()) return core::nothing_to_contour(input.grid, input.cells);
+    ops::DirectResult result;
+    for (std::size_t cell = 0; cell < input.cells.count(); ++cell)
+        result.cells_left_out += !core::is_contoured(input.cells.type(cell));
+    StoredGrid<Real> stored(input, std::move(tets), result);
+    for (const double isovalue : request.isovalues) {
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
+        result.surfaces.push_back(stored.extract(isovalue, request));
+    }
+    return result;
+}
+
+template Result<ops::DirectResult> extract_direct<float>(const ops::DirectInput&, const ops::DirectRequest&,
+                                                       const Progress&);
+template Result<ops::DirectResult> extract_direct<double>(const ops::DirectInput&, const ops::DirectRequest&,
+                                                        const Progress&);
+
+} // namespace isotet::reference

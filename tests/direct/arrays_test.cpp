@@ -1,0 +1,120 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The same bytes however the cells are written, for any number of threads, instruction set and width of numbers.
+#include <gtest/gtest.h>
+
+#include "cpu/direct/direct.hpp"
+#include "cpu/extract.hpp"
+#include "cpu/level.hpp"
+#include "direct/direct_support.hpp"
+#include "support/random_grid.hpp"
+#include "support/seeds.hpp"
+#include "support/small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+template <class T>
+Array as_type(const Array& array) {
+    std::vector<T> values;
+    for (std::size_t i = 0; i < array.size(); ++i) values.push_back(static_cast<T>(array.at(i)));
+    return Array::own(std::move(values));
+}
+
+TEST(CellsOnce, GiveTheSameBytesWhateverTypeTheirNumbersHave) {
+    const NastyGrid g = nasty_grid(3, {.side = 9, .values = 4, .no_data = 0.02, .missing = 0.1});
+    const DirectOptions options = with_everything(Ties::merge, Precision::single);
+    const std::string expected = bytes_of(surface_once(g.grid, g.field, 0, options));
+    std::vector<std::int64_t> offsets;
+    for (std::size_t cell = 0; cell <= g.grid.cells.count(); ++cell)
+        offsets.push_back(static_cast<std::int64_t>(4 * cell));
+    for (const Array& numbers :
+         {as_type<std::int32_t>(g.grid.cells.connectivity), as_type<std::uint32_t>(g.grid.cells.connectivity),
+          as_type<std::int64_t>(g.grid.cells.connectivity), as_type<std::uint64_t>(g.grid.cells.connectivity)}) {
+        Grid grid = g.grid;
+        grid.cells.connectivity = numbers;
+        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected) << name_of(numbers.type());
+        grid.cells.offsets = Array::own(offsets);
+        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected)
+            << name_of(numbers.type()) << " with offsets";
+        grid.cells.types = Array::own(std::vector<std::uint8_t>(grid.cells.count(), 10));
+        EXPECT_TRUE(bytes_of(surface_once(grid, g.field, 0, options)) == expected)
+            << name_of(numbers.type()) << " with types";
+    }
+}
+
+TEST(ThreadsOnce, DoNotMatter) {
+    const Grid shuffled = made_grid("shuffled", 24, {"gyroid"}), mixed = made_grid("mixed", 16, {"wavelet", "integer"});
+    for (const auto& [grid, field, isovalue] :
+         {std::tuple{shuffled, point_field(shuffled), 0.1}, {mixed, point_field(mixed, 1), 2.0}})
+        for (const Ties ties : {Ties::merge, Ties::keep}) {
+            std::string expected;
+            for (const int threads : {1, 2, 7, 64, 7, 2}) {
+                DirectOptions options = with_everything(ties, Precision::single);
+                options.extract.threads = threads;
+                options.extract.point_fields = grid.point_fields;
+                const std::string bytes = bytes_of(surface_once(grid, field, isovalue, options));
+                if (expected.empty()) expected = bytes;
+                ASSERT_TRUE(bytes == expected) << threads << " threads";
+            }
+        }
+}
+
+TEST(InstructionLevelsOnce, GiveTheSameBytes) {
+    for (const std::uint32_t seed : Seeds(1, 6)) {
+        const NastyGrid g = nasty_grid(
+            seed, {.side = 9, .values = int(seed % 2) * 5, .missing = 0.05, .inverted = 0.1, .wide = seed % 3 == 0});
+        const DirectOptions options = with_everything(Ties::merge, Precision::single);
+        for (const double isovalue : {-0.5, 0.0, 0.25, 1.5}) {
+            std::string expected;
+            for (int level = 0; level <= int(cpu::best_level()); ++level) {
+                cpu::force_level(cpu::Level(level));
+                const std::string bytes = bytes_of(surface_once(g.grid, g.field, isovalue, options));
+                cpu::force_level({});
+                if (expected.empty()) expected = bytes;
+                ASSERT_TRUE(bytes == expected) << isovalue << ", " << cpu::name_of(cpu::Level(level));
+            }
+        }
+    }
+}
+
+/// Lowers limits for one test.
+class WideNumbersOnce : public testing::Test {
+protected:
+    void TearDown() override {
+        cpu::direct::wide_points_from = direct_limit_;
+        cpu::wide_from = limit_;
+    }
+
+private:
+    const std::uint64_t direct_limit_ = cpu::direct::wide_points_from, limit_ = cpu::wide_from;
+};
+
+TEST_F(WideNumbersOnce, OfPointsAndEdgesGiveTheSameBytes) {
+    const NastyGrid g = nasty_grid(9, {.side = 8, .values = 3, .no_data = 0.02, .wide = true});
+    for (const Precision precision : {Precision::single, Precision::double_})
+        for (const Ties ties : {Ties::merge, Ties::keep}) {
+            const DirectOptions options = with_everything(ties, precision);
+            const std::string narrow = bytes_of(surface_once(g.grid, g.field, 0.5, options));
+            cpu::direct::wide_points_from = 1; // points
+            EXPECT_TRUE(bytes_of(surface_once(g.grid, g.field, 0.5, options)) == narrow);
+            cpu::direct::wide_points_from = g.grid.points.tuples() + 1; // edges
+            EXPECT_TRUE(bytes_of(surface_once(g.grid, g.field, 0.5, options)) == narrow);
+        }
+}
+
+TEST_F(WideNumbersOnce, OfVerticesGiveTheSameTriangles) {
+    const NastyGrid g = nasty_grid(9, {.side = 8, .values = 3});
+    const DirectOptions options = with_everything(Ties::merge, Precision::single);
+    const Surface narrow = surface_once(g.grid, g.field, 0.5, options);
+    cpu::wide_from = narrow.vertices();
+    Surface wide = surface_once(g.grid, g.field, 0.5, options);
+    cpu::wide_from = narrow.vertices() + 1;
+    EXPECT_EQ(surface_once(g.grid, g.field, 0.5, options).triangles.type(), ScalarType::uint32);
+    ASSERT_EQ(wide.triangles.type(), ScalarType::uint64);
+    const auto indices = wide.triangles.as<std::uint64_t>();
+    wide.triangles = Array::own(std::vector<std::uint32_t>(indices.begin(), indices.end()), 3);
+    EXPECT_TRUE(bytes_of(narrow) == bytes_of(wide));
+}
+
+} // namespace
+} // namespace isotet::test
