@@ -72,12 +72,14 @@ bool is_unified(const Capabilities& capabilities) {
     return type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU || type == VK_PHYSICAL_DEVICE_TYPE_CPU;
 }
 
-/// The memory type with the highest score; among equals the largest heap, then the first, as Vulkan orders them.
+/// Of the allowed memory types the one with the highest score; among equals the largest heap, then the first, as Vulkan
+/// orders them.
 template <class Score>
-std::uint32_t best_memory_type(const VkPhysicalDeviceMemoryProperties& memory, Score&& score) {
+std::uint32_t best_memory_type(const VkPhysicalDeviceMemoryProperties& memory, MemoryTypes allowed, Score&& score) {
     std::uint32_t best = Capabilities::none;
     std::pair<int, VkDeviceSize> best_score{-1, 0};
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+        if (!(allowed >> i & 1)) continue;
         const std::pair<int, VkDeviceSize> here{score(memory.memoryTypes[i].propertyFlags),
                                                 memory.memoryHeaps[memory.memoryTypes[i].heapIndex].size};
         if (here.first >= 0 && here > best_score) {
@@ -95,9 +97,9 @@ constexpr VkMemoryPropertyFlags unwanted = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_B
 
 } // namespace
 
-std::uint32_t device_memory_type(const Capabilities& capabilities) {
+std::uint32_t device_memory_type(const Capabilities& capabilities, MemoryTypes allowed) {
     const bool unified = is_unified(capabilities);
-    return best_memory_type(capabilities.memory, [&](VkMemoryPropertyFlags flags) {
+    return best_memory_type(capabilities.memory, allowed, [&](VkMemoryPropertyFlags flags) {
         if (flags & unwanted) return -1;
         const bool own = flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, mapped = (flags & mappable) == mappable;
         const bool cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
@@ -106,18 +108,22 @@ std::uint32_t device_memory_type(const Capabilities& capabilities) {
     });
 }
 
-std::uint32_t upload_memory_type(const Capabilities& capabilities) {
-    return best_memory_type(capabilities.memory, [](VkMemoryPropertyFlags flags) {
+std::uint32_t upload_memory_type(const Capabilities& capabilities, MemoryTypes allowed) {
+    return best_memory_type(capabilities.memory, allowed, [](VkMemoryPropertyFlags flags) {
         if ((flags & unwanted) || (flags & mappable) != mappable) return -1;
         return 2 * !(flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) + !(flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
     });
 }
 
-std::uint32_t download_memory_type(const Capabilities& capabilities) {
-    return best_memory_type(capabilities.memory, [](VkMemoryPropertyFlags flags) {
+std::uint32_t download_memory_type(const Capabilities& capabilities, MemoryTypes allowed) {
+    return best_memory_type(capabilities.memory, allowed, [](VkMemoryPropertyFlags flags) {
         if ((flags & unwanted) || (flags & mappable) != mappable) return -1;
         return 2 * !!(flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) + !(flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     });
+}
+
+bool is_unified_type(const Capabilities& capabilities, std::uint32_t type) {
+    return (capabilities.memory.memoryTypes[type].propertyFlags & mappable) == mappable && is_unified(capabilities);
 }
 
 Capabilities ask(const InstanceFunctions& call, VkPhysicalDevice device) {
@@ -230,8 +236,7 @@ DeviceInfo describe(const Capabilities& capabilities, std::size_t index) {
         const std::uint32_t heap = capabilities.memory.memoryTypes[type].heapIndex;
         info.memory = capabilities.memory.memoryHeaps[heap].size;
         info.memory_free = capabilities.heap_free[heap];
-        info.unified_memory =
-            (capabilities.memory.memoryTypes[type].propertyFlags & mappable) == mappable && is_unified(capabilities);
+        info.unified_memory = is_unified_type(capabilities, type);
     }
     info.memory_free_known = capabilities.memory_budget;
     info.transfer_queue = capabilities.transfer_family != capabilities.compute_family;

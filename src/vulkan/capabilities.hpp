@@ -54,11 +54,20 @@ std::string why_unable_to_draw(const Capabilities& capabilities);
 /// The public description. `index` is the device's place in the list.
 DeviceInfo describe(const Capabilities& capabilities, std::size_t index);
 
+/// Memory types as bits: VkMemoryRequirements::memoryTypeBits.
+using MemoryTypes = std::uint32_t;
+constexpr MemoryTypes all_memory_types = UINT32_MAX;
+
 /// The memory type for device buffers: the device's own, in the largest heap; mapped as well where memory is unified.
-std::uint32_t device_memory_type(const Capabilities& capabilities);
+///
+/// `allowed`   what the driver says of such a buffer (or image); a list may begin with types for other things
+std::uint32_t device_memory_type(const Capabilities& capabilities, MemoryTypes allowed = all_memory_types);
 
 /// The machine's memory for going up (write-combined will do) or down (cached, where there is such).
-std::uint32_t upload_memory_type(const Capabilities& capabilities);
-std::uint32_t download_memory_type(const Capabilities& capabilities);
+std::uint32_t upload_memory_type(const Capabilities& capabilities, MemoryTypes allowed = all_memory_types);
+std::uint32_t download_memory_type(const Capabilities& capabilities, MemoryTypes allowed = all_memory_types);
+
+/// Whether the memory type is both the processor's and the device's, and the processor can reach it.
+bool is_unified_type(const Capabilities& capabilities, std::uint32_t type);
 
 } // namespace isotet::vulkan

@@ -52,8 +52,9 @@ Result<std::shared_ptr<Context>> Context::open_unguarded(const DeviceOptions& op
         LogicalDevice::open(*context->instance_, found->handles[*chosen], capabilities, settings.alter_functions);
     if (!device) return device.error();
     context->device_ = *std::move(device);
-    context->memory_ = std::make_unique<Memory>(*context->device_, capabilities,
-                                                Memory::Options{options.memory_limit, settings.force_staging});
+    auto memory = Memory::open(*context->device_, capabilities, {options.memory_limit, settings.force_staging});
+    if (!memory) return memory.error();
+    context->memory_ = *std::move(memory);
     context->cache_ = std::make_unique<PipelineCache>(*context->device_, capabilities,
                                                       settings.cache_folder.value_or(core::cache_folder()));
     context->kernels_ = std::make_unique<Kernels>(*context->device_, capabilities, *context->cache_);

@@ -43,10 +43,35 @@ void Buffer::swap(Buffer& other) noexcept {
     std::swap(cached_, other.cached_);
 }
 
-Memory::Memory(LogicalDevice& device, const Capabilities& capabilities, const Options& options)
-    : device_(device), limit_(options.limit), largest_(capabilities.properties11.maxMemoryAllocationSize) {
+Memory::Memory(LogicalDevice& device, const Capabilities& capabilities, std::uint64_t limit)
+    : device_(device),
+      limit_(limit),
+      largest_(capabilities.properties11.maxMemoryAllocationSize),
+      budget_(capabilities.memory_budget) {}
+
+Result<std::unique_ptr<Memory>> Memory::open(LogicalDevice& device, const Capabilities& capabilities,
+                                             const Options& options) {
+    std::unique_ptr<Memory> memory(new Memory(device, capabilities, options.limit));
+    if (Result<void> chosen = memory->choose_types(capabilities, options); !chosen) return chosen.error();
+    return memory;
+}
+
+Result<MemoryTypes> Memory::allowed_types() {
+    Buffer probe; // all buffers have its usage, and so may lie in the same memory types
+    probe.size_ = grain;
+    if (Result<void> made = make_buffer(probe, grain, "probe"); !made) return made.error();
+    VkMemoryRequirements needs{};
+    device_.call().vkGetBufferMemoryRequirements(device_.handle(), probe.handle_, &needs);
+    device_.call().vkDestroyBuffer(device_.handle(), probe.handle_, nullptr);
+    return needs.memoryTypeBits;
+}
+
+Result<void> Memory::choose_types(const Capabilities& capabilities, const Options& options) {
+    const Result<MemoryTypes> allowed = allowed_types();
+    if (!allowed) return allowed.error();
     const VkPhysicalDeviceMemoryProperties& types = capabilities.memory;
     const auto set_up = [&](Where where, std::uint32_t type) {
+        if (type == Capabilities::none) return false;
         Pool& pool = pool_of(where);
         const VkMemoryPropertyFlags flags = types.memoryTypes[type].propertyFlags;
         constexpr VkMemoryPropertyFlags mappable =
@@ -54,18 +79,23 @@ Memory::Memory(LogicalDevice& device, const Capabilities& capabilities, const Op
         pool.type = type;
         pool.mapped = (flags & mappable) == mappable;
         pool.cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+        return true;
     };
-    set_up(Where::device, device_memory_type(capabilities));
-    set_up(Where::upload, upload_memory_type(capabilities));
-    set_up(Where::download, download_memory_type(capabilities));
+    if (!set_up(Where::device, device_memory_type(capabilities, *allowed)) ||
+        !set_up(Where::upload, upload_memory_type(capabilities, *allowed)) ||
+        !set_up(Where::download, download_memory_type(capabilities, *allowed)))
+        return Error{ErrorCode::machine,
+                     fmt::format("the driver allows buffers in the memory types {:#b} alone, and the processor can "
+                                 "reach none of them",
+                                 *allowed)};
     Pool& own = pool_of(Where::device);
-    own.mapped = own.mapped && describe(capabilities, 0).unified_memory && !options.hide_unified;
+    own.mapped = is_unified_type(capabilities, own.type) && !options.hide_unified;
     heap_ = types.memoryTypes[own.type].heapIndex;
     heap_bytes_ = types.memoryHeaps[heap_].size;
-    budget_ = capabilities.memory_budget;
 
     const std::uint64_t most = limit_ ? std::min(limit_, heap_bytes_) : heap_bytes_;
     block_bytes_ = std::clamp(std::bit_floor(most / 16), smallest_block, largest_block);
+    return {};
 }
 
 Memory::~Memory() {

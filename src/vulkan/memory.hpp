@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string_view>
@@ -91,8 +92,15 @@ public:
         std::uint64_t limit = 0;   ///< bytes that buffers in Where::device may take in all; 0: what is free
         bool hide_unified = false; ///< never map Where::device, so that everything is staged
     };
-    Memory(LogicalDevice& device, const Capabilities& capabilities, const Options& options);
+
+    /// Asks the driver with a probe buffer which memory types buffers may have, and chooses among these.
+    ///
+    /// Errors   out_of_memory; machine, also when buffers may lie in no memory that the processor can reach
+    static Result<std::unique_ptr<Memory>> open(LogicalDevice& device, const Capabilities& capabilities,
+                                                const Options& options);
     ~Memory();
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
 
     /// A buffer of `bytes` (at least one is taken), not cleared. It can be copied from and to, filled, read and written
     /// by kernels, and hold arguments of indirect dispatches. Four more bytes than asked for may be read behind its
@@ -116,6 +124,9 @@ private:
     /// Bytes behind the end of each buffer that may be read.
     static constexpr std::uint64_t slack = 4;
 
+    Memory(LogicalDevice& device, const Capabilities& capabilities, std::uint64_t limit);
+    Result<MemoryTypes> allowed_types();
+    Result<void> choose_types(const Capabilities& capabilities, const Options& options);
     Pool& pool_of(Where where) noexcept { return pools_[static_cast<std::size_t>(where)]; }
     std::uint64_t free_locked() const;
     Result<void> make_buffer(Buffer& buffer, std::uint64_t bytes, std::string_view name);

@@ -142,10 +142,12 @@ Result<void> Target::make_image(Image& image, VkFormat format, VkImageUsageFlags
     VkMemoryAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
     allocate.allocationSize = needs.size;
-    allocate.memoryTypeIndex = device_memory_type(context_.capabilities());
-    if (!(needs.memoryTypeBits >> allocate.memoryTypeIndex & 1))
+    allocate.memoryTypeIndex = device_memory_type(context_.capabilities(), needs.memoryTypeBits);
+    if (allocate.memoryTypeIndex == Capabilities::none)
         return Error{ErrorCode::machine,
-                     fmt::format("the driver does not allow images in memory type {}", allocate.memoryTypeIndex)};
+                     fmt::format("the driver allows images in the memory types {:#b} alone, and none of them is plain "
+                                 "memory",
+                                 needs.memoryTypeBits)};
     if (const VkResult made = call.vkAllocateMemory(device.handle(), &allocate, nullptr, &image.memory);
         made != VK_SUCCESS) {
         image.memory = VK_NULL_HANDLE;

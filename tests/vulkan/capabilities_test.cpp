@@ -141,6 +141,34 @@ TEST(Capabilities, OfAProcessorWithGraphicsMapTheMemoryOfBoth) {
     EXPECT_TRUE(vulkan::describe(device, 0).unified_memory);
 }
 
+/// As Mesa lists them for Intel's Xe2 cards: compressed memory first, which ordinary buffers may not use.
+Capabilities card_with_compressed_memory() {
+    Capabilities device = card();
+    set_memory(device, {12 * gigabyte, 32 * gigabyte},
+               {{own, 0}, {own, 0}, {visible | coherent | cached, 1}, {own | visible | coherent, 0}});
+    return device;
+}
+
+TEST(Capabilities, OfMemoryTypesThatLookAlikeGiveOneThatIsAllowed) {
+    const Capabilities device = card_with_compressed_memory();
+    constexpr vulkan::MemoryTypes all_but_compressed = 0b1110;
+    EXPECT_EQ(vulkan::device_memory_type(device, all_but_compressed), 1u);
+    EXPECT_EQ(vulkan::upload_memory_type(device, all_but_compressed), 2u);
+    EXPECT_EQ(vulkan::download_memory_type(device, all_but_compressed), 2u);
+}
+
+TEST(Capabilities, NeverGiveAMemoryTypeThatIsNotAllowed) {
+    const Capabilities device = card_with_compressed_memory();
+    for (vulkan::MemoryTypes allowed = 0; allowed < 16; ++allowed)
+        for (const std::uint32_t type :
+             {vulkan::device_memory_type(device, allowed), vulkan::upload_memory_type(device, allowed),
+              vulkan::download_memory_type(device, allowed)}) {
+            EXPECT_TRUE(type == Capabilities::none || allowed >> type & 1) << allowed << " gave " << type;
+        }
+    EXPECT_EQ(vulkan::device_memory_type(device, 0), Capabilities::none);
+    EXPECT_EQ(vulkan::upload_memory_type(device, 0b0011), Capabilities::none);
+}
+
 TEST(Capabilities, LeaveAloneMemoryThatOnlyLooksUseful) {
     Capabilities device = card();
     set_memory(device, {24 * gigabyte, 64 * gigabyte},
