@@ -5,17 +5,16 @@
 //
 // Arrays start at multiples of 64 bytes. The description (plain bytes: sentences, names, and for each array its type,
 // place and size) comes last, and the header after everything else, so an unfinished reply has no valid header.
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
-#include <limits>
-#include <sys/mman.h>
-#include <sys/stat.h>
+#include <span>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "io/vtk/messages.hpp"
+#include "io/vtk/sealed_mapping.hpp"
 #include "io/vtk/wire.hpp"
 
 namespace isotet::io::vtk {
@@ -209,19 +208,6 @@ private:
     std::shared_ptr<const void> owner_;
 };
 
-/// Unmapped with the last array that lies in it.
-class Mapping {
-public:
-    Mapping(void* begin, std::size_t size) : begin_(begin), size_(size) {}
-    Mapping(const Mapping&) = delete;
-    Mapping& operator=(const Mapping&) = delete;
-    ~Mapping() { ::munmap(begin_, size_); }
-
-private:
-    void* begin_;
-    std::size_t size_;
-};
-
 } // namespace
 
 Result<void> write_reply(int descriptor, Reply reply) {
@@ -241,26 +227,18 @@ Result<void> write_reply(int descriptor, Reply reply) {
 
 Result<Reply> map_reply(int descriptor) {
     const Error incomplete{ErrorCode::internal, "the reader process ended without a complete reply"};
-    if (::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0)
-        return Error{ErrorCode::machine,
-                     fmt::format("the reply of the reader process cannot be sealed: {}", std::strerror(errno))};
-    struct stat status{};
-    if (::fstat(descriptor, &status) != 0 || status.st_size < static_cast<off_t>(alignment)) return incomplete;
-    const auto size = static_cast<std::uint64_t>(status.st_size);
-    void* begin = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
-    if (begin == MAP_FAILED)
-        return Error{ErrorCode::machine, fmt::format("the reply of the reader process, {} bytes, cannot be mapped: {}",
-                                                     size, std::strerror(errno))};
-    auto mapping = std::make_shared<const Mapping>(begin, size);
+    const auto mapping = map_sealed(descriptor);
+    if (!mapping) return mapping.error();
+    const std::span<const std::byte> bytes = mapping->bytes;
+    if (bytes.size() < alignment) return incomplete;
 
     Header header;
-    std::memcpy(&header, begin, sizeof header);
-    if (header.magic != magic || header.description_begin < alignment || header.description_begin > size ||
-        header.description_size > size - header.description_begin)
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (header.magic != magic || header.description_begin < alignment || header.description_begin > bytes.size() ||
+        header.description_size > bytes.size() - header.description_begin)
         return incomplete;
-    const auto* bytes = static_cast<const std::byte*>(begin);
-    Decoder in({reinterpret_cast<const char*>(bytes) + header.description_begin, header.description_size});
-    Undescriber undescriber(in, bytes, header.description_begin, mapping);
+    Decoder in({reinterpret_cast<const char*>(bytes.data()) + header.description_begin, header.description_size});
+    Undescriber undescriber(in, bytes.data(), header.description_begin, mapping->owner);
     Reply reply;
     switch (in.number<std::uint8_t>()) {
     case 0: reply = undescriber.error(); break;
