@@ -190,5 +190,25 @@ TEST(Formats, AreNamedOnceAndHaveExtensions) {
     }
 }
 
+/// So many lines that both the mesh and its solution are reported on the way.
+TEST_F(ReadFile, ReportsProgressThatNeverFallsFromOneFileToTheOther) {
+    constexpr int points = 200'000;
+    std::string mesh = "MeshVersionFormatted 2\nDimension 3\nVertices\n" + std::to_string(points) + "\n";
+    std::string solution = "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n" + std::to_string(points) + "\n1 1\n";
+    for (int i = 0; i < points; ++i) {
+        mesh += i == 1 ? "1 0 0 0\n" : i == 2 ? "0 1 0 0\n" : i == 3 ? "0 0 1 0\n" : "0 0 0 0\n";
+        solution += "1\n";
+    }
+    write("a.mesh", mesh + "Tetrahedra\n1\n1 2 3 4 0\nEnd\n");
+    write("a.sol", solution + "End\n");
+    std::vector<double> fractions;
+    Progress progress;
+    progress.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
+    const auto result = read(path("a.mesh"), {}, progress);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_GT(fractions.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+}
+
 } // namespace
 } // namespace isotet::test

@@ -9,13 +9,13 @@
 #include <string>
 #include <utility>
 
-#include "io/own/mapped_file.hpp"
 #include "io/own/read_gmsh.hpp"
 #include "io/own/read_gocad.hpp"
 #include "io/own/read_medit.hpp"
 #include "io/own/read_medit_parts.hpp"
 #include "io/own/read_tetgen.hpp"
 #include "io/own/text_scanner.hpp"
+#include "io/own/whole_file.hpp"
 #include "io/reader.hpp"
 
 namespace isotet::io {
@@ -41,9 +41,12 @@ bool is_there(const std::string& path) {
     return ::stat(path.c_str(), &status) == 0;
 }
 
+/// Enough for what a file says before its first points.
+constexpr std::size_t head_bytes = std::size_t{16} << 20;
+
 template <class Value, class Parse>
-Result<Value> with_file(const std::string& path, const Parse& parse) {
-    const auto file = MappedFile::open(path);
+Result<Value> with_file(const std::string& path, const Progress& progress, std::size_t most, const Parse& parse) {
+    const auto file = WholeFile::read(path, progress, most);
     if (!file) return file.error();
     return in_file<Value>(path, parse(file->text()));
 }
@@ -56,11 +59,13 @@ int recognizes_gmsh(std::string_view head, std::string_view extension) {
 }
 
 Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, [&](std::string_view text) { return inspect_gmsh(text, progress); });
+    return with_file<FileInfo>(path, progress, WholeFile::all,
+                               [&](std::string_view text) { return inspect_gmsh(text, progress); });
 }
 
 Result<ReadResult> read_gmsh_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_file<ReadResult>(path, [&](std::string_view text) { return parse_gmsh(text, options, progress); });
+    return with_file<ReadResult>(path, progress, WholeFile::all,
+                                 [&](std::string_view text) { return parse_gmsh(text, options, progress); });
 }
 
 int recognizes_medit(std::string_view head, std::string_view extension) {
@@ -76,26 +81,31 @@ std::optional<std::string> solution_beside(const std::string& path) {
     return std::nullopt;
 }
 
+/// `most`   bytes of the mesh
 template <class Value, class Parse>
-Result<Value> with_mesh_and_solution(const std::string& path, const Parse& parse) {
+Result<Value> with_mesh_and_solution(const std::string& path, const Progress& progress, std::size_t most,
+                                     const Parse& parse) {
     const auto solution_path = solution_beside(path);
-    if (!solution_path) return with_file<Value>(path, [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
-    const auto solution = MappedFile::open(*solution_path);
+    if (!solution_path)
+        return with_file<Value>(path, progress, most, [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
+    const auto solution = WholeFile::read(*solution_path, progress);
     if (!solution) return solution.error();
-    return with_file<Value>(path, [&](std::string_view mesh) { return parse(mesh, std::optional(solution->text())); });
+    return with_file<Value>(path, progress, most,
+                            [&](std::string_view mesh) { return parse(mesh, std::optional(solution->text())); });
 }
 
 using OptionalText = std::optional<std::string_view>;
 
 Result<FileInfo> inspect_medit_file(const std::string& path, const ReadOptions&, const Progress& progress) {
     return with_mesh_and_solution<FileInfo>(
-        path, [&](std::string_view mesh, OptionalText solution) { return inspect_medit(mesh, solution, progress); });
+        path, progress, head_bytes,
+        [&](std::string_view mesh, OptionalText solution) { return inspect_medit(mesh, solution, progress); });
 }
 
 Result<ReadResult> read_medit_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_mesh_and_solution<ReadResult>(path, [&](std::string_view mesh, OptionalText solution) {
-        return parse_medit(mesh, solution, options, progress);
-    });
+    return with_mesh_and_solution<ReadResult>(
+        path, progress, WholeFile::all,
+        [&](std::string_view mesh, OptionalText solution) { return parse_medit(mesh, solution, options, progress); });
 }
 
 /// TetGen's files are bare numbers: only the name tells.
@@ -103,25 +113,28 @@ int recognizes_tetgen(std::string_view, std::string_view extension) {
     return by_content_or_name(false, extension == ".node" || extension == ".ele");
 }
 
+/// `most`   bytes of each
 template <class Value, class Parse>
-Result<Value> with_nodes_and_elements(const std::string& path, const Parse& parse) {
-    const auto nodes = MappedFile::open(beside(path, ".node"));
+Result<Value> with_nodes_and_elements(const std::string& path, const Progress& progress, std::size_t most,
+                                      const Parse& parse) {
+    const auto nodes = WholeFile::read(beside(path, ".node"), progress, most);
     if (!nodes) return nodes.error();
-    const auto elements = MappedFile::open(beside(path, ".ele"));
+    const auto elements = WholeFile::read(beside(path, ".ele"), progress, most);
     if (!elements) return elements.error();
     return in_file<Value>(path, parse(nodes->text(), elements->text()));
 }
 
 Result<FileInfo> inspect_tetgen_files(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_nodes_and_elements<FileInfo>(path, [&](std::string_view nodes, std::string_view elements) {
-        return inspect_tetgen(nodes, elements, progress);
-    });
+    return with_nodes_and_elements<FileInfo>(
+        path, progress, head_bytes,
+        [&](std::string_view nodes, std::string_view elements) { return inspect_tetgen(nodes, elements, progress); });
 }
 
 Result<ReadResult> read_tetgen_files(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_nodes_and_elements<ReadResult>(path, [&](std::string_view nodes, std::string_view elements) {
-        return parse_tetgen(nodes, elements, options, progress);
-    });
+    return with_nodes_and_elements<ReadResult>(path, progress, WholeFile::all,
+                                               [&](std::string_view nodes, std::string_view elements) {
+                                                   return parse_tetgen(nodes, elements, options, progress);
+                                               });
 }
 
 int recognizes_gocad(std::string_view head, std::string_view extension) {
@@ -131,11 +144,13 @@ int recognizes_gocad(std::string_view head, std::string_view extension) {
 }
 
 Result<FileInfo> inspect_gocad_file(const std::string& path, const ReadOptions&, const Progress& progress) {
-    return with_file<FileInfo>(path, [&](std::string_view text) { return inspect_gocad(text, progress); });
+    return with_file<FileInfo>(path, progress, head_bytes,
+                               [&](std::string_view text) { return inspect_gocad(text, progress); });
 }
 
 Result<ReadResult> read_gocad_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_file<ReadResult>(path, [&](std::string_view text) { return parse_gocad(text, options, progress); });
+    return with_file<ReadResult>(path, progress, WholeFile::all,
+                                 [&](std::string_view text) { return parse_gocad(text, options, progress); });
 }
 
 Format grid_format(const char* name, const char* title, std::vector<std::string> extensions) {

@@ -9,7 +9,7 @@
 
 #include "core/guard.hpp"
 #include "core/memory.hpp"
-#include "io/own/mapped_file.hpp"
+#include "io/own/whole_file.hpp"
 
 namespace isotet {
 namespace io {
@@ -59,7 +59,7 @@ Result<Picture> parse_picture(std::string_view bytes, const std::string& name) {
 
 Result<Picture> read_picture(const std::string& path) {
     return core::guarded("reading " + path, [&]() -> Result<Picture> {
-        const auto file = io::MappedFile::open(path);
+        const auto file = io::WholeFile::read(path, {});
         if (!file) return file.error();
         return io::parse_picture(file->text(), path);
     });

@@ -9,9 +9,10 @@
 
 #include <fmt/format.h>
 
-#include "io/own/mapped_file.hpp"
+#include "core/rising_progress.hpp"
 #include "io/own/surface_parts.hpp"
 #include "io/own/text_scanner.hpp"
+#include "io/own/whole_file.hpp"
 #if ISOTET_IO
 #include "io/reader.hpp"
 #endif
@@ -101,17 +102,18 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
 } // namespace io
 
 Result<SurfaceFile> read_surface(const std::string& path, const std::string& format, const Progress& progress) {
-    const auto file = io::MappedFile::open(path);
+    const auto file = io::WholeFile::read(path, progress);
     if (!file) return file.error();
     std::string compressed;
-    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), format, progress, compressed);
+    const Progress rises = core::rising(progress);
+    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), format, rises, compressed);
     if (surface) {
-        progress("read", 1.0);
+        rises("read", 1.0);
         return surface;
     }
     if (!compressed.empty()) {
 #if ISOTET_IO
-        return io::read_surface_with_vtk(path, progress);
+        return io::read_surface_with_vtk(path, rises);
 #else
         return Error{ErrorCode::file,
                      fmt::format("{}: the data is compressed ({}): this isotet was built without VTK, which reads that",

@@ -3,10 +3,10 @@
 #include <vtkGenericEnSightReader.h>
 #include <vtkNew.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/vtk/index_file.hpp"
 #include "io/vtk/loaders.hpp"
+#include "io/vtk/mapped_file.hpp"
 #include "io/vtk/vtk_load.hpp"
 
 namespace isotet::io::vtk {

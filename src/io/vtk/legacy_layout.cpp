@@ -3,10 +3,10 @@
 
 #include <fmt/core.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/vtk/escape.hpp"
 #include "io/vtk/legacy_layout.hpp"
+#include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {
 namespace {

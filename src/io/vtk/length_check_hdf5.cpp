@@ -2,9 +2,9 @@
 // HDF5: the superblock states where the file ends. (The library checks this, too, but some readers ignore it.)
 #include <fmt/core.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaded.hpp"
+#include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {
 

@@ -8,9 +8,9 @@
 
 #include <fmt/core.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaded.hpp"
+#include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -8,10 +8,10 @@
 #include <fmt/core.h>
 #include <pugixml.hpp>
 
-#include "io/own/mapped_file.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/escape.hpp"
 #include "io/vtk/loaded.hpp"
+#include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {
 namespace {

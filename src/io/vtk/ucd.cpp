@@ -12,12 +12,12 @@
 
 #include <fmt/core.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/own/number_map.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/reader.hpp"
 #include "io/vtk/escape.hpp"
 #include "io/vtk/loaders.hpp"
+#include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -6,11 +6,11 @@
 
 #include <fmt/core.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/vtk/escape.hpp"
 #include "io/vtk/index_file.hpp"
 #include "io/vtk/loaded.hpp"
+#include "io/vtk/mapped_file.hpp"
 #include "io/vtk/xdmf_data.hpp"
 
 namespace isotet::io::vtk {

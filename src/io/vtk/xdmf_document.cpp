@@ -5,10 +5,10 @@
 
 #include <fmt/core.h>
 
-#include "io/own/mapped_file.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/vtk/escape.hpp"
 #include "io/vtk/loaded.hpp"
+#include "io/vtk/mapped_file.hpp"
 #include "io/vtk/xdmf_document.hpp"
 
 namespace isotet::io::vtk {

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A whole file as bytes in memory, mapped and not copied. What every reader of our own parses.
+// A whole file as bytes in memory, mapped and not copied: for looks at files in the reader process.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,10 @@ namespace isotet::io {
 /// A plain file, mapped read only. Copies share the mapping, which lives as long as the last copy or owner().
 ///
 /// Pages are taken from the system's cache, so a file larger than the free memory can be mapped. A file that another
-/// program cuts short while it is mapped ends this process (SIGBUS): writers that rename, as isotet's do,
-/// never do that.
+/// program cuts short while it is mapped ends this process (SIGBUS), which its parent then reports.
 class MappedFile {
 public:
-    /// Errors   file: not there, not readable, a folder, a pipe or a device, empty; machine: mapping failed
+    /// Errors   as open_plain_file(); machine: mapping failed
     static Result<MappedFile> open(const std::string& path);
 
     std::span<const std::byte> bytes() const noexcept { return {static_cast<const std::byte*>(data_.get()), size_}; }

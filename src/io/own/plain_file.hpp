@@ -1,0 +1,29 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include <isotet/result.hpp>
+
+#include "io/own/file_kind.hpp"
+
+namespace isotet::io {
+
+/// A plain file that is open for reading.
+struct PlainFile {
+    Descriptor descriptor;
+    std::size_t size = 0; ///< bytes, at least one
+};
+
+/// Opens a file that is one: nothing that waits, or does something when it is opened.
+///
+/// Errors   file: not there, not readable, a folder, a pipe or a device, empty; machine; out_of_memory when it is larger
+///          than what can be addressed
+Result<PlainFile> open_plain_file(const std::string& path);
+
+/// "PATH: cannot be read: REASON" for an errno.
+Error system_error(const std::string& path, std::string_view what, int number);
+
+} // namespace isotet::io

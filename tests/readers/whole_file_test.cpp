@@ -1,0 +1,75 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Files that change while they are read: an error or the file as it was, never the end of the process.
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <isotet/read.hpp>
+
+#include "io/own/plain_file.hpp"
+#include "io/own/whole_file.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::test {
+namespace {
+
+using io::read_bytes;
+using io::WholeFile;
+
+TEST(WholeFile, HoldsEveryByte) {
+    const TemporaryFolder folder;
+    std::string content(9'000'001, 'x'); // several pieces
+    for (std::size_t i = 0; i < content.size(); i += 1009) content[i] = static_cast<char>(i / 1009);
+    const std::string path = folder.write("file", content);
+    EXPECT_TRUE(WholeFile::read(path, {}).value().text() == content);
+    EXPECT_TRUE(WholeFile::read(path, {}, 5'000'000).value().text() == content.substr(0, 5'000'000));
+}
+
+TEST(WholeFile, ThatBecameShorterIsAnError) {
+    const TemporaryFolder folder;
+    const auto file = io::open_plain_file(folder.write("file", std::string(1000, 'x')));
+    ASSERT_TRUE(file);
+    std::vector<std::byte> room(file->size);
+    EXPECT_TRUE(read_bytes(file->descriptor.number(), "file", room, {}));
+    std::filesystem::resize_file(folder.file("file"), 500);
+    const auto shorter = read_bytes(file->descriptor.number(), "file", room, {});
+    ASSERT_FALSE(shorter);
+    EXPECT_EQ(shorter.error().code, ErrorCode::file);
+    EXPECT_EQ(shorter.error().message, "file was cut short while it was read: it had 1000 bytes");
+}
+
+TEST(WholeFile, IsNotReadAfterACancel) {
+    const TemporaryFolder folder;
+    const std::atomic<bool> cancel{true};
+    Progress progress;
+    progress.cancel = &cancel;
+    const auto result = WholeFile::read(folder.write("file", "content"), progress);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::cancelled);
+}
+
+TEST(ReadOfAFile, ThatIsCutShortMeanwhileGivesItAsItWas) {
+    constexpr int points = 200'000;
+    std::string mesh = "MeshVersionFormatted 2\nDimension 3\nVertices\n" + std::to_string(points) + "\n";
+    for (int i = 0; i < points; ++i)
+        mesh += i == 1 ? "1 0 0 0\n" : i == 2 ? "0 1 0 0\n" : i == 3 ? "0 0 1 0\n" : "0 0 0 0\n";
+    const TemporaryFolder folder;
+    const std::string path = folder.write("a.mesh", mesh + "Tetrahedra\n1\n1 2 3 4 0\nEnd\n");
+    bool was_cut = false;
+    Progress progress;
+    progress.report = [&](std::string_view, double) {
+        std::filesystem::resize_file(path, 10);
+        was_cut = true;
+    };
+    const auto result = read(path, {}, progress);
+    EXPECT_TRUE(was_cut);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->grid.points.tuples(), 200'000u);
+    EXPECT_EQ(result->grid.cells.count(), 1u);
+}
+
+} // namespace
+} // namespace isotet::test
