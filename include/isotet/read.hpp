@@ -49,8 +49,9 @@ struct ReadOptions {
                                                    ///< coordinates
     bool allow_outside = false;                    ///< index files may name files outside their own folder
     std::string displace;                          ///< a point vector field to add to the coordinates
-    std::string reader_program;                    ///< the program that runs VTK's readers ("isotet"); empty: the
-                                                   ///< installed one
+    std::string reader_program;                    ///< the program that runs VTK's readers ("isotet"); empty: this one
+                                                   ///< if it calls run_as_reader(), else the one beside the library or
+                                                   ///< this program, in PATH, or where isotet was to be installed
     std::uint64_t memory_limit = 0;                ///< bytes of address space of a reader process; 0: by free memory
     std::chrono::seconds time_limit{3600};
 };

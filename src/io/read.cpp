@@ -12,6 +12,7 @@
 
 #include "core/cells.hpp"
 #include "core/parallel.hpp"
+#include "core/rising_progress.hpp"
 #include "io/formats.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/reader.hpp"
@@ -152,12 +153,13 @@ Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, co
     return io::without_exceptions<FileInfo>(path, [&]() -> Result<FileInfo> {
         const auto reader = io::choose_reader(path, options);
         if (!reader) return reader.error();
-        return (*reader)->inspect(path, options, progress);
+        return (*reader)->inspect(path, options, core::rising(progress));
     });
 }
 
 Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return io::without_exceptions<ReadResult>(path, [&] { return io::read_checked(path, options, progress); });
+    return io::without_exceptions<ReadResult>(path,
+                                              [&] { return io::read_checked(path, options, core::rising(progress)); });
 }
 
 } // namespace isotet

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -120,6 +121,44 @@ TEST_F(ReaderProcess, WorksForAParentThatIgnoresItsChildren) {
     std::signal(SIGCHLD, SIG_IGN);
     expect_sample(read(folder_.file("sample.vtu")));
     std::signal(SIGCHLD, SIG_DFL);
+}
+
+extern "C" void wait_for_all_children(int) {
+    while (::waitpid(-1, nullptr, WNOHANG) > 0) {}
+}
+
+/// As some host programs do.
+class WaitingForAllChildren {
+public:
+    WaitingForAllChildren() { std::signal(SIGCHLD, wait_for_all_children); }
+    ~WaitingForAllChildren() { std::signal(SIGCHLD, SIG_DFL); }
+    WaitingForAllChildren(const WaitingForAllChildren&) = delete;
+    WaitingForAllChildren& operator=(const WaitingForAllChildren&) = delete;
+};
+
+TEST_F(ReaderProcess, WorksForAParentThatWaitsForAllItsChildren) {
+    const WaitingForAllChildren host;
+    for (int i = 0; i < 5; ++i) expect_sample(read(folder_.file("sample.vtu")));
+}
+
+TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatWaitsForAllItsChildren) {
+    const WaitingForAllChildren host;
+    const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
+    EXPECT_EQ(error.code, ErrorCode::invalid_data);
+    expect_words(error, {"sample.vtu", "without a complete reply", "SIGCHLD", "last words"});
+}
+
+TEST_F(ReaderProcess, IsStoppedOnCancelForAParentThatWaitsForAllItsChildren) {
+    const WaitingForAllChildren host;
+    std::atomic<bool> cancel = false;
+    Progress progress;
+    progress.cancel = &cancel;
+    std::thread user([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        cancel = true;
+    });
+    EXPECT_EQ(error_with("sleep 1000", progress).code, ErrorCode::cancelled);
+    user.join();
 }
 
 TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {

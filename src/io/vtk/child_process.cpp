@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <spawn.h>
 #include <string>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -95,10 +96,50 @@ bool drain(int descriptor, Take take) {
     }
 }
 
+/// A child by a descriptor, which stays its own: as soon as somebody in this program has waited for the child (a handler
+/// of SIGCHLD, say), its number may be another process's. Before Linux 5.4 there is the number alone.
+class Child {
+public:
+    explicit Child(pid_t number)
+        : number_(number), descriptor_(static_cast<int>(::syscall(SYS_pidfd_open, number, 0))) {}
+
+    /// Can be read once the child has ended; -1 where there is none.
+    int descriptor() const noexcept { return descriptor_.number(); }
+
+    enum class State { runs, ended, taken };
+
+    /// Waits for the end where `flags` do not say WNOHANG. `taken`: it has ended, and somebody else has its status.
+    State state(siginfo_t& info, int flags) {
+        info.si_pid = 0;
+        const int failed = descriptor_ ? ::waitid(by_descriptor, static_cast<id_t>(descriptor_.number()), &info, flags)
+                                       : ::waitid(P_PID, static_cast<id_t>(number_), &info, flags);
+        if (failed == 0) return info.si_pid == 0 ? State::runs : State::ended;
+        if (errno == EINTR) return state(info, flags);
+        if (errno != EINVAL || !descriptor_) return State::taken;
+        descriptor_.reset(); // a system that has descriptors, but does not wait by them
+        return state(info, flags);
+    }
+
+    /// Kills it with its process group: a script used as reader_program may have children.
+    void kill() {
+        siginfo_t info{};
+        // As long as its status is there, its number is no other group's.
+        if (state(info, WEXITED | WNOHANG | WNOWAIT) != State::taken) ::kill(-number_, SIGKILL);
+        if (descriptor_) ::syscall(SYS_pidfd_send_signal, descriptor_.number(), SIGKILL, nullptr, 0);
+        else ::kill(number_, SIGKILL);
+    }
+
+private:
+    static constexpr auto by_descriptor = static_cast<idtype_t>(3); // P_PIDFD; older C libraries do not name it
+
+    pid_t number_;
+    Descriptor descriptor_;
+};
+
 class Watch {
 public:
     Watch(pid_t process, Pipe& output, Pipe& status, const Progress& progress)
-        : process_(process), output_(output.read_end), status_(status.read_end), progress_(progress) {}
+        : child_(process), output_(output.read_end), status_(status.read_end), progress_(progress) {}
 
     ChildOutcome until(std::chrono::steady_clock::time_point deadline) {
         while (true) {
@@ -112,9 +153,11 @@ public:
 
 private:
     void wait_a_little() {
-        pollfd files[] = {{output_.number(), POLLIN, 0}, {status_.number(), POLLIN, 0}}; // closed ones (-1) are ignored
+        pollfd files[] = {{output_.number(), POLLIN, 0}, // those that are closed (-1) are ignored
+                          {status_.number(), POLLIN, 0},
+                          {child_.descriptor(), POLLIN, 0}};
         const bool ending = !output_ || !status_;
-        ::poll(files, 2, ending ? 2 : 25);
+        ::poll(files, 3, ending && child_.descriptor() < 0 ? 2 : 25);
     }
     void read_pipes() {
         if (output_ && !drain(output_.number(), [&](std::string_view text) {
@@ -136,23 +179,18 @@ private:
     }
 
     bool ended(int flags) {
-        int status = 0;
-        pid_t result;
-        do result = ::waitpid(process_, &status, flags);
-        while (result < 0 && errno == EINTR);
-        if (result == 0) return false;
-        // Where the host program ignores SIGCHLD there is no status (ECHILD): the reply then speaks for itself.
-        if (result == process_ && WIFSIGNALED(status)) {
-            outcome_.end = ChildOutcome::End::killed;
-            outcome_.number = WTERMSIG(status);
-        } else if (result == process_) {
-            outcome_.number = WEXITSTATUS(status);
+        siginfo_t info{};
+        switch (child_.state(info, WEXITED | flags)) {
+        case Child::State::runs: return false;
+        case Child::State::taken: outcome_.end = ChildOutcome::End::not_known; return true;
+        case Child::State::ended: break;
         }
+        outcome_.number = info.si_status;
+        if (info.si_code != CLD_EXITED) outcome_.end = ChildOutcome::End::killed;
         return true;
     }
     ChildOutcome kill(ChildOutcome::End why) {
-        ::kill(-process_, SIGKILL); // its whole group: a script used as reader_program may have children
-        ::kill(process_, SIGKILL);
+        child_.kill();
         ended(0);
         outcome_.end = why;
         return finish();
@@ -164,7 +202,7 @@ private:
         return std::move(outcome_);
     }
 
-    pid_t process_;
+    Child child_;
     Descriptor& output_;
     Descriptor& status_;
     const Progress& progress_;

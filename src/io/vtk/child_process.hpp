@@ -26,14 +26,15 @@ struct ChildRun {
 };
 
 struct ChildOutcome {
-    enum class End { exited, killed, timed_out, cancelled } end = End::exited;
+    /// `not_known`: it has ended, but this program ignores SIGCHLD, or waits for all its children elsewhere.
+    enum class End { exited, killed, timed_out, cancelled, not_known } end = End::exited;
     int number = 0;              ///< exit status or signal
     bool memory_ran_out = false;
     std::string last_output;     ///< the last lines that it printed, at most 4 KiB, control characters escaped
 };
 
-/// Guarantees   the process has ended when this returns; a cancel takes less than 100 ms; a process whose parent dies
-///              is killed by the system (the reader asks for that first of all)
+/// Guarantees   the process has ended when this returns; no other one is ever killed; a cancel takes less than 100 ms; a
+///              process whose parent dies is killed by the system (the reader asks for that first of all)
 /// Errors       machine when the program cannot be started
 Result<ChildOutcome> run_child(const ChildRun& run, const Progress& progress);
 

@@ -12,6 +12,7 @@
 #include "io/vtk/child_process.hpp"
 #include "io/own/file_kind.hpp"
 #include "io/vtk/escape.hpp"
+#include "io/vtk/find_reader.hpp"
 #include "io/vtk/reader_process.hpp"
 
 namespace isotet::io::vtk {
@@ -19,10 +20,11 @@ namespace {
 
 std::atomic<bool> can_be_reader = false;
 
-/// The program itself where it can serve: it is sure to be of the same version. Else the installed one.
-std::string reader_program(const ReadOptions& options) {
+/// The program itself where it can serve: it is sure to be of the same version. Else an installed one.
+Result<std::string> reader_program(const ReadOptions& options) {
     if (!options.reader_program.empty()) return options.reader_program;
-    return can_be_reader ? "/proc/self/exe" : ISOTET_READER_PROGRAM;
+    if (can_be_reader) return "/proc/self/exe";
+    return find_reader(reader_places());
 }
 
 Result<Descriptor> memory_file(const char* name, std::string_view content) {
@@ -57,6 +59,9 @@ Error failure(const Request& request, const ChildOutcome& outcome) {
     if (outcome.end == ChildOutcome::End::killed)
         return sentence(ErrorCode::invalid_data, fmt::format("was killed by signal {} ({}): the file is broken",
                                                              outcome.number, ::strsignal(outcome.number)));
+    if (outcome.end == ChildOutcome::End::not_known)
+        return sentence(ErrorCode::invalid_data, "ended without a complete reply (how is not known, since this program "
+                                                 "ignores SIGCHLD or waits for all its children): the file is broken");
     if (outcome.number != 0)
         return sentence(ErrorCode::invalid_data,
                         fmt::format("ended by itself with status {}: the file is broken", outcome.number));
@@ -77,11 +82,15 @@ Result<Reply> ask_reader_process(Request request, const Progress& progress) {
     auto answer = memory_file("isotet-reply", "");
     if (!answer) return answer.error();
 
-    ChildRun run{reader_program(request.options), question->number(), answer->number(), {}};
+    auto program = reader_program(request.options);
+    if (!program) return program.error();
+    ChildRun run{*std::move(program), question->number(), answer->number(), {}};
     run.time_limit = std::clamp(request.options.time_limit, std::chrono::seconds(0), std::chrono::seconds(365 * 86400));
     auto outcome = run_child(run, progress);
     if (!outcome) return outcome.error();
-    if (outcome->end != ChildOutcome::End::exited || outcome->number != 0) return failure(request, *outcome);
+    const bool may_have_replied = outcome->end == ChildOutcome::End::not_known ||
+                                  (outcome->end == ChildOutcome::End::exited && outcome->number == 0);
+    if (!may_have_replied) return failure(request, *outcome);
 
     auto reply = map_reply(answer->number());
     if (!reply) return reply.error().code == ErrorCode::internal ? failure(request, *outcome) : reply.error();

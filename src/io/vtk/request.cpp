@@ -60,7 +60,8 @@ Result<Request> decode_request(std::string_view bytes) {
     options.displace = in.text();
     options.memory_limit = in.number<std::uint64_t>();
     if (!known || !in.finished())
-        return Error{ErrorCode::internal, "the reader process was sent a request that is not of its version"};
+        return Error{ErrorCode::internal, "the reader process was sent a request that is not of its version: "
+                                          "ReadOptions::reader_program names another one"};
     return request;
 }
 

@@ -1,0 +1,95 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The program that runs VTK's readers is found wherever isotet is moved to.
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "io/vtk/find_reader.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::test {
+namespace {
+
+using io::vtk::find_reader;
+using io::vtk::reader_candidates;
+using io::vtk::ReaderPlaces;
+
+using Paths = std::vector<std::string>;
+
+TEST(ReaderCandidates, BeginBesideTheLibraryAndEndWithTheBuiltInPath) {
+    EXPECT_EQ(reader_candidates({.library = "/moved/lib/x86/libisotet_io.so.0",
+                                 .to_programs = "../../bin",
+                                 .program = "/opt/cfd/bin/solver",
+                                 .search_path = "/usr/bin:/bin",
+                                 .built_in = "/usr/local/bin/isotet"}),
+              (Paths{"/moved/lib/x86/isotet", "/moved/bin/isotet", "/opt/cfd/bin/isotet", "/usr/bin/isotet",
+                     "/bin/isotet", "/usr/local/bin/isotet"}));
+}
+
+TEST(ReaderCandidates, LeaveOutWhatIsNotKnown) {
+    EXPECT_EQ(reader_candidates({}), Paths{});
+    EXPECT_EQ(reader_candidates({.program = "/a/tools/solver"}), (Paths{"/a/tools/isotet", "/a/bin/isotet"}));
+}
+
+TEST(ReaderCandidates, OfTheSearchPathAreAbsolute) {
+    EXPECT_EQ(reader_candidates({.search_path = ":.:bin:/one::../up:/two/:"}), (Paths{"/one/isotet", "/two/isotet"}));
+}
+
+class FoundReader : public testing::Test {
+protected:
+    std::string program(const std::string& name) const {
+        folder_.write(name, ""); // makes its folder
+        return folder_.write_script(name, "exit 0");
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(FoundReader, IsTheOneOfTheLibrarysPrefix) {
+    const std::string reader = program("moved/bin/isotet");
+    const ReaderPlaces places{.library = folder_.write("moved/lib/libisotet_io.so", ""),
+                              .to_programs = "../bin",
+                              .search_path = std::filesystem::path(program("elsewhere/isotet")).parent_path()};
+    EXPECT_EQ(find_reader(places).value(), reader);
+}
+
+TEST_F(FoundReader, IsTheOneInPathOtherwise) {
+    const std::string reader = program("elsewhere/isotet");
+    const ReaderPlaces places{.library = folder_.file("solver"),
+                              .to_programs = "../bin",
+                              .program = folder_.file("solver"),
+                              .search_path = "/not/there:" + folder_.file("elsewhere"),
+                              .built_in = "/not/there/either/isotet"};
+    EXPECT_EQ(find_reader(places).value(), reader);
+}
+
+TEST_F(FoundReader, CanBeRunAndIsNotTheRunningProgram) {
+    const std::string running = program("a/isotet");
+    folder_.write("b/isotet", "not a program");
+    std::filesystem::create_directories(folder_.file("c/isotet"));
+    const std::string reader = program("d/isotet");
+    const auto path = [&](const char* name) { return folder_.file(name); };
+    const ReaderPlaces places{.program = running,
+                              .search_path = path("a") + ":" + path("b") + ":" + path("c") + ":" + path("d")};
+    EXPECT_EQ(find_reader(places).value(), reader);
+}
+
+TEST_F(FoundReader, ThatIsNowhereIsAnErrorThatSaysWhatToDo) {
+    const auto missing = find_reader({.program = folder_.file("solver"), .search_path = "/not/there"});
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, ErrorCode::machine);
+    for (const std::string& part : {folder_.file("isotet"), std::string("/not/there/isotet"), std::string("PATH"),
+                                    std::string("ReadOptions::reader_program"), std::string("run_as_reader()")})
+        EXPECT_NE(missing.error().message.find(part), std::string::npos) << part << ": " << missing.error().message;
+}
+
+TEST(ReaderPlacesOfThisProcess, AreThoseOfTheProgram) {
+    const ReaderPlaces places = io::vtk::reader_places();
+    EXPECT_EQ(places.program, std::filesystem::canonical("/proc/self/exe"));
+    EXPECT_TRUE(std::filesystem::exists(places.library)) << places.library;
+    EXPECT_FALSE(places.to_programs.empty());
+    EXPECT_TRUE(std::filesystem::path(places.built_in).is_absolute());
+}
+
+} // namespace
+} // namespace isotet::test
