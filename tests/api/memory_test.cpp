@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Too little memory is found out before it is taken, and said with the amount needed. Limits are those of a child
-// process.
+// Too little memory is found out before it is taken, and said with the amount needed: limits are those of a child
+// process. What is kept for later can be given back.
 #include <fstream>
 #include <iostream>
 #include <limits>
@@ -9,10 +9,13 @@
 #include <sys/resource.h>
 
 #include <isotet/extract.hpp>
+#include <isotet/memory.hpp>
 #include <isotet/pack.hpp>
 
 #include "core/block.hpp"
+#include "core/memory.hpp"
 #include "support/small_grid.hpp"
+#include "support/surface_bytes.hpp"
 
 namespace isotet::test {
 namespace {
@@ -98,6 +101,21 @@ TEST_F(OutOfMemory, IsToldByMakeGridBeforeAHugeGrid) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) // whose allocator keeps nothing
+TEST(ReleaseMemory, GivesBackWhatOperationsLeftBehind) {
+    const Grid grid = made_grid("kuhn", 48, {"gyroid"});
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const Surface kept = extract(packed, 0.3).value().surface;
+    { const auto dropped = extract(packed, 0).value(); }
+    const std::uint64_t before = core::resident_memory().value();
+    const std::size_t released = release_memory();
+    EXPECT_GT(released, std::size_t{1} << 20);
+    EXPECT_LT(core::resident_memory().value(), before);
+    EXPECT_EQ(release_memory(), 0u) << "nothing is left to give back";
+    EXPECT_EQ(bytes_of(extract(packed, 0.3).value().surface), bytes_of(kept)) << "and everything still works";
+}
+#endif
 
 } // namespace
 } // namespace isotet::test

@@ -1,0 +1,10 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/memory.hpp>
+
+#include "core/block.hpp"
+
+namespace isotet {
+
+std::size_t release_memory() noexcept { return core::drop_kept_blocks(); }
+
+} // namespace isotet
