@@ -11,7 +11,8 @@ namespace isotet {
 /// takes one; a default-made Progress reports to nobody and is never cancelled.
 struct Progress {
     /// Called with the step ("read", "pack", "extract", "write") and the fraction done, 0 to 1.
-    /// It may be called from any thread of the operation, one call at a time; keep it short. May be empty.
+    /// It may be called from any thread of the operation, one call at a time, and within a step the fraction never
+    /// falls; keep it short. May be empty.
     std::function<void(std::string_view step, double fraction)> report;
 
     /// When not null and set to true (by any thread, or a signal handler), the operation ends within a fraction of a

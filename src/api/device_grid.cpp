@@ -14,6 +14,7 @@
 #include "core/field_storage.hpp"
 #include "core/guard.hpp"
 #include "core/parallel.hpp"
+#include "core/rising_progress.hpp"
 #include "core/set_field.hpp"
 #include "core/storage.hpp"
 #include "vulkan/engine/grid_on_device.hpp"
@@ -118,8 +119,9 @@ Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& pa
         grid_options.page_bytes = options.page_bytes;
         grid_options.reserve = options.surface_bytes.value_or(device.memory_free() / 8);
         Result<std::unique_ptr<vulkan::GridOnDevice>> grid = Error{};
+        const Progress rises = core::rising(run.progress);
         core::with_threads(run.threads, [&] {
-            grid = vulkan::GridOnDevice::upload(device.context(), packed.shared_data(), grid_options, run.progress);
+            grid = vulkan::GridOnDevice::upload(device.context(), packed.shared_data(), grid_options, rises);
         });
         if (!grid) return std::move(grid).error();
         return DeviceGrid(std::make_unique<Data>(Data{packed, *std::move(grid), {}}));
@@ -152,12 +154,13 @@ Result<void> DeviceGrid::set_field(const PointField& field, const Run& run) {
     return core::guarded("setting the field on the device", [&]() -> Result<void> {
         if (auto ok = core::check_field(field, data_->packed.user_points()); !ok) return ok;
         const auto next = std::make_shared<core::Packed>(data_->packed.data());
+        const Progress rises = core::rising(run.progress);
         Result<void> result;
         core::with_threads(run.threads, [&] {
-            result = core::store_values<float>(field, *next, run.progress);
+            result = core::store_values<float>(field, *next, rises);
             if (result && !next->gradients.empty()) core::store_gradients(*next);
             if (!result) return;
-            auto done = data_->grid->set_field(next, run.progress);
+            auto done = data_->grid->set_field(next, rises);
             if (done) data_->work = work_of(*std::move(done));
             else result = done.error();
         });
@@ -170,7 +173,7 @@ Result<void> DeviceGrid::set_points(const Array& points, const Run& run) {
     return core::guarded("setting the points on the device", [&]() -> Result<void> {
         const Result<PackedGrid> next = data_->packed.with_points(points, run);
         if (!next) return next.error();
-        auto done = data_->grid->set_points(next->shared_data(), run.progress);
+        auto done = data_->grid->set_points(next->shared_data(), core::rising(run.progress));
         if (!done) return done.error();
         data_->work = work_of(*std::move(done));
         data_->packed = *next;
@@ -233,16 +236,17 @@ Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::sp
         const std::uint64_t up = grid.context().staging().uploaded();
         auto fields = carry(grid, options);
         if (!fields) return fields.error();
-        auto done = data_->extract(isovalues, surfaces, options, *fields, progress);
+        const Progress rises = core::rising(progress);
+        auto done = data_->extract(isovalues, surfaces, options, *fields, rises);
         if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty()) {
             // Fields can be interpolated elsewhere, surfaces cannot.
             fields->clear();
             grid.fields().clear();
-            done = data_->extract(isovalues, surfaces, options, {}, progress);
+            done = data_->extract(isovalues, surfaces, options, {}, rises);
         }
         if (!done) return done;
         data_->work.uploaded_bytes = grid.context().staging().uploaded() - up;
-        progress("extract", 1);
+        rises("extract", 1);
         return {};
     });
 }

@@ -8,6 +8,7 @@
 #include "core/errors.hpp"
 #include "core/guard.hpp"
 #include "core/parallel.hpp"
+#include "core/rising_progress.hpp"
 #include "cpu/direct/direct.hpp"
 #include "reference/direct.hpp"
 
@@ -80,11 +81,12 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
         if (!cells) return cells.error();
         if (auto ok = check_fields(grid, field, options.extract); !ok) return ok.error();
         const ops::DirectInput input{grid, *cells, field, options.extract.point_fields};
+        const Progress rises = core::rising(progress);
         Result<DirectExtraction> result = Error{};
         core::with_threads(options.extract.threads, [&] {
             result = options.precision == Precision::single
-                         ? extract_as<float>(input, isovalues, options.extract, progress)
-                         : extract_as<double>(input, isovalues, options.extract, progress);
+                         ? extract_as<float>(input, isovalues, options.extract, rises)
+                         : extract_as<double>(input, isovalues, options.extract, rises);
         });
         return result;
     });

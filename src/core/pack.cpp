@@ -12,6 +12,7 @@
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
+#include "core/rising_progress.hpp"
 
 namespace isotet {
 
@@ -192,7 +193,8 @@ Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOpt
                         const Progress& progress) {
     return core::guarded("packing", [&]() -> Result<PackedGrid> {
         Result<std::shared_ptr<const core::Packed>> result = Error{};
-        core::with_threads(options.threads, [&] { result = core::pack(grid, field, options, progress); });
+        const Progress rises = core::rising(progress);
+        core::with_threads(options.threads, [&] { result = core::pack(grid, field, options, rises); });
         if (!result) return std::move(result).error();
         return PackedGrid(*std::move(result));
     });

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
-#include <mutex>
 
 #include <fmt/core.h>
 
@@ -46,7 +45,6 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     const std::size_t block_count = blocks_for(count);
     std::vector<BlockClusters> blocks(block_count);
     std::atomic<std::size_t> next_block{0}, finished{0};
-    std::mutex reporting;
     parallel_each(blocks_at_once(count), 1, [&](std::size_t) {
         for (std::size_t b = next_block++; b < block_count; b = next_block++) {
             if (progress.cancelled()) return;
@@ -56,9 +54,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
                 next_block = block_count; // nobody begins another one
                 throw;
             }
-            const std::size_t done = ++finished;
-            if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
-                progress("pack", 0.3 + 0.3 * static_cast<double>(done) / static_cast<double>(block_count));
+            progress("pack", 0.3 + 0.3 * static_cast<double>(++finished) / static_cast<double>(block_count));
         }
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "packing was cancelled"};

@@ -2,6 +2,7 @@
 // Progress: every long operation can be cancelled before it starts and midway, and tells how far it is.
 #include <atomic>
 #include <functional>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -95,6 +96,27 @@ TEST(Cancelling, MidwayEndsPackingAtEveryStep) {
     }
 }
 
+TEST(Cancelling, MidwayEndsASurveyAtOnce) {
+    const Grid grid = made_grid("mixed", 32, {"gyroid"});
+    std::vector<double> fractions;
+    Progress listen;
+    listen.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
+    ASSERT_TRUE(survey(grid, {.threads = 1}, listen));
+    ASSERT_GT(fractions.size(), 10u);
+    for (std::size_t stop = 0; stop + 1 < fractions.size(); stop += 1 + fractions.size() / 40) {
+        std::atomic<bool> cancel{false};
+        int later = 0;
+        Progress progress;
+        progress.cancel = &cancel;
+        progress.report = [&](std::string_view, double fraction) {
+            later += cancel;
+            if (fraction >= fractions[stop]) cancel = true;
+        };
+        EXPECT_EQ(code_of(survey(grid, {.threads = 1}, progress)), ErrorCode::cancelled) << fractions[stop];
+        EXPECT_EQ(later, 0) << "work went on after " << fractions[stop];
+    }
+}
+
 TEST(Progress, RisesFromNothingToOneInEveryOperation) {
     Operations operations;
     for (const auto& [name, operation] : operations.all()) {
@@ -113,6 +135,24 @@ TEST(Progress, RisesFromNothingToOneInEveryOperation) {
         EXPECT_FALSE(falls) << name;
         const bool is_quiet = name == "split" || name == "set_field";
         EXPECT_TRUE(is_quiet || last == 1) << name << " ends at " << last;
+    }
+}
+
+TEST(Progress, NeverFallsWhenManyThreadsPack) {
+    const Grid grid = made_grid("kuhn", 64, {"plane"}); // 24 blocks
+    for (int round = 0; round < 10; ++round) {
+        double last = 0;
+        std::atomic<int> inside{0};
+        Progress progress;
+        progress.report = [&](std::string_view, double fraction) {
+            EXPECT_EQ(inside++, 0);
+            EXPECT_GE(fraction, last);
+            last = fraction;
+            std::this_thread::yield(); // others come to report meanwhile
+            --inside;
+        };
+        ASSERT_TRUE(pack(grid, point_field(grid), {.threads = 64}, progress));
+        EXPECT_EQ(last, 1);
     }
 }
 

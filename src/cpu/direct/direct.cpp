@@ -200,7 +200,7 @@ private:
 
     /// Whether most tetrahedra are negative; asked once.
     bool ask_for_most() {
-        mostly_negative_ = core::survey_tets(input_.grid, input_.cells).mostly_negative;
+        mostly_negative_ = core::survey_tets(input_.grid, input_.cells).mostly_negative();
         return *mostly_negative_;
     }
 
