@@ -1,9 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "coincident_points.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdint>
 #include <mutex>
 #include <type_traits>
@@ -11,7 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "core/orientation.hpp"
 #include "core/parallel.hpp"
+#include "core/point_hash.hpp"
+#include "core/radix_sort.hpp"
 #include "number_format.hpp"
 
 namespace isotet::cli {
@@ -22,55 +22,33 @@ constexpr std::size_t enough_points = std::size_t{1} << 22;
 constexpr std::size_t grain = std::size_t{1} << 16;
 constexpr std::size_t one_in = 1000;
 
-struct Sample {
-    std::uint64_t hash = 0;
-    std::uint64_t point = 0;
-    friend auto operator<=>(const Sample&, const Sample&) = default;
-};
-
-std::uint64_t mixed(std::uint64_t value) noexcept { // the finalizer of splitmix64
-    value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9U;
-    value = (value ^ (value >> 27)) * 0x94D049BB133111EBU;
-    return value ^ (value >> 31);
-}
-
-template <class Scalar>
-std::uint64_t hash_of(const Scalar* position) noexcept {
-    std::uint64_t hash = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double value = static_cast<double>(position[axis]) + 0.0; // -0 becomes +0
-        hash = mixed(hash + 0x9E3779B97F4A7C15U + std::bit_cast<std::uint64_t>(value));
-    }
-    return hash;
-}
-
-/// Point and hash of those whose hash has `zero_bits` low bits of zero, by hash, then by point.
-std::vector<Sample> sampled(const Array& points, int zero_bits) {
-    std::vector<Sample> samples;
+/// Hash and number of the points whose hash ends with `zero_bits` bits of zero, by hash.
+std::vector<core::Keyed> sampled(const Array& points, int zero_bits) {
+    std::vector<core::Keyed> samples;
     std::mutex mutex;
-    points.visit([&](auto scalars) {
-        core::parallel_ranges(points.tuples(), grain, [&](std::size_t begin, std::size_t end) {
-            std::vector<Sample> found;
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint64_t hash = hash_of(scalars.data() + 3 * i);
-                if ((hash & ((std::uint64_t{1} << zero_bits) - 1)) == 0) found.push_back({hash, i});
-            }
-            const std::lock_guard lock(mutex);
-            samples.insert(samples.end(), found.begin(), found.end());
-        });
+    const core::PointReader reader(points);
+    core::parallel_ranges(points.tuples(), grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<core::Keyed> found;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint64_t hash = core::hash_of(reader[i]);
+            if ((hash & ((std::uint64_t{1} << zero_bits) - 1)) == 0) found.push_back({hash, i});
+        }
+        const std::lock_guard lock(mutex);
+        samples.insert(samples.end(), found.begin(), found.end());
     });
-    std::sort(samples.begin(), samples.end());
+    std::vector<core::Keyed> scratch(samples.size());
+    core::radix_sort(samples, scratch);
     return samples;
 }
 
-std::size_t repeated(const std::vector<Sample>& samples) {
+std::size_t repeated(const std::vector<core::Keyed>& samples) {
     std::size_t count = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i) count += samples[i].hash == samples[i - 1].hash;
+    for (std::size_t i = 1; i < samples.size(); ++i) count += samples[i].key == samples[i - 1].key;
     return count;
 }
 
 /// Takes away samples of points that no cell uses.
-void keep_used(std::vector<Sample>& samples, const Grid& grid) {
+void keep_used(std::vector<core::Keyed>& samples, const Grid& grid) {
     std::vector<bool> used(grid.points.tuples(), false);
     grid.cells.connectivity.visit([&](auto corners) {
         if constexpr (std::is_integral_v<typename decltype(corners)::value_type>) {
@@ -80,7 +58,7 @@ void keep_used(std::vector<Sample>& samples, const Grid& grid) {
             }
         }
     });
-    std::erase_if(samples, [&](const Sample& sample) { return !used[sample.point]; });
+    std::erase_if(samples, [&](const core::Keyed& sample) { return !used[sample.number]; });
 }
 
 } // namespace
@@ -90,7 +68,7 @@ std::string coincident_points_note(const Grid& grid) {
     if (grid.points.components() != 3 || points < 2) return {};
     int zero_bits = 0;
     while ((points >> zero_bits) > enough_points) ++zero_bits;
-    std::vector<Sample> samples = sampled(grid.points, zero_bits);
+    std::vector<core::Keyed> samples = sampled(grid.points, zero_bits);
     const auto many = [&] { return repeated(samples) > samples.size() / one_in; };
     if (!many()) return {};
     keep_used(samples, grid);

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "core/parallel.hpp"
 #include "field_statistics.hpp"
 #include "grid_source.hpp"
 #include "json_output.hpp"
@@ -23,6 +24,7 @@ struct Findings {
     std::size_t step = 0;
     const Grid& grid;
     GridReport report;
+    bool surveyed = false; ///< whether faces and places were counted, too
 };
 
 struct DescribedField {
@@ -31,11 +33,27 @@ struct DescribedField {
     std::vector<ComponentStatistics> components;
 };
 
-std::vector<DescribedField> describe_fields(const Grid& grid) {
+std::vector<DescribedField> describe_fields(const Grid& grid, int threads, const Progress& progress) {
     std::vector<DescribedField> described;
-    for (const Field& field : grid.point_fields) described.push_back({field, "point", statistics(field.values)});
-    for (const Field& field : grid.cell_fields) described.push_back({field, "cell", statistics(field.values)});
+    for (const Field& field : grid.point_fields) described.push_back({field, "point", {}});
+    for (const Field& field : grid.cell_fields) described.push_back({field, "cell", {}});
+    std::vector<Array> arrays;
+    for (const DescribedField& one : described) arrays.push_back(one.field.values);
+    core::with_threads(threads, [&] {
+        auto all = statistics(arrays, progress);
+        for (std::size_t i = 0; i < all.size(); ++i) described[i].components = std::move(all[i]);
+    });
     return described;
+}
+
+/// "75, 0 to 7.4", or each of a few.
+std::string times_text(const std::vector<double>& times) {
+    constexpr std::size_t most = 10;
+    if (times.size() > most)
+        return fmt::format("{}, times {} to {}", times.size(), shortest(times.front()), shortest(times.back()));
+    std::string list;
+    for (const double time : times) list += (list.empty() ? "" : ", ") + shortest(time);
+    return fmt::format("{}, time{} {}", times.size(), times.size() == 1 ? "" : "s", list);
 }
 
 /// The shortest decimal that reads back in the field's own type.
@@ -75,7 +93,7 @@ std::string grid_table(const Findings& found, const std::string& path) {
                                       {report.duplicate_points, "duplicate points"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
-    table.row({"boundary faces", grouped(report.boundary_faces)});
+    if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
     const ScalarType type = found.grid.points.type();
     for (std::size_t axis = 0; axis < 3; ++axis) {
         table.row(
@@ -84,9 +102,8 @@ std::string grid_table(const Findings& found, const std::string& path) {
     }
     const std::vector<double>& times = found.file.times;
     if (!times.empty()) {
-        table.row({"time steps",
-                   fmt::format("{}, times {} to {}; this is step {}, time {}", times.size(), shortest(times.front()),
-                               shortest(times.back()), found.step, shortest(times[found.step]))});
+        table.row({"time steps", fmt::format("{}; this is step {}, time {}", times_text(times), found.step,
+                                             shortest(times[found.step]))});
     }
     return table.text();
 }
@@ -146,13 +163,15 @@ Json json_of(const Findings& found, const std::string& path) {
     report["cells_left_out"] = grid.cells_left_out;
     report["tets"] = grid.tets;
     report["collapsed_tets"] = grid.collapsed_tets;
-    report["repeated_tets"] = grid.repeated_tets;
     report["negative_tets"] = grid.negative_tets;
     report["inverted_tets"] = grid.inverted_tets;
     report["flat_tets"] = grid.flat_tets;
     report["unused_points"] = grid.unused_points;
-    report["duplicate_points"] = grid.duplicate_points;
-    report["boundary_faces"] = grid.boundary_faces;
+    if (found.surveyed) {
+        report["repeated_tets"] = grid.repeated_tets;
+        report["duplicate_points"] = grid.duplicate_points;
+        report["boundary_faces"] = grid.boundary_faces;
+    }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;
     report["step"] = found.step;
@@ -171,10 +190,12 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     if (!steps) return steps.error();
     const Result<Grid> grid = source->read({}, steps->front(), console);
     if (!grid) return grid.error();
-    Result<GridReport> surveyed = survey(*grid, {.faces = true, .threads = command.common.threads}, console.progress());
+    Result<GridReport> surveyed =
+        survey(*grid, {.faces = command.survey, .threads = command.common.threads}, console.progress());
     if (!surveyed) return surveyed.error();
-    const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed)};
-    const std::vector<DescribedField> fields = describe_fields(*grid);
+    const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
+    const std::vector<DescribedField> fields = describe_fields(*grid, command.common.threads, console.progress());
+    if (console.progress().cancelled()) return Error{ErrorCode::cancelled, "describing the fields was cancelled"};
 
     if (Result<void> printed = console.print(grid_table(found, path) + field_table(fields)); !printed)
         return printed.error();

@@ -30,7 +30,8 @@ Exit status:
 
 constexpr const char* info_details = R"(
 A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is not
-that of most; boundary faces are those that the tets do not use equally often in both directions.
+that of most. Of --survey: repeated tets have the corners of an earlier one, duplicate points the place of another, and
+boundary faces are those that the tets do not use equally often in both directions.
 )";
 
 constexpr const char* extract_details = R"(

@@ -12,7 +12,7 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr std::size_t grain = std::size_t{1} << 16;
+constexpr std::size_t values_a_piece = std::size_t{1} << 16;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void add(ComponentStatistics& total, const ComponentStatistics& part) {
@@ -31,15 +31,14 @@ void add(ComponentStatistics& total, double value) {
     }
 }
 
-} // namespace
-
-std::vector<ComponentStatistics> statistics(const Array& values) {
+std::vector<ComponentStatistics> statistics(const Array& values, const Progress& progress) {
     const std::size_t components = values.components();
     const ComponentStatistics nothing{infinity, -infinity, 0, 0};
     std::vector<ComponentStatistics> totals(components, nothing);
     std::mutex mutex;
     values.visit([&](auto scalars) {
-        core::parallel_ranges(values.tuples(), grain, [&](std::size_t begin, std::size_t end) {
+        const std::size_t grain = std::max<std::size_t>(values_a_piece / std::max<std::size_t>(components, 1), 1);
+        core::parallel_pieces(values.tuples(), grain, progress, [&](std::size_t begin, std::size_t end) {
             std::vector<ComponentStatistics> parts(components, nothing);
             for (std::size_t tuple = begin; tuple < end; ++tuple) {
                 for (std::size_t c = 0; c < components; ++c)
@@ -50,6 +49,14 @@ std::vector<ComponentStatistics> statistics(const Array& values) {
         });
     });
     return totals;
+}
+
+} // namespace
+
+std::vector<std::vector<ComponentStatistics>> statistics(const std::vector<Array>& arrays, const Progress& progress) {
+    std::vector<std::vector<ComponentStatistics>> all(arrays.size());
+    core::parallel_each(arrays.size(), 1, [&](std::size_t i) { all[i] = statistics(arrays[i], progress); });
+    return all;
 }
 
 } // namespace isotet::cli

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/progress.hpp>
 
 namespace isotet::cli {
 
@@ -15,7 +16,7 @@ struct ComponentStatistics {
     std::uint64_t infinite = 0;
 };
 
-/// One entry a component. One pass, in parallel.
-std::vector<ComponentStatistics> statistics(const Array& values);
+/// One entry a component, for each array. One pass, in parallel over all arrays; incomplete when cancelled.
+std::vector<std::vector<ComponentStatistics>> statistics(const std::vector<Array>& arrays, const Progress& progress);
 
 } // namespace isotet::cli

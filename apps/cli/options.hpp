@@ -40,6 +40,7 @@ struct GridOptions {
 struct InfoCommand {
     CommonOptions common;
     GridOptions grid;
+    bool survey = false; ///< also what takes longer than reading
 };
 
 /// A field's name, and what it is when a point field and a cell field have it.

@@ -57,28 +57,34 @@ struct GridReport {
     std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones
                                                        ///< counted
     std::size_t collapsed_tets = 0;    ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
-    std::size_t repeated_tets = 0;     ///< tets with the same four corners as an earlier one; packing keeps the first
-    std::size_t negative_tets = 0;     ///< tets of negative volume in the order of the file
-    std::size_t inverted_tets = 0;     ///< tets whose sign is not that of most
-    std::size_t flat_tets = 0;         ///< tets of volume exactly zero
-    std::size_t unused_points = 0;     ///< points that no contoured cell uses
-    std::size_t duplicate_points = 0;  ///< used points with the coordinates of a used point of a lower number
-    std::size_t boundary_faces = 0;    ///< faces that the tets do not use equally often in both directions
+    std::size_t negative_tets = 0;     ///< tets of negative volume in the order of the file, repeated ones counted
+    std::size_t inverted_tets = 0;     ///< tets whose sign is not that of most, repeated ones counted
+    std::size_t flat_tets = 0;         ///< tets of volume exactly zero, repeated ones counted
+    std::size_t unused_points = 0;     ///< points that no tet uses
     std::array<double, 3> lower{}, upper{}; ///< bounds of the used points
+
+    // Counted only with SurveyOptions::faces.
+    std::size_t repeated_tets = 0;     ///< tets with the same four corners as an earlier one; packing keeps the first
+    std::size_t duplicate_points = 0;  ///< used points with the coordinates of a used point of a lower number
+    std::size_t boundary_faces = 0;    ///< faces that the tets do not use equally often in both directions, repeated
+                                       ///< tets aside
+};
+
+struct SurveyOptions {
+    bool faces = true; ///< count repeated tets, duplicate points and boundary faces, too
+    int threads = 0;   ///< 0: all
 };
 
 /// Checks a grid and counts what is in it.
 ///
-/// Errors   invalid_data: point number out of range, array of the wrong length or type, wrong number of corners,
-///          offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
-///          nothing left that can be contoured; cancelled
-/// Cost     O(n log n); with `faces` false neither repeated tets nor boundary faces nor duplicate points are counted
-///          and it is one pass over the cells
-/// Threads  safe from many threads on one grid
-struct SurveyOptions {
-    bool faces = true;
-    int threads = 0; ///< 0: all
-};
+/// Guarantees   the same counts for any thread count
+/// Cost         O(n): two passes over the cells and one over the points, a byte a point; with `faces` every tet, face
+///              and point is hashed, too, and up to 32 bytes a tet are taken, or a quarter of the free memory where
+///              that is less (then in several passes over the cells)
+/// Errors       invalid_data: point number out of range, array of the wrong length or type, wrong number of corners,
+///              offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
+///              nothing left that can be contoured; out_of_memory; cancelled
+/// Threads      safe from many threads on one grid
 Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Progress& progress = {});
 
 /// The tets that isotet makes of a grid, in the user's order: each cell's tets one after another, collapsed ones

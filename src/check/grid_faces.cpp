@@ -129,7 +129,7 @@ Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, con
     core::Orienter::Counts counts;
     auto tets = tets_near(*cells, core::Orienter(grid.points, false), marks, no_data, counts, progress);
     // Only flat tets depend on how most of the grid is oriented.
-    if (counts.flat > 0 && core::survey_tets(grid, *cells).mostly_negative)
+    if (counts.flat > 0 && core::survey_tets(grid, *cells).mostly_negative())
         tets = tets_near(*cells, core::Orienter(grid.points, true), marks, no_data, counts, progress);
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking against the grid was cancelled"};
 

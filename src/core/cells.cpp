@@ -2,6 +2,7 @@
 #include "core/cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -275,8 +276,8 @@ Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progre
     const bool corners_are_enough = cells.bare_tets() && all_points_are_sound(grid);
     // The lowest broken cell is the one reported, whatever the threads do.
     std::atomic<std::size_t> lowest{std::numeric_limits<std::size_t>::max()};
-    parallel_ranges(cells.count(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-        if (progress.cancelled() || begin > lowest.load(std::memory_order_relaxed)) return;
+    parallel_pieces(cells.count(), 1 << 14, progress, [&](std::size_t begin, std::size_t end) {
+        if (begin > lowest.load(std::memory_order_relaxed)) return;
         if (corners_are_enough && all_corners_are_points(cells, begin, end)) return;
         for (std::size_t cell = begin; cell < end; ++cell) {
             if (fault_of(grid, cells, cell) == Fault::none) continue;
@@ -292,11 +293,13 @@ Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progre
 }
 
 Error nothing_to_contour(const Grid& grid, const CellReader& cells) {
-    std::map<std::uint8_t, std::size_t> counts;
+    std::array<std::size_t, 256> counts{};
     for (std::size_t cell = 0; cell < cells.count(); ++cell) ++counts[cells.type(cell)];
     std::string list;
-    for (const auto& [type, count] : counts)
-        list += fmt::format("{}{} x {}", list.empty() ? "" : ", ", count, name_of_cell_type(type));
+    for (std::size_t type = 0; type < counts.size(); ++type)
+        if (counts[type])
+            list += fmt::format("{}{} x {}", list.empty() ? "" : ", ", counts[type],
+                                name_of_cell_type(static_cast<std::uint8_t>(type)));
     return {ErrorCode::invalid_data,
             fmt::format(
                 "the grid with {} points has no cell that can be contoured ({}); tetrahedra, hexahedra, voxels, wedges "

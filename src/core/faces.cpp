@@ -2,20 +2,19 @@
 #include "core/faces.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <mutex>
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
-#include "core/buffer.hpp"
+#include "core/dealt.hpp"
+#include "core/face_counter.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet::core {
 
 namespace {
-
-constexpr std::size_t cells_a_chunk = 1 << 13;
 
 // Outward faces of an upright tet.
 constexpr std::size_t face_corners[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -32,105 +31,112 @@ DirectedFace face_of(const Tet& tet, std::size_t f) {
     return {p, odd};
 }
 
-/// A face in 24 bytes: the direction is the lowest bit of the last point.
-struct FaceUse {
-    std::array<std::uint64_t, 3> key;
-    friend bool operator<(const FaceUse& a, const FaceUse& b) { return a.key < b.key; }
-};
+constexpr std::uint64_t tets_per_bucket = 1 << 13; ///< faces and tets of a bucket stay in the second cache
+constexpr std::uint64_t max_buckets = 4096;     ///< so many lines that are written at once do, too
+constexpr std::size_t min_chunk = 1 << 14, max_chunks = 256;
 
-bool same_face(const FaceUse& a, const FaceUse& b) {
-    return a.key[0] == b.key[0] && a.key[1] == b.key[1] && a.key[2] >> 1 == b.key[2] >> 1;
+PointBuckets buckets_for(std::uint64_t points, std::uint64_t tets) {
+    const std::uint64_t buckets = std::clamp<std::uint64_t>(tets / tets_per_bucket, 1, max_buckets);
+    return {static_cast<unsigned>(std::bit_width((points - 1) / buckets))};
 }
 
-struct NumberedTet {
-    Tet corners; ///< ascending
-    TetId id;
-    friend bool operator<(const NumberedTet& a, const NumberedTet& b) {
-        return a.corners != b.corners ? a.corners < b.corners : a.id.value < b.id.value;
+/// Deals the tets of a checked grid, and counts bucket by bucket.
+template <class Point>
+class FaceSurveyor {
+public:
+    FaceSurveyor(const Grid& grid, const CellReader& cells, const TetSurvey& survey, const Progress& progress)
+        : points_(grid.points),
+          cells_(cells),
+          survey_(survey),
+          progress_(progress),
+          buckets_(buckets_for(cells.points(), survey.tets)),
+          bucket_count_(buckets_.of(cells.points() - 1) + 1),
+          chunks_(std::clamp<std::size_t>(cells.count() / min_chunk, 1, max_chunks)) {}
+
+    Result<FaceSurvey> run(std::uint64_t memory) {
+        const std::uint64_t bytes = 2 * survey_.tets * sizeof(AscendingTet<Point>); // a tet is in at most two buckets
+        const std::uint64_t rounds =
+            std::min<std::uint64_t>(1 + bytes / std::max<std::uint64_t>(memory, 1), bucket_count_);
+        const std::size_t buckets_a_round = (bucket_count_ + rounds - 1) / rounds;
+        for (std::size_t first = 0; first < bucket_count_ && !progress_.cancelled(); first += buckets_a_round)
+            count(first, std::min(first + buckets_a_round, bucket_count_));
+        if (progress_.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
+        return FaceSurvey{total_.repeated, total_.unbalanced};
     }
-};
 
-bool in_hand(std::uint64_t point, std::uint64_t hand, std::uint64_t hands) {
-    return hands == 1 || (point * 0x9e3779b97f4a7c15u >> 32) % hands == hand;
-}
+private:
+    /// Counts the buckets [first, last).
+    void count(std::size_t first, std::size_t last) {
+        auto dealt = Dealt<AscendingTet<Point>>::deal(
+            chunks_, last - first,
+            [&](std::size_t chunk, auto& dealer) {
+                deal(cells_.count() / chunks_ * chunk + std::min(chunk, cells_.count() % chunks_),
+                     cells_.count() / chunks_ * (chunk + 1) + std::min(chunk + 1, cells_.count() % chunks_), first,
+                     last, dealer);
+            },
+            progress_);
+        report(first + 0.4 * static_cast<double>(last - first));
+        tbb::enumerable_thread_specific<FaceCounter<Point>> counters;
+        tbb::enumerable_thread_specific<FaceCounts> counts;
+        std::atomic<std::size_t> done{0};
+        parallel_each(last - first, 1, [&](std::size_t b) {
+            if (progress_.cancelled()) return;
+            counters.local().add(dealt.bucket(b), first + b, buckets_, progress_, counts.local());
+            report(first + 0.4 * static_cast<double>(last - first) + 0.6 * static_cast<double>(++done));
+        });
+        for (const FaceCounts& part : counts) {
+            total_.repeated += part.repeated;
+            total_.unbalanced += part.unbalanced;
+        }
+    }
 
-std::uint64_t hands_for(std::uint64_t bytes, std::uint64_t memory) {
-    return 1 + bytes / std::max<std::uint64_t>(memory, 1);
-}
+    void report(double buckets) const {
+        if (!progress_.cancelled()) progress_("check", 0.6 + 0.4 * buckets / static_cast<double>(bucket_count_));
+    }
 
-/// Collects what visit(cell, emit) emits for all cells, each chunk of cells to its own place: counted first, so that no
-/// list grows.
-template <class Item, class Visit>
-Buffer<Item> collect(std::size_t cells, const Visit& visit) {
-    const std::size_t chunks = (cells + cells_a_chunk - 1) / cells_a_chunk;
-    std::vector<std::uint64_t> first(chunks + 1, 0);
-    const auto for_chunk = [&](std::size_t chunk, const auto& emit) {
-        for (std::size_t cell = chunk * cells_a_chunk; cell < std::min(cells, (chunk + 1) * cells_a_chunk); ++cell)
-            visit(cell, emit);
-    };
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
-        std::uint64_t count = 0;
-        for_chunk(chunk, [&](const Item&) { ++count; });
-        first[chunk + 1] = count;
-    });
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) first[chunk + 1] += first[chunk];
-    Buffer<Item> items(first[chunks]);
-    parallel_each(chunks, 1, [&](std::size_t chunk) {
-        Item* out = items.data() + first[chunk];
-        for_chunk(chunk, [&](const Item& item) { *out++ = item; });
-    });
-    return items;
-}
-
-/// Calls run(first, last) for every run of equal items, in parallel, and adds up what it returns.
-template <class Item, class Same, class Run>
-std::uint64_t sum_over_runs(const Buffer<Item>& items, const Same& same, const Run& run) {
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, items.size(), 1 << 14), std::uint64_t{0},
-        [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t sum) {
-            std::size_t begin = range.begin();
-            while (begin > 0 && begin < range.end() && same(items[begin - 1], items[begin])) ++begin; // not ours
-            while (begin < range.end()) {
-                std::size_t end = begin + 1;
-                while (end < items.size() && same(items[begin], items[end])) ++end;
-                sum += run(items.data() + begin, items.data() + end);
-                begin = end;
-            }
-            return sum;
-        },
-        [](std::uint64_t a, std::uint64_t b) { return a + b; });
-}
-
-/// Repeated tets, all but the first of each, ascending.
-Result<std::vector<std::uint64_t>> find_repeated(const CellReader& cells, std::uint64_t tets, std::uint64_t memory,
-                                                 const Progress& progress) {
-    std::vector<std::uint64_t> repeated;
-    const std::uint64_t hands = hands_for(tets * sizeof(NumberedTet), memory);
-    for (std::uint64_t hand = 0; hand < hands; ++hand) {
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
-        progress("check", 0.4 + 0.2 * static_cast<double>(hand) / static_cast<double>(hands));
-        Buffer<NumberedTet> all = collect<NumberedTet>(cells.count(), [&](std::size_t cell, const auto& emit) {
-            const CellTets pieces = cells.tets(cell);
-            for (int piece = 0; piece < pieces.count; ++piece) {
-                Tet corners = pieces.tets[static_cast<std::size_t>(piece)];
-                std::sort(corners.begin(), corners.end());
-                if (in_hand(corners[0], hand, hands))
-                    emit(NumberedTet{corners, TetId::make(cell, static_cast<unsigned>(piece))});
+    /// Deals the tets of the cells [begin, end) that belong into the buckets [first, last).
+    template <class Dealer>
+    void deal(std::size_t begin, std::size_t end, std::size_t first, std::size_t last, Dealer& dealer) const {
+        const auto is_here = [&](std::size_t bucket) { return first <= bucket && bucket < last; };
+        cells_.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
+            const bool whole = Orienter::is_whole(cells_.type(cell));
+            bool cell_mirrored = survey_.mostly_negative();
+            if constexpr (Dealer::writes)
+                if (!whole && !survey_.all_alike()) cell_mirrored = Orienter::six_volumes(points_, pieces) < 0;
+            for (const Tet& tet : pieces) {
+                const auto [lowest, second] = two_lowest(tet);
+                const std::size_t a = buckets_.of(lowest), b = buckets_.of(second);
+                const auto make = [&] {
+                    return AscendingTet<Point>::make(tet, is_mirrored(tet, whole, cell_mirrored));
+                };
+                if (is_here(a) && is_here(b)) dealer.put(a - first, b - first, make);
+                else if (is_here(a)) dealer.put(a - first, make);
+                else if (is_here(b)) dealer.put(b - first, make);
             }
         });
-        tbb::parallel_sort(all.begin(), all.end());
-        tbb::enumerable_thread_specific<std::vector<std::uint64_t>> found;
-        sum_over_runs(
-            all, [](const NumberedTet& a, const NumberedTet& b) { return a.corners == b.corners; },
-            [&](const NumberedTet* first, const NumberedTet* last) {
-                for (const NumberedTet* tet = first + 1; tet < last; ++tet) found.local().push_back(tet->id.value);
-                return std::uint64_t{0};
-            });
-        for (const auto& part : found) repeated.insert(repeated.end(), part.begin(), part.end());
     }
-    std::sort(repeated.begin(), repeated.end());
-    return repeated;
-}
+
+    /// Whether the tet's stored form is mirrored. Where all are alike, the answer for all of them is as good.
+    bool is_mirrored(const Tet& tet, bool whole, bool cell_mirrored) const {
+        if (survey_.all_alike()) return false;
+        Orienter::Counts ignored;
+        return ignored.add(points_.orientation(tet), whole, cell_mirrored);
+    }
+
+    static std::pair<std::uint64_t, std::uint64_t> two_lowest(const Tet& t) {
+        const std::uint64_t a = std::min(t[0], t[1]), b = std::max(t[0], t[1]);
+        const std::uint64_t c = std::min(t[2], t[3]), d = std::max(t[2], t[3]);
+        return {std::min(a, c), std::min(std::max(a, c), std::min(b, d))};
+    }
+
+    PointReader points_;
+    const CellReader& cells_;
+    const TetSurvey& survey_;
+    const Progress& progress_;
+    PointBuckets buckets_;
+    std::size_t bucket_count_, chunks_;
+    FaceCounts total_;
+};
 
 } // namespace
 
@@ -158,49 +164,12 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets) {
 }
 
 Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
-                                std::uint64_t memory, const Progress& progress) {
-    const auto repeated = find_repeated(cells, survey.tets, memory, progress);
-    if (!repeated) return repeated.error();
-    FaceSurvey out;
-    out.repeated = repeated->size();
-    const Orienter orienter(grid.points, survey.mostly_negative);
-    const auto for_stored_tets = [&](std::size_t cell, Orienter::Counts& counts, const auto& visit) {
-        const CellTets pieces = cells.tets(cell);
-        for (unsigned piece = 0; piece < static_cast<unsigned>(pieces.count); ++piece)
-            if (repeated->empty() ||
-                !std::binary_search(repeated->begin(), repeated->end(), TetId::make(cell, piece).value))
-                visit(orienter.stored(cells.type(cell), pieces, piece, counts));
-    };
-    tbb::enumerable_thread_specific<Orienter::Counts> counts;
-    parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t cell = begin; cell < end; ++cell) for_stored_tets(cell, counts.local(), [](const Tet&) {});
-    });
-    for (const Orienter::Counts& part : counts) out.orientation.combine(part);
-    out.inverted = orienter.inverted(out.orientation);
-
-    const std::uint64_t hands = hands_for(4 * survey.tets * sizeof(FaceUse), memory);
-    for (std::uint64_t hand = 0; hand < hands; ++hand) {
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
-        progress("check", 0.6 + 0.4 * static_cast<double>(hand) / static_cast<double>(hands));
-        Buffer<FaceUse> uses = collect<FaceUse>(cells.count(), [&](std::size_t cell, const auto& emit) {
-            Orienter::Counts ignored;
-            for_stored_tets(cell, ignored, [&](const Tet& tet) {
-                for (std::size_t f = 0; f < 4; ++f) {
-                    const DirectedFace face = face_of(tet, f);
-                    if (in_hand(face.points[0], hand, hands))
-                        emit(FaceUse{
-                            {face.points[0], face.points[1], face.points[2] << 1 | std::uint64_t{face.mirrored}}});
-                }
-            });
-        });
-        tbb::parallel_sort(uses.begin(), uses.end());
-        out.boundary_faces += sum_over_runs(uses, same_face, [](const FaceUse* first, const FaceUse* last) {
-            std::int64_t balance = 0;
-            for (; first != last; ++first) balance += first->key[2] & 1 ? -1 : 1;
-            return std::uint64_t{balance != 0};
-        });
-    }
-    return out;
+                                const FaceSurveyOptions& options, const Progress& progress) {
+    using Narrow = std::uint32_t;
+    using Wide = std::uint64_t;
+    if (options.wide || cells.points() > AscendingTet<Narrow>::max_points)
+        return FaceSurveyor<Wide>(grid, cells, survey, progress).run(options.memory);
+    return FaceSurveyor<Narrow>(grid, cells, survey, progress).run(options.memory);
 }
 
 } // namespace isotet::core

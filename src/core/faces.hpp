@@ -10,7 +10,6 @@
 #include <isotet/progress.hpp>
 
 #include "core/cells.hpp"
-#include "core/orientation.hpp"
 #include "core/tet_survey.hpp"
 
 namespace isotet::core {
@@ -24,21 +23,26 @@ struct StoredFace {
 /// All faces of some stored tets, each once, ascending. 128 bytes a tet while it works: for few tets.
 std::vector<StoredFace> faces_of(const std::vector<Tet>& tets);
 
-/// What all stored tets of a grid say.
-struct FaceSurvey {
-    std::uint64_t repeated = 0;       ///< tets with the corners of an earlier one; all else is counted without them
-    std::uint64_t boundary_faces = 0; ///< faces that the tets do not use equally often in both directions
-    std::uint64_t inverted = 0;
-    Orienter::Counts orientation;
+struct FaceSurveyOptions {
+    std::uint64_t memory = std::uint64_t{1} << 30; ///< bytes that it should not take more of
+    bool wide = false; ///< point numbers of 64 bits, even where 32 would do
 };
 
-/// Surveys a checked grid of any size: points are dealt out into so many hands that the faces (or tets) with their
-/// lowest point in one hand fit `memory` bytes, and each hand takes a pass over the cells.
+struct FaceSurvey {
+    std::uint64_t repeated = 0;       ///< tets with the corners of an earlier one
+    std::uint64_t boundary_faces = 0; ///< faces that tets but repeated ones do not use equally often in both directions
+};
+
+/// Counts repeated tets and boundary faces of a checked grid of any size.
 ///
-/// Guarantees   the same counts for any thread count and any `memory`
-/// Cost         O(T log T) and a pass over the cells a hand; 96 T / `memory` hands
+/// Tets are dealt by their two lowest points into buckets that fit a processor's cache, where they and their faces are
+/// hashed. Where all buckets together take more than `memory`, so many at a time as fit.
+///
+/// Guarantees   the same counts for any thread count and any options
+/// Cost         three passes over the cells for each time, each tet and face hashed once or twice; 16 to 32 bytes a tet
+///              (twice that from 2^31 points on)
 /// Errors       cancelled
 Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
-                                std::uint64_t memory, const Progress& progress);
+                                const FaceSurveyOptions& options, const Progress& progress);
 
 } // namespace isotet::core

@@ -9,6 +9,7 @@
 
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
+#include "core/point_hash.hpp"
 
 namespace isotet::core {
 
@@ -18,16 +19,6 @@ struct Entry {
     std::uint64_t hash, point;
     auto operator<=>(const Entry&) const = default;
 };
-
-std::uint64_t hash_of(const Point& position) {
-    std::uint64_t hash = 0;
-    for (const double x : position) {
-        hash ^= std::bit_cast<std::uint64_t>(x + 0.0); // -0 + 0 is +0
-        hash *= 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return hash;
-}
 
 bool is_comparable(const Point& p) { return p[0] == p[0] && p[1] == p[1] && p[2] == p[2]; }
 

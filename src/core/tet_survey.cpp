@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <mutex>
 
 #include "core/bounds.hpp"
 #include "core/orientation.hpp"
@@ -17,61 +15,94 @@ namespace {
 
 constexpr std::size_t cells_a_chunk = 1 << 14;
 
+/// Counts of some cells.
 struct Partial {
-    Bounds bounds;
-    std::uint64_t tets = 0, collapsed = 0, left_out = 0;
-    std::int64_t balance = 0; ///< upright minus inverted tetrahedra
-
-    void combine(const Partial& other) {
-        bounds.combine(other.bounds);
-        tets += other.tets;
-        collapsed += other.collapsed;
-        left_out += other.left_out;
-        balance += other.balance;
-    }
+    std::uint64_t tets = 0, collapsed = 0, mirrored = 0;
+    std::array<std::uint64_t, 256> by_type{};
+    Orienter::Counts orientation;
 };
+
+void add_cells(const CellReader& cells, const PointReader& points, std::size_t begin, std::size_t end,
+               std::uint8_t* used, Partial& out) {
+    const bool typed = !cells.only_tets();
+    cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& tets) {
+        const std::uint8_t type = cells.type(cell);
+        out.by_type[type] += typed;
+        out.tets += static_cast<std::uint64_t>(tets.count);
+        out.collapsed += static_cast<std::uint64_t>(tets.collapsed);
+        const bool whole = Orienter::is_whole(type);
+        const bool cell_mirrored = !whole && Orienter::six_volumes(points, tets) < 0;
+        for (const Tet& tet : tets) {
+            for (const std::uint64_t corner : tet)
+                std::atomic_ref<std::uint8_t>(used[corner]).store(1, std::memory_order_relaxed);
+            const int sign = points.orientation(tet);
+            out.orientation.add(sign, whole, cell_mirrored);
+            out.mirrored += sign < 0;
+        }
+    });
+    if (!typed) out.by_type[static_cast<std::uint8_t>(CellType::tetrahedron)] += end - begin;
+}
+
+/// Bounds of the used points, and how many are not.
+struct UsedPoints {
+    Bounds bounds;
+    std::uint64_t unused = 0;
+};
+
+UsedPoints look_at_used(const PointReader& points, const Buffer<std::uint8_t>& used, const Progress& progress) {
+    UsedPoints total;
+    std::mutex mutex;
+    parallel_pieces(used.size(), 1 << 16, progress, [&](std::size_t begin, std::size_t end) {
+        UsedPoints part;
+        for (std::size_t i = begin; i < end; ++i) {
+            part.unused += !used[i];
+            if (used[i]) part.bounds.add(points[i]);
+        }
+        const std::lock_guard lock(mutex);
+        total.bounds.combine(part.bounds);
+        total.unused += part.unused;
+    });
+    return total;
+}
+
+void clear(Buffer<std::uint8_t>& flags) {
+    parallel_ranges(flags.size(), 1 << 18,
+                    [&](std::size_t begin, std::size_t end) { std::fill_n(flags.data() + begin, end - begin, 0); });
+}
 
 } // namespace
 
-TetSurvey survey_tets(const Grid& grid, const CellReader& cells) {
+TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress& progress) {
     const PointReader points(grid.points);
-    const Partial total = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, cells.count(), cells_a_chunk), Partial{},
-        [&](const tbb::blocked_range<std::size_t>& range, Partial partial) {
-            cells.for_cells(range.begin(), range.end(), [&](std::size_t cell, const CellTets& tets) {
-                const std::uint8_t type = cells.type(cell);
-                partial.left_out += !is_contoured(type);
-                partial.tets += static_cast<std::uint64_t>(tets.count);
-                partial.collapsed += static_cast<std::uint64_t>(tets.collapsed);
-                for (const Tet& tet : tets) {
-                    for (const std::uint64_t corner : tet) partial.bounds.add(points[corner]);
-                    if (Orienter::is_whole(type)) partial.balance += points.orientation(tet);
-                }
-            });
-            return partial;
-        },
-        [](Partial a, const Partial& b) {
-            a.combine(b);
-            return a;
-        });
     TetSurvey survey;
-    if (total.tets) {
-        survey.lower = total.bounds.lower;
-        survey.upper = total.bounds.upper;
+    survey.used = Buffer<std::uint8_t>(cells.points());
+    clear(survey.used);
+    std::mutex mutex;
+    parallel_pieces(cells.count(), cells_a_chunk, progress, [&](std::size_t begin, std::size_t end) {
+        Partial part;
+        add_cells(cells, points, begin, end, survey.used.data(), part);
+        const std::lock_guard lock(mutex);
+        survey.tets += part.tets;
+        survey.collapsed += part.collapsed;
+        survey.mirrored += part.mirrored;
+        survey.orientation.combine(part.orientation);
+        for (std::size_t type = 0; type < part.by_type.size(); ++type) survey.cells_by_type[type] += part.by_type[type];
+    });
+    for (std::size_t type = 0; type < survey.cells_by_type.size(); ++type)
+        if (!is_contoured(static_cast<std::uint8_t>(type))) survey.left_out += survey.cells_by_type[type];
+    const UsedPoints of_used = look_at_used(points, survey.used, progress);
+    survey.unused = of_used.unused;
+    if (survey.tets) {
+        survey.lower = of_used.bounds.lower;
+        survey.upper = of_used.bounds.upper;
     }
-    survey.tets = total.tets;
-    survey.collapsed = total.collapsed;
-    survey.left_out = total.left_out;
-    survey.mostly_negative = total.balance < 0;
     return survey;
 }
 
 TetCounts count_tets(const CellReader& cells) {
     TetCounts counts;
     counts.used = Buffer<std::uint8_t>(cells.points());
-    parallel_ranges(cells.points(), 1 << 18, [&](std::size_t begin, std::size_t end) {
-        std::fill_n(counts.used.data() + begin, end - begin, 0);
-    });
+    clear(counts.used);
     std::atomic<std::uint64_t> all_tets{0}, all_collapsed{0}, all_left_out{0};
     parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
         std::uint64_t tets = 0, collapsed = 0, left_out = 0;

@@ -6,9 +6,11 @@
 #include <cstdint>
 
 #include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
 
 #include "core/buffer.hpp"
 #include "core/cells.hpp"
+#include "core/orientation.hpp"
 
 namespace isotet::core {
 
@@ -24,11 +26,20 @@ struct TetId {
 struct TetSurvey {
     std::array<double, 3> lower{}, upper{}; ///< bounds of the used points
     std::uint64_t tets = 0, collapsed = 0, left_out = 0;
-    bool mostly_negative = false;
+    std::array<std::uint64_t, 256> cells_by_type{};
+    Orienter::Counts orientation; ///< repeated tets too
+    std::uint64_t mirrored = 0;   ///< tets whose stored form is mirrored, flat ones aside
+    Buffer<std::uint8_t> used;    ///< by point: 1 when a tet has it
+    std::uint64_t unused = 0;     ///< points that no tet has
+
+    bool mostly_negative() const { return orientation.negative > orientation.upright; }
+    /// Whether either no tet is mirrored when it is stored, or every one.
+    bool all_alike() const { return orientation.flat == 0 && (mirrored == 0 || mirrored == tets); }
 };
 
-/// Bounds, counts and orientation of a checked grid. Parallel, one pass over the cells.
-TetSurvey survey_tets(const Grid& grid, const CellReader& cells);
+/// Bounds, counts and orientation of a checked grid. Parallel, one pass over the cells and one over the points; a byte
+/// a point. Incomplete when cancelled.
+TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress& progress = {});
 
 /// What one pass over the point numbers of all cells finds out.
 struct TetCounts {

@@ -1,8 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What survey() counts, against grids whose counts are known, and that dealing points into hands changes nothing.
+// What survey() counts, against grids whose counts are known, and that memory and the width of point numbers change
+// nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -32,6 +34,85 @@ TEST(Survey, CountsTheBoundaryOfACube) {
         EXPECT_EQ(report.lower, (std::array{-1.0, -1.0, -1.0})) << shape;
         EXPECT_EQ(report.upper, (std::array{1.0, 1.0, 1.0})) << shape;
     }
+}
+
+TEST(Survey, CountsTheBoundaryOfManyTetsInAnyOrder) {
+    for (const char* shape : {"kuhn", "shuffled"})
+        for (const int threads : {1, 7}) {
+            const GridReport report = survey(cube_of(48, shape), {.threads = threads}).value(); // 663,552 tets
+            EXPECT_EQ(report.boundary_faces, 6u * 48 * 48 * 2) << shape;
+            EXPECT_EQ(report.repeated_tets, 0u) << shape;
+            EXPECT_EQ(report.duplicate_points, 0u) << shape;
+        }
+}
+
+TEST(Survey, WithoutFacesCountsAllElseAlike) {
+    const NastyGrid g = nasty_grid(3, {.side = 6, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
+    GridReport all = survey(g.grid).value();
+    const GridReport quick = survey(g.grid, {.faces = false}).value();
+    EXPECT_GT(all.repeated_tets, 0u);
+    EXPECT_GT(all.boundary_faces, 0u);
+    EXPECT_EQ(quick.repeated_tets + quick.duplicate_points + quick.boundary_faces, 0u);
+    EXPECT_EQ(quick.points, all.points);
+    EXPECT_EQ(quick.cells_by_type, all.cells_by_type);
+    EXPECT_EQ(quick.tets, all.tets);
+    EXPECT_EQ(quick.negative_tets, all.negative_tets);
+    EXPECT_EQ(quick.inverted_tets, all.inverted_tets);
+    EXPECT_EQ(quick.flat_tets, all.flat_tets);
+    EXPECT_EQ(quick.unused_points, all.unused_points);
+    EXPECT_EQ(quick.lower, all.lower);
+    EXPECT_EQ(quick.upper, all.upper);
+}
+
+TEST(Survey, CountsCellsByType) {
+    const Grid grid = cube_of(6, "mixed");
+    std::map<std::uint8_t, std::size_t> expected;
+    for (const std::uint8_t type : grid.cells.types.as<std::uint8_t>()) ++expected[type];
+    EXPECT_GT(expected.size(), 3u);
+    EXPECT_EQ(survey(grid).value().cells_by_type, expected);
+    EXPECT_EQ(survey(cube_of(3)).value().cells_by_type, (std::map<std::uint8_t, std::size_t>{{10, 162}}));
+}
+
+/// Tets far apart, each with four points of its own, at the places that `at` tells.
+template <class At>
+Grid lone_tets(std::size_t tets, const At& at) {
+    std::vector<double> points;
+    std::vector<std::int64_t> corners;
+    for (std::size_t i = 0; i < 4 * tets; ++i) {
+        const std::array<double, 3> position = at(i);
+        points.insert(points.end(), position.begin(), position.end());
+        corners.push_back(static_cast<std::int64_t>(i));
+    }
+    Grid grid;
+    grid.points = Array::own(std::move(points), 3);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    return grid;
+}
+
+TEST(Survey, CountsPointsInOnePlace) {
+    constexpr std::size_t tets = 50'000;
+    const auto lattice = [](std::size_t i) {
+        return std::array{static_cast<double>(i % 100), static_cast<double>(i / 100 % 100),
+                          static_cast<double>(i / 10'000)};
+    };
+    EXPECT_EQ(survey(lone_tets(tets, lattice)).value().duplicate_points, 0u);
+    EXPECT_EQ(survey(lone_tets(tets, [&](std::size_t i) { return lattice(i % 1000); })).value().duplicate_points,
+              4 * tets - 1000);
+    EXPECT_EQ(survey(lone_tets(tets, [](std::size_t) { return std::array{1.0, 2.0, 3.0}; })).value().duplicate_points,
+              4 * tets - 1);
+    const auto zeros = [&](std::size_t i) { return std::array{i % 2 ? 0.0 : -0.0, lattice(i)[1], i / 2 * 1.0}; };
+    EXPECT_EQ(survey(lone_tets(tets, zeros)).value().duplicate_points, 0u) << "the second coordinates differ";
+    const auto signs = [](std::size_t i) { return std::array{i % 2 ? 0.0 : -0.0, 7.0, static_cast<double>(i / 2)}; };
+    EXPECT_EQ(survey(lone_tets(tets, signs)).value().duplicate_points, 2 * tets) << "-0 equals +0";
+}
+
+TEST(Survey, CountsNoDuplicatesAmongUnusedPoints) {
+    Grid grid;
+    grid.points = Array::own(std::vector<float>{5, 5, 5, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 5, 5, 0, 0, 1}, 3);
+    grid.cells.connectivity = Array::own(std::vector<std::int32_t>{1, 2, 3, 4});
+    const GridReport report = survey(grid).value();
+    EXPECT_EQ(report.unused_points, 3u);
+    EXPECT_EQ(report.duplicate_points, 0u);
 }
 
 TEST(Survey, CountsOddTets) {
@@ -94,17 +175,20 @@ TEST(Survey, BoundsAreThoseOfTheTetsWhereverOtherCellsStand) {
 
 TEST(Survey, AgreesWithPackingOnNastyGrids) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        const NastyGrid g =
-            nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
-        const GridReport report = survey(g.grid).value();
-        const PackedGrid packed = pack(g.grid, g.field).value();
-        EXPECT_EQ(report.tets - report.repeated_tets, packed.report().tets);
-        EXPECT_EQ(report.repeated_tets, packed.report().repeated_tets);
-        EXPECT_EQ(report.negative_tets, packed.report().negative_tets);
-        EXPECT_EQ(report.inverted_tets, packed.report().inverted_tets);
-        EXPECT_EQ(report.flat_tets, packed.report().flat_tets);
-        EXPECT_GT(report.repeated_tets, 0u);
-        EXPECT_GT(report.negative_tets, 0u);
+        for (const double repeated : {0.0, 0.1}) {
+            const NastyGrid g =
+                nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = repeated});
+            const GridReport report = survey(g.grid).value();
+            const PackedGrid packed = pack(g.grid, g.field).value();
+            EXPECT_EQ(report.tets - report.repeated_tets, packed.report().tets);
+            EXPECT_EQ(report.repeated_tets, packed.report().repeated_tets);
+            EXPECT_EQ(report.repeated_tets > 0, repeated > 0);
+            EXPECT_GT(report.negative_tets, 0u);
+            if (repeated > 0) continue; // packing counts the tets that it keeps
+            EXPECT_EQ(report.negative_tets, packed.report().negative_tets);
+            EXPECT_EQ(report.inverted_tets, packed.report().inverted_tets);
+            EXPECT_EQ(report.flat_tets, packed.report().flat_tets);
+        }
     }
 }
 
@@ -135,19 +219,27 @@ std::uint64_t boundary_faces_by_map(const Grid& grid, const core::CellReader& ce
         std::count_if(balance.begin(), balance.end(), [](const auto& face) { return face.second != 0; }));
 }
 
-TEST(Survey, CountsTheSameInOneHandOrMany) {
-    for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-        const NastyGrid g =
-            nasty_grid(seed, {.side = 5, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
+/// Coordinates as multiples of 1/4.
+Array rounded(const Array& points) {
+    std::vector<double> out(points.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::round(4 * points.at(i / 3, i % 3)) / 4;
+    return Array::own(std::move(out), 3);
+}
+
+TEST(Survey, CountsFacesAlikeWithAnyMemoryAndWidth) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        NastyGrid g = nasty_grid(seed, {.side = 18, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.1});
+        if (seed % 2) g.grid.points = rounded(g.grid.points); // flat tets, also repeated the other way round
         const core::CellReader cells = core::CellReader::open(g.grid).value();
         const core::TetSurvey tets = core::survey_tets(g.grid, cells);
-        const std::uint64_t expected = boundary_faces_by_map(g.grid, cells, tets.mostly_negative);
+        const std::uint64_t expected = boundary_faces_by_map(g.grid, cells, tets.mostly_negative());
         const std::uint64_t repeated = survey(g.grid).value().repeated_tets;
-        for (const std::uint64_t memory : {std::uint64_t{1} << 30, std::uint64_t{20000}, std::uint64_t{3000}}) {
-            const auto faces = core::survey_faces(g.grid, cells, tets, memory, {}).value();
-            EXPECT_EQ(faces.boundary_faces, expected) << "seed " << seed << ", memory " << memory;
-            EXPECT_EQ(faces.repeated, repeated) << "seed " << seed << ", memory " << memory;
-        }
+        for (const std::uint64_t memory : {std::uint64_t{1} << 30, std::uint64_t{20000}, std::uint64_t{0}})
+            for (const bool wide : {false, true}) {
+                const auto faces = core::survey_faces(g.grid, cells, tets, {memory, wide}, {}).value();
+                EXPECT_EQ(faces.boundary_faces, expected) << "seed " << seed << ", memory " << memory;
+                EXPECT_EQ(faces.repeated, repeated) << "seed " << seed << ", memory " << memory;
+            }
     }
 }
 

@@ -26,6 +26,22 @@ TEST_F(Program, InfoTellsCellsFieldsAndRanges) {
     EXPECT_EQ(fields["c"]["range"], json::array({json::array({-5, 7})}));
 }
 
+TEST_F(Program, InfoCountsFacesAndPlacesOnlyInASurvey) {
+    const std::vector<std::string> of_survey{"repeated_tets", "duplicate_points", "boundary_faces"};
+    const json quick = json_of({"info", "make:kuhn:3"});
+    const json survey = json_of({"info", "make:kuhn:3", "--survey"});
+    for (const std::string& key : of_survey) {
+        EXPECT_FALSE(quick.contains(key)) << key;
+        EXPECT_TRUE(survey.contains(key)) << key;
+    }
+    EXPECT_EQ(survey["boundary_faces"], 6 * 3 * 3 * 2);
+    json rest = survey;
+    for (const std::string& key : of_survey) rest.erase(key);
+    EXPECT_EQ(rest, quick);
+    EXPECT_EQ(isotet({"info", "make:kuhn:3"}).out.find("boundary faces"), std::string::npos);
+    EXPECT_NE(isotet({"info", "make:kuhn:3", "--survey"}).out.find("boundary faces  108"), std::string::npos);
+}
+
 TEST_F(Program, InfoCountsValuesThatAreNoNumber) {
     std::string grid = small_grid({{"p", {1, 2, 3, 4, 9}}});
     grid.replace(grid.find("3 3\n"), 4, "3 nan\n");

@@ -3,12 +3,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <random>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "program.hpp"
 #include "small_grid.hpp"
+#include "support/seeds.hpp"
 
 namespace isotet::test {
 namespace {
@@ -25,6 +28,31 @@ TEST_F(Program, CtrlCEndsWithStatus130AndLeavesNoFile) {
         EXPECT_EQ(run.out, "");
         EXPECT_EQ(folder.entries(), 0u);
     }
+}
+
+/// One thread, so that the whole takes long against what it takes to start and to end.
+TEST_F(Program, CtrlCEndsASurveyAtAnyMoment) {
+    const std::vector<std::string> arguments{"info", "make:shuffled:80:gyroid,wavelet", "--survey", "-j", "1"};
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(isotet(arguments).status, 0);
+    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+    int sent = 0, ignored = 0;
+    for (const std::uint32_t seed : Seeds(1, 12)) {
+        std::mt19937 random(seed);
+        const auto moment =
+            std::chrono::milliseconds(std::uniform_int_distribution<long long>(0, whole.count() * 2 / 3)(random));
+        const RunResult run = isotet(arguments, {.interrupt_after = moment});
+        if (!run.interrupted) continue; // this time it was faster
+        ++sent;
+        ignored += run.status == 0; // or the signal came when all was done
+        const bool before_main = run.status == -1 && run.signal == SIGINT;
+        if (run.status == 0 || before_main) continue;
+        EXPECT_EQ(run.status, 130) << "after " << moment.count() << " ms of " << whole.count() << ": " << run.err;
+        EXPECT_NE(run.err.find("isotet: interrupted"), std::string::npos) << run.err;
+        EXPECT_EQ(run.out, "");
+    }
+    EXPECT_GE(sent, std::getenv("ISOTET_SEED") ? 0 : 6);
+    EXPECT_LE(ignored, 1);
 }
 
 TEST_F(Program, CtrlCLeavesTheOldFile) {

@@ -21,6 +21,20 @@ protected:
 
 TEST_F(ProgramWithTimes, InfoListsTheTimes) { EXPECT_EQ(json_of({"info", grid})["times"], json::array({0, 0.1, 2.5})); }
 
+TEST_F(ProgramWithTimes, InfoShowsEachOfAFewTimes) {
+    const RunResult run = isotet({"info", grid, "--step", "1"});
+    EXPECT_NE(run.out.find("3, times 0, 0.1, 2.5; this is step 1, time 0.1\n"), std::string::npos) << run.out;
+}
+
+TEST_F(Program, InfoShowsTheFirstAndTheLastOfManyTimes) {
+    std::vector<SmallField> steps;
+    for (int step = 0; step < 11; ++step) steps.push_back({"p", {0, 1, 1, 1, 2}, 0.5 * step});
+    put_content(path("many.msh"), small_grid(steps));
+    const RunResult run = isotet({"info", path("many.msh"), "--step", "2"});
+    EXPECT_NE(run.out.find("11, times 0 to 5; this is step 2, time 1\n"), std::string::npos) << run.out;
+    EXPECT_EQ(json_of({"info", path("many.msh")})["times"].size(), 11u);
+}
+
 TEST_F(ProgramWithTimes, TheFirstStepIsTakenWithANote) {
     const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "0.5"});
     EXPECT_EQ(run.status, 0);

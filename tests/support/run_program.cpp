@@ -55,16 +55,27 @@ RunResult run_program(std::vector<std::string> words, const RunOptions& options)
     ::close(err.write);
 
     RunResult result;
-    const auto end = std::chrono::steady_clock::now() + options.limit;
-    bool to_interrupt = !options.interrupt_when.empty();
+    const auto start = std::chrono::steady_clock::now(), end = start + options.limit;
+    const auto milliseconds_to = [](std::chrono::steady_clock::time_point then) {
+        return std::chrono::duration_cast<std::chrono::milliseconds>(then - std::chrono::steady_clock::now()).count();
+    };
+    const bool by_clock = options.interrupt_after.has_value();
+    const auto signal_time = start + options.interrupt_after.value_or(std::chrono::milliseconds(0));
+    bool to_interrupt = by_clock || !options.interrupt_when.empty();
     std::pair<int, std::string*> streams[] = {{out.read, &result.out}, {err.read, &result.err}};
     while (streams[0].first >= 0 || streams[1].first >= 0) {
-        const auto left =
-            std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
+        const auto left = milliseconds_to(end);
+        auto patience = std::min<long long>(left, 1000);
+        if (by_clock && to_interrupt) patience = std::clamp<long long>(milliseconds_to(signal_time), 0, patience);
         pollfd waiting[] = {{streams[0].first, POLLIN, 0}, {streams[1].first, POLLIN, 0}};
-        const int ready = left > 0 ? ::poll(waiting, 2, static_cast<int>(std::min<long long>(left, 1000))) : 0;
+        const int ready = left > 0 ? ::poll(waiting, 2, static_cast<int>(patience)) : 0;
         if (left <= 0 && !std::exchange(result.timed_out, true)) ::kill(child, SIGKILL);
         if (left <= -2000) break; // a grandchild holds the pipe open
+        if (by_clock && to_interrupt && milliseconds_to(signal_time) <= 0) {
+            ::kill(child, options.signal);
+            to_interrupt = false;
+            result.interrupted = true;
+        }
         if (ready <= 0) continue;
         for (int i = 0; i < 2; ++i) {
             if (streams[i].first < 0 || waiting[i].revents == 0) continue;
@@ -73,9 +84,10 @@ RunResult run_program(std::vector<std::string> words, const RunOptions& options)
             if (count > 0) streams[i].second->append(buffer, static_cast<std::size_t>(count));
             else if (count == 0 || errno != EINTR) ::close(std::exchange(streams[i].first, -1));
         }
-        if (to_interrupt && result.err.find(options.interrupt_when) != std::string::npos) {
+        if (!by_clock && to_interrupt && result.err.find(options.interrupt_when) != std::string::npos) {
             ::kill(child, options.signal);
             to_interrupt = false;
+            result.interrupted = true;
         }
     }
     for (auto& [descriptor, text] : streams) {
