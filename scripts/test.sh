@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-# Builds and runs all tests: the release build; the tests again under the address, undefined-behaviour and thread
-# sanitizers; every fuzz target for a short time. `quick`: the release build only.
-# The trees stand in build/test; what ctest says about all of them together comes last.
+# Builds and runs all tests: the release build; clang's build with the address and undefined-behaviour sanitizers, which also
+# runs every fuzz target for a short time; the thread sanitizer; clang-tidy. `quick`: the release build only.
+# The trees stand in build/test. What ctest says about all of them together comes last, below a table of where the time went.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
 source "$root/scripts/lib/software_vulkan.sh"
+source "$root/scripts/lib/test_times.sh"
 source "$root/scripts/lib/thread_sanitizer.sh"
 
 readonly trees=$root/build/test
 
 mode=${1:-full}
 if (($# > 1)) || [[ $mode != full && $mode != quick ]]; then
-    echo "usage: $0 [quick]    quick: release build only, no sanitizers, no fuzzing" >&2
+    echo "usage: $0 [quick]    quick: release build only, no sanitizers, no fuzzing, no clang-tidy" >&2
     [[ $mode == -h || $mode == --help ]] && exit 0
     exit 2
 fi
@@ -36,27 +37,30 @@ build_release() {
 }
 
 # Without VTK: its readers run as uninstrumented children under a limit on address space that a sanitizer cannot live in.
+# The library and its tests are a subfolder of the ten-line consumer here, so that add_subdirectory() needs no build of its own.
 build_address() {
-    build address "$trees/address" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS='-O1 -D_GLIBCXX_ASSERTIONS' \
-        -DISOTET_SANITIZE=address,undefined -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF \
-        -DISOTET_TEST_PREFIX=address. -DISOTET_TEST_KINDS="$(kinds_for_address)"
+    CC=clang-19 CXX=clang++-19 build_source=$root/tests/install/consumer \
+        build address "$trees/address" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS='-O1 -D_GLIBCXX_ASSERTIONS' \
+        -DISOTET_TREE="$root" -DISOTET_WERROR=ON -DISOTET_FUZZ=ON -DISOTET_IO=OFF \
+        -DISOTET_TESTS=ON -DISOTET_TEST_PREFIX=address. -DISOTET_TEST_KINDS="$(kinds_for_address)"
 }
 
 build_thread() {
     thread_sanitizer_tbb "$trees/tbb" || return
-    build thread "$trees/thread" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 -DISOTET_SANITIZE=thread \
+    build_target=isotet_tests \
+        build thread "$trees/thread" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 -DISOTET_SANITIZE=thread \
         -DCMAKE_PREFIX_PATH="$trees/tbb/installed" -DISOTET_IO=OFF -DISOTET_VULKAN=OFF -DISOTET_PROGRAM=OFF \
         -DISOTET_TEST_PREFIX=thread. -DISOTET_TEST_KINDS="$for_thread"
+}
+
+build_tidy() {
+    say "tidy: reads the sources that release compiles"
+    measured tidy in_log tidy "$trees/tidy.log" "$root/scripts/tidy.sh" "$trees/release"
 }
 
 # The device that the tests of the Vulkan engine run on.
 build_mesa() {
     software_vulkan "$trees/mesa"
-}
-
-build_fuzz() {
-    CC=clang-19 CXX=clang++-19 build fuzz "$trees/fuzz" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-O1 \
-        -DISOTET_FUZZ=ON -DISOTET_IO=OFF -DISOTET_VULKAN=OFF -DISOTET_PROGRAM=OFF -DISOTET_TESTS=OFF
 }
 
 # try_stage NAME [TEST_FOLDER]: builds one tree, and adds to the list of ctest whether that went well, and its tests.
@@ -79,9 +83,9 @@ mkdir -p "$trees"
 : >"$trees/CTestTestfile.cmake"
 try_stage release release
 if [[ $mode == full ]]; then
+    try_stage tidy
     try_stage address address
     try_stage thread thread
-    try_stage fuzz fuzz/tests/fuzz
 fi
 try_stage mesa # last: it sets the folder of caches, which is not for compilers
 
@@ -89,6 +93,13 @@ say "runs the tests"
 export ASAN_OPTIONS=allocator_may_return_null=1:detect_stack_use_after_return=1
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+run_tests() {
+    "${without_random_addresses[@]}" ctest --test-dir "$trees" --output-on-failure --no-tests=error --no-label-summary \
+        -j "$(nproc)" | tee "$trees/tests.log"
+}
 status=0
-"${without_random_addresses[@]}" ctest --test-dir "$trees" --output-on-failure --no-tests=error -j "$(nproc)" || status=$?
+measured tests run_tests || status=$?
+print_times "$trees/Testing/Temporary/LastTest.log"
+echo
+grep '% tests passed, ' "$trees/tests.log" || true
 exit "$status"

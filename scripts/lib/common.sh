@@ -27,6 +27,22 @@ jobs_that_fit() {
     echo $((jobs < 1 ? 1 : jobs))
 }
 
+# Seconds that the processors have spent on all children that this shell has waited for.
+processor_seconds() {
+    awk -v ticks_a_second="$(getconf CLK_TCK)" '{ print int(($16 + $17) / ticks_a_second) }' "/proc/$$/stat"
+}
+
+# measured NAME COMMAND...: runs the command, and notes in `spent` what it took: name, seconds, seconds of processors.
+spent=()
+measured() {
+    local name=$1 start=$SECONDS start_processors status=0
+    shift
+    start_processors=$(processor_seconds)
+    "$@" || status=$?
+    spent+=("$name|$((SECONDS - start))|$(($(processor_seconds) - start_processors))")
+    return "$status"
+}
+
 # in_log NAME LOG COMMAND...: runs the command with its output in LOG, says every half minute how far ninja is, and shows
 # the end of LOG when the command fails.
 in_log() {
@@ -54,14 +70,20 @@ in_log() {
 }
 
 # build NAME FOLDER CMAKE_OPTIONS...: configures and builds the tree in FOLDER; does next to nothing when it is up to date.
+# `build_target=isotet_program build ...` builds just that; `build_source` is another project than this one.
 build() {
     local name=$1 folder=$2
     shift 2
     local launcher=()
-    if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+    if command -v ccache >/dev/null; then
+        launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+        export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros} # without it, nothing with precompiled headers
+    fi
     say "$name: configures"
-    in_log "$name: configure" "$folder.configure.log" cmake -G Ninja -S "$root" -B "$folder" "${launcher[@]}" "$@" || return
+    measured "$name: configure" in_log "$name: configure" "$folder.configure.log" \
+        cmake -G Ninja -S "${build_source:-$root}" -B "$folder" "${launcher[@]}" "$@" || return
     say "$name: builds, $(jobs_that_fit) files at a time"
-    in_log "$name: build" "$folder.build.log" cmake --build "$folder" -j "$(jobs_that_fit)" || return
+    measured "$name: build" in_log "$name: build" "$folder.build.log" \
+        cmake --build "$folder" -j "$(jobs_that_fit)" --target "${build_target:-all}" || return
     say "$name: built"
 }

@@ -57,10 +57,10 @@ public:
             no_data_[k] += value != value;
             infinite_[k] += size == infinity;
             // No short cuts: they would be branches.
-            lower_[k] = finite & (value < lower_[k]) ? value : lower_[k];
-            upper_[k] = finite & (value > upper_[k]) ? value : upper_[k];
-            smallest_[k] = finite & (magnitude > 0) & (magnitude < smallest_[k]) ? magnitude : smallest_[k];
-            largest_[k] = finite & (magnitude > largest_[k]) ? magnitude : largest_[k];
+            lower_[k] = (finite & (value < lower_[k])) ? value : lower_[k];
+            upper_[k] = (finite & (value > upper_[k])) ? value : upper_[k];
+            smallest_[k] = (finite & (magnitude > 0) & (magnitude < smallest_[k])) ? magnitude : smallest_[k];
+            largest_[k] = (finite & (magnitude > largest_[k])) ? magnitude : largest_[k];
             odd |= std::uint32_t{!finite};
         }
         return !odd;

@@ -39,9 +39,9 @@ public:
         normalize(normal);
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (std::size_t i = 0; i < lanes; ++i) {
-                const bool is_zero = (below[i] == core::zero_normal_code) | (above[i] == core::zero_normal_code) |
-                                     (largest[i] < Real(0x1p-32));
-                normal[axis][i] = is_zero ? Real(0) : normal[axis][i];
+                const bool no_below = below[i] == core::zero_normal_code, no_above = above[i] == core::zero_normal_code,
+                           vanishes = largest[i] < Real(0x1p-32);
+                normal[axis][i] = (no_below | no_above | vanishes) ? Real(0) : normal[axis][i];
             }
     }
 

@@ -74,10 +74,10 @@ Result<void> Memory::choose_types(const Capabilities& capabilities, const Option
         if (type == Capabilities::none) return false;
         Pool& pool = pool_of(where);
         const VkMemoryPropertyFlags flags = types.memoryTypes[type].propertyFlags;
-        constexpr VkMemoryPropertyFlags mappable =
+        constexpr VkMemoryPropertyFlags for_mapping =
             VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
         pool.type = type;
-        pool.mapped = (flags & mappable) == mappable;
+        pool.mapped = (flags & for_mapping) == for_mapping;
         pool.cached = flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
         return true;
     };
