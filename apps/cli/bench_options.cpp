@@ -12,7 +12,7 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr const char* details = R"(
+constexpr const char* bench_details = R"(
 Each method gets every isovalue in every round. With a device each isovalue ends as a picture of it, shaded by faces; without
 one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the filter,
 uploading. Ask is the filter's search; extract is making triangles, and sending them or the list of tets to the device; draw
@@ -119,7 +119,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
     command.add_file("--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
     command.add_file("--svg", bench.svg, "OUT_FILE",
                      "Draw a chart: with --paper tets a second against tets, else time against surfaces");
-    command.set_details(details);
+    command.set_details(bench_details);
     return command;
 }
 

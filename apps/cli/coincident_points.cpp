@@ -19,7 +19,7 @@ namespace isotet::cli {
 namespace {
 
 constexpr std::size_t enough_points = std::size_t{1} << 22;
-constexpr std::size_t grain = std::size_t{1} << 16;
+constexpr std::size_t points_per_task = std::size_t{1} << 16;
 constexpr std::size_t one_in = 1000;
 
 /// Hash and number of the points whose hash ends with `zero_bits` bits of zero, by hash.
@@ -27,7 +27,7 @@ std::vector<core::Keyed> sampled(const Array& points, int zero_bits) {
     std::vector<core::Keyed> samples;
     std::mutex mutex;
     const core::PointReader reader(points);
-    core::parallel_ranges(points.tuples(), grain, [&](std::size_t begin, std::size_t end) {
+    core::parallel_ranges(points.tuples(), points_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<core::Keyed> found;
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint64_t hash = core::hash_of(reader[i]);

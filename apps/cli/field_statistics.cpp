@@ -12,7 +12,7 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr std::size_t values_a_piece = std::size_t{1} << 16;
+constexpr std::size_t values_per_piece = std::size_t{1} << 16;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void add(ComponentStatistics& total, const ComponentStatistics& part) {
@@ -37,7 +37,7 @@ std::vector<ComponentStatistics> statistics(const Array& values, const Progress&
     std::vector<ComponentStatistics> totals(components, nothing);
     std::mutex mutex;
     values.visit([&](auto scalars) {
-        const std::size_t grain = std::max<std::size_t>(values_a_piece / std::max<std::size_t>(components, 1), 1);
+        const std::size_t grain = std::max<std::size_t>(values_per_piece / std::max<std::size_t>(components, 1), 1);
         core::parallel_pieces(values.tuples(), grain, progress, [&](std::size_t begin, std::size_t end) {
             std::vector<ComponentStatistics> parts(components, nothing);
             for (std::size_t tuple = begin; tuple < end; ++tuple) {

@@ -24,7 +24,7 @@ std::string roff(std::string_view text) {
     return result;
 }
 
-std::string details(const std::string& text) {
+std::string man_details(const std::string& text) {
     std::string result;
     for (const Paragraph& paragraph : paragraphs(text)) {
         result += paragraph.preformatted ? ".RS 4\n.nf\n" + roff(paragraph.text) + ".fi\n.RE\n"
@@ -33,7 +33,7 @@ std::string details(const std::string& text) {
     return result;
 }
 
-std::string options(const CommandText& command) {
+std::string man_options(const CommandText& command) {
     std::string result;
     for (const OptionText& option : command.options) {
         const bool with_value = !option.positional && !option.value.empty();
@@ -50,11 +50,11 @@ std::string man_page(const std::vector<CommandText>& commands) {
     const CommandText& program = commands.front();
     text += ".SH NAME\nisotet \\- " + roff(program.summary) + "\n.SH SYNOPSIS\n";
     for (const CommandText& command : commands) text += ".B " + roff(command.usage) + "\n.br\n";
-    text += ".SH DESCRIPTION\n" + details(program.details) + ".SH OPTIONS\n" + options(program) + ".SH COMMANDS\n";
+    text += ".SH DESCRIPTION\n" + man_details(program.details) + ".SH OPTIONS\n" + man_options(program) + ".SH COMMANDS\n";
     for (const CommandText& command : commands) {
         if (command.word.empty()) continue;
-        text += ".SS " + roff(command.usage) + "\n" + roff(command.summary) + ".\n" + options(command) +
-                details(command.details);
+        text += ".SS " + roff(command.usage) + "\n" + roff(command.summary) + ".\n" + man_options(command) +
+                man_details(command.details);
     }
     return text;
 }

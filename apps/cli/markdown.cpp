@@ -19,7 +19,7 @@ std::string in_table(std::string_view text) {
     return result;
 }
 
-std::string options(const CommandText& command) {
+std::string markdown_options(const CommandText& command) {
     std::string result = "| option | |\n|---|---|\n";
     for (const OptionText& option : command.options) {
         const bool with_value = !option.positional && !option.value.empty();
@@ -29,7 +29,7 @@ std::string options(const CommandText& command) {
     return result;
 }
 
-std::string details(const std::string& text) {
+std::string markdown_details(const std::string& text) {
     std::string result;
     for (const Paragraph& paragraph : paragraphs(text)) {
         result += paragraph.preformatted ? "\n```\n" + paragraph.text + "```\n" : "\n" + paragraph.text + "\n";
@@ -45,7 +45,7 @@ std::string markdown(const std::vector<CommandText>& commands) {
         "`--json` are in [json.md](json.md).\n";
     for (const CommandText& command : commands) {
         text += fmt::format("\n## {}\n\n{}.\n\n```\n{}\n```\n\n", command.name, command.summary, command.usage);
-        text += options(command) + details(command.details);
+        text += markdown_options(command) + markdown_details(command.details);
     }
     return text;
 }

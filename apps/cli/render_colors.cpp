@@ -6,13 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "number_format.hpp"
 
 namespace isotet::cli {
 
 namespace {
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 /// The range of what has a colour: finite values, on a logarithmic scale positive ones.
 struct Seen {
@@ -45,7 +44,7 @@ void widen(ColorScale& scale) {
 
 Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Console& console) {
     if (field.values.components() != 1) {
-        return wrong(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
+        return invalid_argument(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
                                  field.values.components(), field.name));
     }
     field.scale = command.scale;
@@ -65,9 +64,9 @@ Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Co
         return field;
     }
     if (command.range.size() != 2 || !(command.range[0] < command.range[1]))
-        return wrong("--range takes two numbers, the smaller one first, such as 0,100");
+        return invalid_argument("--range takes two numbers, the smaller one first, such as 0,100");
     if (command.scale.logarithmic && command.range[0] <= 0)
-        return wrong(
+        return invalid_argument(
             fmt::format("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0])));
     field.scale.lower = command.range[0];
     field.scale.upper = command.range[1];
@@ -110,7 +109,7 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
     std::string there;
     for (const std::string& name : nearest_first(command.color_by, names))
         there += fmt::format("{}'{}'", there.empty() ? "" : ", ", name);
-    return wrong(fmt::format("--color-by names '{}', but the surface has {}", command.color_by,
+    return invalid_argument(fmt::format("--color-by names '{}', but the surface has {}", command.color_by,
                              there.empty() ? "no fields" : there));
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
 #include "number_format.hpp"
 
 namespace isotet::cli {
@@ -14,7 +15,6 @@ namespace {
 constexpr std::string_view number_stands_here = "{frame}";
 constexpr double most_frames = 100'000;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 } // namespace
 
@@ -22,12 +22,12 @@ Result<std::size_t> count_frames(const RenderCommand& command) {
     if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
     if (command.sweep.empty()) return std::size_t{1};
     if (command.sweep.size() != 3)
-        return wrong(fmt::format(
+        return invalid_argument(fmt::format(
             "--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such as 0,1,50",
             command.sweep.size()));
     const double count = command.sweep[2];
     if (count < 2 || count > most_frames || count != std::floor(count))
-        return wrong(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
+        return invalid_argument(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
                                  shortest(most_frames)));
     return static_cast<std::size_t>(count);
 }
@@ -50,9 +50,9 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     const bool numbered = out.find(number_stands_here) != std::string::npos;
     if (pictures == 1) {
         if (!out.ends_with(".png"))
-            return wrong(fmt::format("the name of the output is '{}', but it must end in .png", out));
+            return invalid_argument(fmt::format("the name of the output is '{}', but it must end in .png", out));
         if (numbered)
-            return wrong(fmt::format(
+            return invalid_argument(fmt::format(
                 "the name of the output is '{}', but only pictures of --sweep and --orbit have numbers", out));
         return files;
     }
@@ -63,7 +63,7 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return wrong(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
+    return invalid_argument(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
                              "holds {} and ends in .png",
                              out, pictures, number_stands_here));
 }

@@ -9,7 +9,7 @@ namespace isotet::cli {
 
 namespace {
 
-constexpr const char* details = R"(
+constexpr const char* render_details = R"(
 FILE is a grid or a surface. With nothing but FILE the field that varies most is taken, with three isovalues between the
 ends of its range (rare values at the ends aside), each in its own colour. FIELD is found as by isotet extract.
 
@@ -163,7 +163,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     command.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
     add_color(command, "--background", render.picture.background,
               "Background: white, black, transparent, or #rrggbb; without it white");
-    command.set_details(details);
+    command.set_details(render_details);
     return command;
 }
 

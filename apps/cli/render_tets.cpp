@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "core/errors.hpp"
+
 namespace isotet::cli {
 
 namespace {
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 /// Device memory that pictures of this size need beside the store, with the numbers of all tets.
 std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
@@ -24,14 +24,14 @@ std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
 Result<void> check_method(const RenderCommand& command) {
     if (!command.method) {
         if (command.filter)
-            return wrong("--filter chooses the tets that a method draws, but --method clusters draws surfaces");
+            return invalid_argument("--filter chooses the tets that a method draws, but --method clusters draws surfaces");
         return {};
     }
     const std::string_view name = name_of(*command.method);
     if (!command.color_by.empty())
-        return wrong(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
+        return invalid_argument(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
     if (command.engine != EngineChoice::automatic)
-        return wrong(fmt::format("--engine says what extracts, but --method {} extracts nothing", name));
+        return invalid_argument(fmt::format("--engine says what extracts, but --method {} extracts nothing", name));
     return {};
 }
 

@@ -23,7 +23,7 @@ std::atomic<bool> can_be_reader = false;
 /// The program itself where it can serve: it is sure to be of the same version. Else an installed one.
 Result<std::string> reader_program(const ReadOptions& options) {
     if (!options.reader_program.empty()) return options.reader_program;
-    if (can_be_reader) return "/proc/self/exe";
+    if (can_be_reader) return std::string("/proc/self/exe");
     return find_reader(reader_places());
 }
 
