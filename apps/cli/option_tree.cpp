@@ -23,9 +23,9 @@ double finite_number(const std::string& names, std::string_view text) {
 }
 
 /// An option whose values go to `set`, all at once.
-CLI::Option& add_list(CLI::App& app, const std::string& names, Command::SetTexts set, const std::string& type,
+CLI::Option& add_list(CLI::App& app, const std::string& names, const Command::SetTexts& set, const std::string& type,
                       const std::string& description) {
-    return *app.add_option_function<std::vector<std::string>>(names, std::move(set), description)
+    return *app.add_option_function<std::vector<std::string>>(names, set, description)
                 ->type_name(type)
                 ->allow_extra_args(false);
 }
@@ -154,7 +154,7 @@ Option Command::add_file(const std::string& names, std::string& target, const st
 
 Option Command::add_value(const std::string& names, std::function<void(const std::string&)> set,
                           const std::string& type, const std::string& description) const {
-    return Option(*app_->add_option_function<std::string>(names, std::move(set), description)->type_name(type));
+    return Option(*app_->add_option_function<std::string>(names, set, description)->type_name(type));
 }
 
 Option Command::add_number(const std::string& names, std::function<void(double)> set, const std::string& type,
@@ -197,12 +197,12 @@ Option Command::add_numbers(const std::string& names, std::vector<double>& targe
 
 Option Command::add_texts(const std::string& names, SetTexts set, const std::string& type,
                           const std::string& description) const {
-    return Option(add_list(*app_, names, std::move(set), type, description));
+    return Option(add_list(*app_, names, set, type, description));
 }
 
 Option Command::add_words(const std::string& names, SetTexts set, const std::string& type,
                           const std::string& description) const {
-    return Option(*add_list(*app_, names, std::move(set), type, description).delimiter(','));
+    return Option(*add_list(*app_, names, set, type, description).delimiter(','));
 }
 
 Option Command::add_one_of(const std::string& names, std::vector<std::string> words,

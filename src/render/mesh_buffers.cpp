@@ -90,8 +90,9 @@ Result<void> MeshBuffers::upload_positions(const Surface& surface) {
             relative[i] = static_cast<float>(static_cast<double>(scalars[i]) - origin[i % 3]);
         });
         Result<vulkan::Buffer> sent = send(*context, relative, "positions");
-        if (sent) positions = *std::move(sent);
-        return sent ? Result<void>() : Result<void>(sent.error());
+        if (!sent) return sent.error();
+        positions = *std::move(sent);
+        return {};
     });
 }
 
@@ -108,8 +109,9 @@ Result<void> MeshBuffers::upload_triangles(const Surface& surface) {
         core::parallel_each(corners.size(), grain,
                             [&](std::size_t i) { numbers[i] = static_cast<std::uint32_t>(corners[i]); });
         Result<vulkan::Buffer> sent = send(*context, numbers, "triangles");
-        if (sent) triangles = *std::move(sent);
-        return sent ? Result<void>() : Result<void>(sent.error());
+        if (!sent) return sent.error();
+        triangles = *std::move(sent);
+        return {};
     });
 }
 
