@@ -211,7 +211,9 @@ TEST(WriteStl, KeepsCoordinatesFarFromZeroWhereTrianglesStayWhole) {
 
 /// At 4e8 float32 has steps of 32.
 TEST(WriteStl, MovesWhereTrianglesWouldCollapse) {
-    const Surface surface = moved(bare_surface(), {400000000, 400000000, 400000000});
+    Surface surface = bare_surface();
+    surface.positions = Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 1}, 3);
+    surface = moved(surface, {400000000, 400000000, 400000000});
     const Folder folder;
     const auto report = write(surface, folder / "out.stl");
     EXPECT_TRUE(has_note(report, "coordinates are relative to (400000000, 400000000, 400000000)"));

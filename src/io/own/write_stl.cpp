@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "core/storage.hpp"
 #include "io/own/write_formats.hpp"
 #include "io/own/write_text.hpp"
 
@@ -43,7 +44,7 @@ Origin middle_of(const Surface& surface) {
             upper[axis] = std::max(upper[axis], x);
         }
     for (std::size_t axis = 0; axis < 3; ++axis)
-        middle[axis] = static_cast<float>(lower[axis] + (upper[axis] - lower[axis]) / 2);
+        middle[axis] = core::rounded_to_float(lower[axis] + (upper[axis] - lower[axis]) / 2);
     return middle;
 }
 
