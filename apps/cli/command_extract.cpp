@@ -196,6 +196,10 @@ Result<void> ExtractRun::load(std::size_t step) {
         if (*update != ContourUpdate::grid)
             console_.detail("the cells are those of the step before: not packed again");
     }
+    if (contour_->method() == Method::clusters) {
+        console_.detail("packing");
+        if (Result<void> ready = contour_->prepare(run_options()); !ready) return ready;
+    }
     if (command_.isovalues.empty()) {
         const Stopwatch looking;
         console_.detail("looking at the field");

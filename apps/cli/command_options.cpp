@@ -133,6 +133,8 @@ void add_info(const Command& program, InfoCommand& info) {
     command.add_file("FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_time(command, info.grid);
     add_reading(command, info.grid, "--format");
+    command.add_flag("--survey", info.survey,
+                     "Count repeated tets, duplicate points and boundary faces, too: that takes about as long as reading");
     add_common(command, info.common);
     command.set_details(info_details);
 }

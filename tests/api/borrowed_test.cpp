@@ -14,13 +14,13 @@
 namespace isotet::test {
 namespace {
 
-Grid one_tet() { return tet_grid({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}); }
+Grid lone_tet() { return tet_grid({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}); }
 
 /// Packed from memory that is gone.
 template <class T>
 PackedGrid pack_borrowed(const std::vector<T>& values) {
     const auto lent = std::make_unique<std::vector<T>>(values);
-    return pack(one_tet(), {"value", Array::borrow(std::span<const T>(*lent)), false, {}}).value();
+    return pack(lone_tet(), {"value", Array::borrow(std::span<const T>(*lent)), false, {}}).value();
 }
 
 constexpr double nearly_one = 1 + 0x1p-40; // rounds to 1 in float32
@@ -35,7 +35,7 @@ TEST(BorrowedField, IsNotReadAfterPacking) {
 }
 
 TEST(BorrowedField, IsNotReadAfterItWasSet) {
-    PackedGrid packed = pack(one_tet(), field_of<double>({1, nearly_one, -50, 50})).value();
+    PackedGrid packed = pack(lone_tet(), field_of<double>({1, nearly_one, -50, 50})).value();
     EXPECT_EQ(extract(packed, 1).value().report.false_ties, 1u);
     {
         const std::vector<double> lent{2, 2 * nearly_one, -50, 50};
@@ -62,7 +62,7 @@ template <class T>
 bool keeps(std::vector<T> values) {
     PointField field = field_of(std::move(values));
     const std::weak_ptr<const void> owner = field.values.owner();
-    const PackedGrid packed = pack(one_tet(), field).value();
+    const PackedGrid packed = pack(lone_tet(), field).value();
     field = {};
     return !owner.expired();
 }

@@ -100,7 +100,7 @@ TEST(Survey, CountsPointsInOnePlace) {
               4 * tets - 1000);
     EXPECT_EQ(survey(lone_tets(tets, [](std::size_t) { return std::array{1.0, 2.0, 3.0}; })).value().duplicate_points,
               4 * tets - 1);
-    const auto zeros = [&](std::size_t i) { return std::array{i % 2 ? 0.0 : -0.0, lattice(i)[1], i / 2 * 1.0}; };
+    const auto zeros = [](std::size_t i) { return std::array{i % 2 ? 0.0 : -0.0, static_cast<double>(i), 0.0}; };
     EXPECT_EQ(survey(lone_tets(tets, zeros)).value().duplicate_points, 0u) << "the second coordinates differ";
     const auto signs = [](std::size_t i) { return std::array{i % 2 ? 0.0 : -0.0, 7.0, static_cast<double>(i / 2)}; };
     EXPECT_EQ(survey(lone_tets(tets, signs)).value().duplicate_points, 2 * tets) << "-0 equals +0";

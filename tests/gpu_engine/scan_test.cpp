@@ -49,7 +49,7 @@ protected:
 
         vulkan::SurfaceBuffers surface;
         surface.prepare(context(), {}).value();
-        const vulkan::Task task{0.5f, Ties::merge, surface, {}};
+        const vulkan::Task task{{0.5f}, Ties::merge, surface, {}};
         const vulkan::Passes passes = vulkan::Passes::make(context(), resident, {}).value();
         vulkan::Recorder recorder(context());
         passes.begin(recorder, task);

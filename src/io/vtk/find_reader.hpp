@@ -11,11 +11,11 @@ namespace isotet::io::vtk {
 
 /// What tells where the reader program may be. Empty parts are passed over.
 struct ReaderPlaces {
-    std::string library;      ///< the file that holds isotet's code: a shared library, or the program
-    std::string to_programs;  ///< from the folder of libraries to that of programs, when both are installed: "../bin"
-    std::string program;      ///< the program that runs
-    std::string search_path;  ///< folders separated by colons, as in PATH
-    std::string built_in;     ///< where it was to be installed when isotet was built
+    std::string library = {};      ///< the file that holds isotet's code: a shared library, or the program
+    std::string to_programs = {};  ///< from the folder of libraries to that of programs, when both are installed: "../bin"
+    std::string program = {};      ///< the program that runs
+    std::string search_path = {};  ///< folders separated by colons, as in PATH
+    std::string built_in = {};     ///< where it was to be installed when isotet was built
 };
 
 /// Of this process.
