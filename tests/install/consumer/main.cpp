@@ -1,12 +1,29 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <isotet/extract.hpp>
-#include <isotet/make.hpp>
+#include <cstdio>
+#include <vector>
+
+#include <isotet/contour.hpp>
 #include <isotet/write.hpp>
 
 int main() {
-    const isotet::Grid grid = isotet::make_grid({.shape = "kuhn", .side = 8, .fields = {"sphere"}}).value();
-    const auto packed = isotet::pack(grid, isotet::find_field(grid, "sphere").value()).value();
-    const isotet::Extraction sphere = isotet::extract(packed, 0.5).value();
-    const auto written = isotet::write_surface(sphere.surface, "sphere.vtp");
-    return written && sphere.surface.triangle_count() > 100 ? 0 : 1;
+    // Your arrays, which are not copied: points, four corners for each tetrahedron, one value for each point.
+    const std::vector<double> points{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+    const std::vector<int> tets{0, 1, 2, 3, 1, 2, 3, 4};
+    const std::vector<float> temperature{10, 20, 30, 40, 80};
+
+    isotet::ContourInput input;
+    input.grid.points = isotet::Array::borrow<double>(points, 3);
+    input.grid.cells.connectivity = isotet::Array::borrow<int>(tets);
+    input.field.name = "temperature";
+    input.field.values = isotet::Array::borrow<float>(temperature);
+
+    isotet::Result<isotet::Contour> contour = isotet::Contour::create(input);
+    if (!contour) return std::puts(contour.error().message.c_str()), 1;
+    const isotet::Result<isotet::ContourResult> result = contour->extract(25);
+    if (!result) return std::puts(result.error().message.c_str()), 1;
+
+    const isotet::Surface& surface = result->surfaces[0].surface;
+    std::printf("%zu vertices, %zu triangles\n", surface.vertices(), surface.triangle_count());
+    const auto written = isotet::write_surface(surface, "surface.vtp");
+    if (!written) return std::puts(written.error().message.c_str()), 1;
 }
