@@ -22,8 +22,7 @@ namespace isotet::cli {
 struct BenchBed {
     const Grid& grid;
     const PointField& field;
-    int threads = 0;
-    const Progress& progress;
+    const Run& run;
     std::optional<Device> device;     ///< nothing: surfaces are made, and not drawn
     std::optional<Renderer> renderer; ///< if there is a device
     std::optional<PackedGrid> packed;
@@ -35,7 +34,7 @@ struct BenchBed {
 
 /// What happens once.
 struct BenchCosts {
-    double prepare_seconds = 0; ///< packing, building the filter, uploading
+    double prepare_seconds = 0;                     ///< packing, building the filter, uploading
     std::uint64_t host_bytes = 0, device_bytes = 0; ///< that stay: packed grid, tables, filter; on the device
     std::uint64_t crossing_bytes = 0; ///< of the store: found no room on the device, and cross the bus for every
                                       ///< picture
@@ -52,7 +51,7 @@ struct BenchTimes {
 struct BenchOutcome {
     std::optional<std::uint64_t> tets_looked_at; ///< by a vertex-shader method
     std::optional<std::uint64_t> triangles;      ///< of a surface that was made
-    std::uint64_t sent_bytes = 0;     ///< over the bus to the device
+    std::uint64_t sent_bytes = 0;                ///< over the bus to the device
 };
 
 class Contestant {

@@ -17,9 +17,12 @@ namespace isotet::cli {
 
 class Command;
 
-inline constexpr std::array all_bench_methods{BenchMethod::direct,    BenchMethod::clusters,
-                                              BenchMethod::clusters_vulkan, BenchMethod::registers,
-                                              BenchMethod::registers_instanced, BenchMethod::textures,
+inline constexpr std::array all_bench_methods{BenchMethod::direct,
+                                              BenchMethod::clusters,
+                                              BenchMethod::clusters_vulkan,
+                                              BenchMethod::registers,
+                                              BenchMethod::registers_instanced,
+                                              BenchMethod::textures,
                                               BenchMethod::mesh};
 
 const char* name_of(BenchMethod method) noexcept;
@@ -30,13 +33,13 @@ bool needs_device(BenchMethod method) noexcept;
 
 struct BenchPair {
     BenchMethod method = BenchMethod::direct;
-    Filter filter = Filter::none; ///< of a method that takes lists
+    SearchIndex filter = SearchIndex::none; ///< of a method that takes lists
 
     std::string name() const; ///< "textures + interval_tree", "clusters"
 };
 
 /// Each method that takes lists with each filter, the others once.
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& filters);
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& filters);
 
 Command add_bench_command(const Command& program, BenchCommand& bench);
 

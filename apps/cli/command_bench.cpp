@@ -58,7 +58,7 @@ Result<void> BenchRun::open_device() {
         numbers_.device = device_->info();
         return {};
     }
-    if (!command_.device.name.empty() || device.error().code != ErrorCode::machine) return device.error();
+    if (!command_.device.name.empty() || !is_of_device(device.error().code)) return device.error();
     console_.note(
         fmt::format("{}: only what needs no device is measured, and no pictures are drawn", device.error().message));
     return {};
@@ -73,8 +73,8 @@ Result<void> BenchRun::choose_pairs() {
         if (needs_device(method) && !device_)
             return Error{ErrorCode::invalid_argument,
                          fmt::format("--methods has {}, which needs a device, but there is none", name_of(method))};
-    const std::vector<Filter> filters =
-        command_.filters.empty() ? std::vector{Filter::none, Filter::interval_tree} : command_.filters;
+    const std::vector<SearchIndex> filters =
+        command_.filters.empty() ? std::vector{SearchIndex::none, SearchIndex::interval_tree} : command_.filters;
     if (!command_.filters.empty() &&
         std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
         return Error{ErrorCode::invalid_argument,
@@ -87,18 +87,17 @@ Result<void> BenchRun::choose_pairs() {
 Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
     BenchBed bed{.grid = grid,
                  .field = field,
-                 .threads = command_.common.threads,
-                 .progress = console_.progress(),
+                 .run = console_.run(),
                  .device = device_,
                  .renderer = {},
                  .packed = {},
                  .pack_seconds = 0};
     if (device_) {
-        Result<Renderer> renderer = Renderer::make(*device_);
+        Result<Renderer> renderer = Renderer::create(*device_);
         if (!renderer) return renderer.error();
         bed.renderer = *std::move(renderer);
     }
-    const Result<FieldSample> sample = FieldSample::take(grid, field);
+    const Result<FieldSample> sample = FieldSample::create(grid, field);
     if (!sample) return sample.error();
     for (const BenchPair& pair : pairs_) {
         console_.detail(fmt::format("measuring {}: {}", name, pair.name()));
@@ -159,8 +158,7 @@ Result<void> BenchRun::run_paper() {
         MakeOptions options;
         options.side = side;
         options.fields = {numbers_.field};
-        options.threads = command_.common.threads;
-        const Result<Grid> grid = make_grid(options, console_.progress());
+        const Result<Grid> grid = make_grid(options, console_.run());
         if (!grid) return grid.error();
         const Result<PointField> field = find_field(*grid, numbers_.field);
         if (!field) return field.error();
@@ -199,15 +197,15 @@ Result<ExitCode> run_bench(const BenchCommand& command) {
     if (Result<void> printed = console.print(bench_table(run.numbers())); !printed) return printed.error();
     for (const auto& [path, text] : {std::pair(command.csv, &bench_csv), {command.svg, &bench_svg}})
         if (!path.empty())
-            if (Result<void> written = write_text_file(path, text(run.numbers()), console.progress()); !written)
+            if (Result<void> written = write_text_file(path, text(run.numbers()), console.run().progress); !written)
                 return written.error();
     Json report = bench_json(run.numbers());
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
         return written.error();
     const bool nothing =
         std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
-    if (nothing) return Error{ErrorCode::machine, "nothing could be measured: " + run.numbers().rows.front().missing};
+    if (nothing) return Error{ErrorCode::system, "nothing could be measured: " + run.numbers().rows.front().missing};
     return ExitCode::done;
 }
 

@@ -46,9 +46,8 @@ Result<Origin> read_origin(const CheckCommand& command, Console& console) {
     if (!grid) return grid.error();
     Origin origin{*std::move(grid), std::nullopt};
     if (!found) return origin;
-    const auto prefer = command.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field =
-        find_field(origin.grid, found->name, {.prefer = prefer, .threads = command.common.threads});
+    const auto prefer = command.field.cell_field ? Association::cell : Association::point;
+    Result<PointField> field = find_field(origin.grid, found->name, {prefer}, {command.common.threads, {}});
     if (!field) return field.error();
     console.note(field->note);
     origin.field = *std::move(field);
@@ -152,7 +151,7 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     Console console(command.common);
     if (Result<void> paths = check_output_paths({command.surface, command.grid.file}, {command.common.json}); !paths)
         return paths.error();
-    const Result<SurfaceFile> file = read_surface(command.surface, command.format, console.progress());
+    const Result<SurfaceFile> file = read_surface(command.surface, {command.format}, console.run());
     if (!file) return file.error();
 
     CheckOptions options;
@@ -174,14 +173,14 @@ Result<ExitCode> run_check(const CheckCommand& command) {
         options.grid = &origin->grid;
         if (origin->field) options.field = &*origin->field;
     }
-    const Result<SurfaceReport> report = check(file->surface, options, console.progress());
+    const Result<SurfaceReport> report = check(file->surface, options, console.run());
     if (!report) return report.error();
 
     const std::string text = check_table(*report, *file, command) + findings_table(report->findings);
     if (Result<void> printed = console.print(text); !printed) return printed.error();
     Json json = check_json(*report, *file, command);
     json["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(json, command.common.json, console.progress()); !written)
+    if (Result<void> written = write_json(json, command.common.json, console.run().progress); !written)
         return written.error();
     return report->sound && (report->clean || !command.strict) ? ExitCode::done : ExitCode::check_says_no;
 }

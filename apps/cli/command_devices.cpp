@@ -109,7 +109,7 @@ Result<ExitCode> run_devices(const DevicesCommand& command) {
     report["devices"] = std::move(devices);
     report["exact"] = tested->opened ? Json(tested->exact) : Json(nullptr);
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
         return written.error();
     return ExitCode::done;
 }

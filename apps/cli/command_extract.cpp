@@ -46,7 +46,6 @@ private:
     Result<void> extract_step(std::size_t step);
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::optional<double> time);
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
-    Run run_options() const { return {command_.common.threads, console_.progress()}; }
     void note_what_the_step_holds();
     void note_what_extracting_found(const SurfaceNumbers& surface);
 
@@ -56,8 +55,8 @@ private:
     ExtractPlan plan_;
     std::optional<ContourDevice> device_;
     std::optional<Contour> contour_;
-    Grid grid_;         ///< of the step at hand
-    Array field_;       ///< its values
+    Grid grid_;                                    ///< of the step at hand
+    Array field_;                                  ///< its values
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
@@ -83,7 +82,7 @@ Result<void> ExtractRun::open_device() {
         numbers_.device = device_->device.info().name;
         return {};
     }
-    if (required || device.error().code != ErrorCode::machine) return device.error();
+    if (required || !is_of_device(device.error().code)) return device.error();
     console_.note(device.error().message + ": the CPU extracts instead");
     return {};
 }
@@ -126,10 +125,9 @@ Result<Contour> ExtractRun::start(ContourInput input) {
         command_.isovalues.empty() ? std::max<std::uint64_t>(command_.levels, 1) : command_.isovalues.size();
     options.surfaces = isovalues * plan_.steps.size();
     options.device = device_;
-    numbers_.why = device_ ? "devices take packed grids"
-                   : options.method
-                       ? "asked for"
-                       : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
+    numbers_.why = device_          ? "devices take packed grids"
+                   : options.method ? "asked for"
+                                    : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
     predict(input);
     numbers_.peak_before = core::peak_resident_memory().value_or(0);
     if (core::forget_peak_memory()) resident_before_ = core::resident_memory();
@@ -139,7 +137,7 @@ Result<Contour> ExtractRun::start(ContourInput input) {
 /// What all steps are expected to take, from a look at the first.
 void ExtractRun::predict(const ContourInput& input) {
     if (device_ || command_.engine == EngineChoice::reference) return;
-    const Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+    const Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
     if (!sample) return; // an error that Contour::create() gives, too
     const std::vector<double> levels =
         levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
@@ -160,8 +158,7 @@ void ExtractRun::predict(const ContourInput& input) {
     work.gradients = command_.normals == Normals::gradient;
     work.find_range = command_.isovalues.empty();
     work.triangles = all / static_cast<double>(isovalues.size());
-    const Method method =
-        command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
+    const Method method = command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
     numbers_.predicted = estimate(method, work);
 }
 
@@ -172,9 +169,8 @@ Result<void> ExtractRun::load(std::size_t step) {
     grid_ = {};
     Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
-    const auto prefer = command_.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field =
-        find_field(*grid, plan_.field.name, {.prefer = prefer, .threads = command_.common.threads});
+    const auto prefer = command_.field.cell_field ? Association::cell : Association::point;
+    Result<PointField> field = find_field(*grid, plan_.field.name, {prefer}, console_.run());
     if (!field) return field.error();
     console_.note(field->note);
     Result<StepFields> fields = carried_fields(plan_, *grid, command_.common.threads);
@@ -191,19 +187,18 @@ Result<void> ExtractRun::load(std::size_t step) {
         if (!started) return started.error();
         contour_ = *std::move(started);
     } else {
-        const Result<ContourUpdate> update = contour_->set(std::move(input), run_options());
+        const Result<ContourUpdate> update = contour_->set(std::move(input), console_.run());
         if (!update) return update.error();
-        if (*update != ContourUpdate::grid)
-            console_.detail("the cells are those of the step before: not packed again");
+        if (*update != ContourUpdate::grid) console_.detail("the cells are those of the step before: not packed again");
     }
     if (contour_->method() == Method::clusters) {
         console_.detail("packing");
-        if (Result<void> ready = contour_->prepare(run_options()); !ready) return ready;
+        if (Result<void> ready = contour_->prepare(console_.run()); !ready) return ready;
     }
     if (command_.isovalues.empty()) {
         const Stopwatch looking;
         console_.detail("looking at the field");
-        const Result<FieldReport> range = contour_->field(run_options());
+        const Result<FieldReport> range = contour_->field(console_.run());
         if (!range) return range.error();
         numbers_.field = *range;
         if (contour_->method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
@@ -257,7 +252,7 @@ void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
                                   field.name, shortest(field.lower), shortest(field.upper)));
     }
     if (const std::uint64_t ties = surface.report.false_ties.value_or(0); ties > 0) {
-        const bool double_helps = command_.precision == Precision::single && !field.unchanged;
+        const bool double_helps = command_.precision == Precision::float32 && !field.unchanged;
         console_.note(fmt::format("isovalue {}: {} point{} tied (equal to it) only by rounding{}",
                                   shortest(surface.isovalue), grouped(ties), ties == 1 ? " is" : "s are",
                                   double_helps ? "; --precision double keeps them apart" : ""));
@@ -272,7 +267,7 @@ void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
 
 Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::optional<double> time) {
     for (const double isovalue : isovalues) console_.detail("extracting " + shortest(isovalue));
-    Result<ContourResult> result = contour_->extract(isovalues, run_options());
+    Result<ContourResult> result = contour_->extract(isovalues, console_.run());
     if (!result) return result.error();
     console_.notes(result->notes);
     const double seconds = result->extract_seconds / static_cast<double>(isovalues.size());
@@ -293,7 +288,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         numbers.isovalue = isovalues[i];
         numbers.time = time;
         numbers.report = result->surfaces[i].report;
-        numbers.vertices = surface.vertices();
+        numbers.vertices = surface.vertex_count();
         numbers.triangles = surface.triangle_count();
         const Stopwatch measuring;
         numbers.area = area(surface);
@@ -306,7 +301,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
 Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
     const Stopwatch writing;
     console_.detail("writing " + numbers.file);
-    const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.progress());
+    const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.run());
     if (!written) return written.error();
     console_.notes(written->notes);
     numbers.write_seconds = writing.seconds();
@@ -343,7 +338,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
 Result<void> ExtractRun::run() {
     if (Result<void> opened = open(); !opened) return opened;
     for (const std::size_t step : plan_.steps) {
-        if (console_.progress().cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (console_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (Result<void> loaded = load(step); !loaded) return loaded;
         if (Result<void> extracted = extract_step(step); !extracted) return extracted;
     }
@@ -361,7 +356,7 @@ Result<ExitCode> run_extract(const ExtractCommand& command) {
     if (Result<void> printed = console.print(extract_table(run.numbers())); !printed) return printed.error();
     Json report = extract_json(run.numbers());
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
         return written.error();
     return ExitCode::done;
 }

@@ -47,7 +47,7 @@ Result<ExitCode> run_formats(const FormatsCommand& command) {
     if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
     Json report = json_report("formats");
     report["formats"] = std::move(list);
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
         return written.error();
     return ExitCode::done;
 }

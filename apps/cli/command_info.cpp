@@ -190,19 +190,18 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     if (!steps) return steps.error();
     const Result<Grid> grid = source->read({}, steps->front(), console);
     if (!grid) return grid.error();
-    Result<GridReport> surveyed =
-        survey(*grid, {.faces = command.survey, .threads = command.common.threads}, console.progress());
+    Result<GridReport> surveyed = survey(*grid, {.faces = command.survey}, console.run());
     if (!surveyed) return surveyed.error();
     const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
-    const std::vector<DescribedField> fields = describe_fields(*grid, command.common.threads, console.progress());
-    if (console.progress().cancelled()) return Error{ErrorCode::cancelled, "describing the fields was cancelled"};
+    const std::vector<DescribedField> fields = describe_fields(*grid, console.run().threads, console.run().progress);
+    if (console.cancelled()) return Error{ErrorCode::cancelled, "describing the fields was cancelled"};
 
     if (Result<void> printed = console.print(grid_table(found, path) + field_table(fields)); !printed)
         return printed.error();
     Json report = json_of(found, path);
     report["fields"] = json_of(fields);
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
+    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
         return written.error();
     return ExitCode::done;
 }

@@ -33,7 +33,6 @@ Result<GridSource> GridSource::open(const GridOptions& options, const CommonOpti
     if (options.file.starts_with(made_prefix)) {
         Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
         if (!made) return made.error();
-        made->threads = common.threads;
         source.info_ = info_of(*made);
         source.made_ = *std::move(made);
         return source;
@@ -44,7 +43,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, const CommonOpti
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
     read_options.reader_program = "/proc/self/exe"; // this program, wherever it lies
-    Result<FileInfo> info = inspect(options.file, read_options, console.progress());
+    Result<FileInfo> info = inspect(options.file, read_options, console.run());
     if (!info) return info.error();
     source.info_ = *std::move(info);
     return source;
@@ -63,7 +62,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
     if (made_) {
         MakeOptions made = *made_;
         if (fields.point) made.fields = *fields.point;
-        Result<Grid> result = make_grid(made, console.progress());
+        Result<Grid> result = make_grid(made, console.run());
         if (!result) return result.error();
         grid = *std::move(result);
     } else {
@@ -71,7 +70,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         read_options.point_fields = fields.point;
         read_options.cell_fields = fields.cell;
         if (!info_.times.empty()) read_options.step = step;
-        Result<ReadResult> result = isotet::read(options_.file, read_options, console.progress());
+        Result<ReadResult> result = isotet::read(options_.file, read_options, console.run());
         if (!result) return result.error();
         console.notes(result->notes);
         grid = std::move(result->grid);
@@ -80,7 +79,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         console.note(coincident_points_note(grid));
         return grid;
     }
-    Result<MergedPoints> merged = merge_points(grid, *options_.merge_points, console.progress());
+    Result<MergedPoints> merged = merge_points(grid, *options_.merge_points, console.run());
     if (!merged) return merged.error();
     console.note(fmt::format("{} points were welded to others", grouped(merged->merged)));
     return std::move(merged->grid);

@@ -53,7 +53,7 @@ Result<void> write_json(const Json& report, const std::string& where, const Prog
     const std::string text = tree_of(report).dump(2, ' ', false, Tree::error_handler_t::replace) + "\n";
     if (where == "-") {
         if (stdout_was_closed()) {
-            return Error{ErrorCode::machine,
+            return Error{ErrorCode::cannot_write,
                          "--json - writes to standard output, which was closed when isotet started"};
         }
         return write_to_stdout(text);

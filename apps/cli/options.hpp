@@ -71,7 +71,7 @@ struct ExtractCommand {
     bool keep_degenerate = false;
     bool edge_ends = false;
     bool source_cells = false;
-    Precision precision = Precision::single;
+    Precision precision = Precision::float32;
     std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
@@ -81,7 +81,7 @@ struct ExtractCommand {
 constexpr double boundary_without_a_word = 0.1;
 
 /// What chooses tets for a method that draws tets, where nothing else is given.
-constexpr Filter filter_without_a_word = Filter::cluster_ranges;
+constexpr SearchIndex filter_without_a_word = SearchIndex::cluster_ranges;
 
 struct RenderCommand {
     CommonOptions common;
@@ -93,39 +93,45 @@ struct RenderCommand {
     PictureOptions picture;   ///< the camera aside
     View view = View::iso;
     bool parallel = false;
-    bool outline = false;     ///< the box around
-    bool plain = false;       ///< no text
-    std::string color_by;     ///< a field; empty: each isovalue has its colour
-    ColorScale scale;         ///< the map, the logarithm and the colour for no data
-    std::vector<double> range; ///< both ends of the scale, or none
+    bool outline = false;                    ///< the box around
+    bool plain = false;                      ///< no text
+    std::string color_by;                    ///< a field; empty: each isovalue has its colour
+    ColorScale scale;                        ///< the map, the logarithm and the colour for no data
+    std::vector<double> range;               ///< both ends of the scale, or none
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
-    std::optional<DrawMethod> method; ///< that draws tets; nothing: clusters, which extracts surfaces
-    std::optional<Filter> filter;     ///< nothing: none was given
-    std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
-    std::uint64_t orbit = 0;    ///< pictures around; 0: one
+    std::optional<DrawMethod> method;  ///< that draws tets; nothing: clusters, which extracts surfaces
+    std::optional<SearchIndex> filter; ///< nothing: none was given
+    std::vector<double> sweep;         ///< first and last isovalue, and how many; or none
+    std::uint64_t orbit = 0;           ///< pictures around; 0: one
     double frames_a_second = 12;
-    std::string reference;     ///< a picture to compare with; empty: none
-    double threshold = 0.001;  ///< share of its pixels that may differ
+    std::string reference;    ///< a picture to compare with; empty: none
+    double threshold = 0.001; ///< share of its pixels that may differ
     DeviceChoice device;
 };
 
 /// What `isotet bench` can measure.
 enum class BenchMethod : std::uint8_t {
-    direct, clusters, clusters_vulkan, registers, registers_instanced, textures, mesh
+    direct,
+    clusters,
+    clusters_vulkan,
+    registers,
+    registers_instanced,
+    textures,
+    mesh
 };
 
 struct BenchCommand {
     CommonOptions common;
-    GridOptions grid;   ///< `file` is empty with --paper
+    GridOptions grid; ///< `file` is empty with --paper
     FieldChoice field;
-    std::vector<double> isovalues;     ///< none: three
+    std::vector<double> isovalues; ///< none: three
     bool paper = false;
     std::uint64_t most_tets = 5'000'000;
-    std::vector<BenchMethod> methods;  ///< none: all that can be
-    std::vector<Filter> filters;       ///< none: without and with the interval tree
+    std::vector<BenchMethod> methods; ///< none: all that can be
+    std::vector<SearchIndex> filters; ///< none: without and with the interval tree
     std::uint64_t rounds = 5;
-    std::string csv, svg;              ///< files; empty for none
+    std::string csv, svg; ///< files; empty for none
     DeviceChoice device;
 };
 
@@ -161,7 +167,8 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "docs" or none
+    std::string
+        command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "docs" or none
     bool help = false;
     bool version = false;
     InfoCommand info;

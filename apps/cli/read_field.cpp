@@ -40,8 +40,8 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
         }
         console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
     }
-    const auto prefer = choice.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field = find_field(grid, name, {.prefer = prefer, .threads = threads});
+    const auto prefer = choice.cell_field ? Association::cell : Association::point;
+    Result<PointField> field = find_field(grid, name, {prefer}, {threads, {}});
     if (field) console.note(field->note);
     return field;
 }

@@ -44,8 +44,8 @@ void widen(ColorScale& scale) {
 
 Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Console& console) {
     if (field.values.components() != 1) {
-        return invalid_argument(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
-                                 field.values.components(), field.name));
+        return invalid_argument(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag",
+                                            field.name, field.values.components(), field.name));
     }
     field.scale = command.scale;
     const Seen seen = look_at(field.values, command.scale.logarithmic);
@@ -85,7 +85,7 @@ Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Con
     const Array* cells = find(grid.cell_fields, name);
     if (cells && !find(grid.point_fields, name))
         return with_scale({name, *cells, Association::cell, {}, false}, command, console);
-    const Result<PointField> found = find_field(grid, name, {.threads = command.common.threads});
+    const Result<PointField> found = find_field(grid, name, {}, {command.common.threads, {}});
     if (!found) return found.error();
     return with_scale({name, found->values, Association::point, {}, false}, command, console);
 }
@@ -97,7 +97,7 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
     std::vector<std::string> names;
     for (const Field& field : surface.point_fields) names.push_back(field.name);
     if (const auto match = match_field_name(command.color_by, names)) {
-        const Result<PointField> found = find_field(vertices, command.color_by, {.threads = command.common.threads});
+        const Result<PointField> found = find_field(vertices, command.color_by, {}, {command.common.threads, {}});
         if (!found) return found.error();
         return with_scale({command.color_by, found->values, Association::point, {}, false}, command, console);
     }
@@ -110,7 +110,7 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
     for (const std::string& name : nearest_first(command.color_by, names))
         there += fmt::format("{}'{}'", there.empty() ? "" : ", ", name);
     return invalid_argument(fmt::format("--color-by names '{}', but the surface has {}", command.color_by,
-                             there.empty() ? "no fields" : there));
+                                        there.empty() ? "no fields" : there));
 }
 
 } // namespace isotet::cli

@@ -15,7 +15,6 @@ namespace {
 constexpr std::string_view number_stands_here = "{frame}";
 constexpr double most_frames = 100'000;
 
-
 } // namespace
 
 Result<std::size_t> count_frames(const RenderCommand& command) {
@@ -27,8 +26,8 @@ Result<std::size_t> count_frames(const RenderCommand& command) {
             command.sweep.size()));
     const double count = command.sweep[2];
     if (count < 2 || count > most_frames || count != std::floor(count))
-        return invalid_argument(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
-                                 shortest(most_frames)));
+        return invalid_argument(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues",
+                                            shortest(count), shortest(most_frames)));
     return static_cast<std::size_t>(count);
 }
 
@@ -57,15 +56,16 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {
-        Result<Animation> animation = Animation::begin(out, pictures_per_second);
+        Result<Animation> animation = Animation::create(out, pictures_per_second);
         if (!animation) return animation.error();
         files.animation_ = *std::move(animation);
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return invalid_argument(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
-                             "holds {} and ends in .png",
-                             out, pictures, number_stands_here));
+    return invalid_argument(
+        fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
+                    "holds {} and ends in .png",
+                    out, pictures, number_stands_here));
 }
 
 std::string PictureFiles::name(std::size_t picture) const {

@@ -93,9 +93,7 @@ Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
     input.isovalues = *std::move(levels);
 
     const Stopwatch packing;
-    Result<PackedGrid> packed =
-        pack(grid, *field, {.source_cells = by_cells, .gradients = true, .threads = command.common.threads},
-             console.progress());
+    Result<PackedGrid> packed = pack(grid, *field, {.source_cells = by_cells, .gradients = true}, console.run());
     if (!packed) return packed.error();
     input.pack_seconds = packing.seconds();
     input.cells = grid.cells.count();
@@ -105,7 +103,7 @@ Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
     input.bounds = bounds_of(*packed);
     if (command.boundary.value_or(boundary_without_a_word) > 0) {
         const Stopwatch looking;
-        Result<Surface> boundary = boundary_of(*packed, console.progress());
+        Result<Surface> boundary = boundary_of(*packed, console.run());
         if (!boundary) return boundary.error();
         input.boundary = *std::move(boundary);
         input.boundary_seconds = looking.seconds();
@@ -120,7 +118,7 @@ Result<RenderInput> read_render_input(const RenderCommand& command, Console& con
     const Kinds kinds = kinds_of(command.grid.file);
     if (!kinds.surface || !command.grid.format.empty()) return take_grid(command, console);
     const Stopwatch reading;
-    Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.progress());
+    Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.run());
     if (file) return take_surface(command, *std::move(file), reading.seconds(), console);
     // A name such as grid.vtk can be either.
     if (kinds.grid && file.error().code == ErrorCode::invalid_data) return take_grid(command, console);

@@ -126,8 +126,8 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be "
         "compared with; "
         "without it clusters");
-    std::vector<std::pair<std::string, std::optional<Filter>>> filters;
-    for (const Filter filter : all_filters) filters.emplace_back(name_of(filter), filter);
+    std::vector<std::pair<std::string, std::optional<SearchIndex>>> filters;
+    for (const SearchIndex filter : all_search_indexes) filters.emplace_back(name_of(filter), filter);
     command.add_choice("--filter", render.filter, filters,
                        "What finds the tets that such a method draws, none: it draws all; without it cluster_ranges");
     command.add_text("--color-by", render.color_by, "FIELD",

@@ -62,7 +62,7 @@ Result<void> RenderScene::upload_boundary() {
 }
 
 Result<void> RenderScene::upload_grid() {
-    Result<DeviceGrid> grid = DeviceGrid::upload(device_, *input_.packed, {}, {.progress = console_.progress()});
+    Result<DeviceGrid> grid = DeviceGrid::upload(device_, *input_.packed, {}, console_.run());
     if (!grid) return grid.error();
     grid_ = *std::move(grid);
     if (!input_.colors) return {};
@@ -123,7 +123,7 @@ Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues
     options.normals = Normals::gradient;
     options.edge_ends = input_.colors && input_.colors->association == Association::point;
     options.source_cells = input_.colors && input_.colors->association == Association::cell;
-    Result<std::vector<DeviceSurface>> surfaces = grid_->extract(isovalues, options, console_.progress());
+    Result<std::vector<DeviceSurface>> surfaces = grid_->extract(isovalues, options, console_.run());
     if (!surfaces) return surfaces.error();
     surfaces_ = *std::move(surfaces);
     work_ = grid_->work();
@@ -131,7 +131,7 @@ Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues
         DrawnSurface& drawn = scene_.surfaces.emplace_back();
         drawn.surface = &surface;
         if (grid_colors_) drawn.colors = &*grid_colors_;
-        counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
+        counts_.push_back({.isovalue = {}, .vertices = surface.vertex_count(), .triangles = surface.triangle_count()});
     }
     return {};
 }
@@ -139,13 +139,11 @@ Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues
 Result<void> RenderScene::extract_on_cpu(const std::vector<double>& isovalues) {
     ExtractOptions options;
     options.normals = Normals::gradient;
-    options.threads = command_.common.threads;
     if (input_.colors) {
         auto& fields = input_.colors->association == Association::point ? options.point_fields : options.cell_fields;
         fields.push_back({input_.colors->name, input_.colors->values});
     }
-    const Result<std::vector<Extraction>> extractions =
-        extract(*input_.packed, isovalues, options, console_.progress());
+    const Result<std::vector<Extraction>> extractions = extract(*input_.packed, isovalues, options, console_.run());
     if (!extractions) return extractions.error();
     for (const Extraction& extraction : *extractions)
         if (Result<void> added = add_mesh(extraction.surface); !added) return added;
@@ -157,7 +155,7 @@ Result<void> RenderScene::add_mesh(const Surface& surface) {
     if (!mesh) return mesh.error();
     DrawnSurface& drawn = scene_.surfaces.emplace_back();
     drawn.mesh = &meshes_.emplace_back(*std::move(mesh));
-    counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
+    counts_.push_back({.isovalue = {}, .vertices = surface.vertex_count(), .triangles = surface.triangle_count()});
     return input_.colors ? add_colors(drawn, surface) : Result<void>();
 }
 

@@ -24,7 +24,8 @@ std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
 Result<void> check_method(const RenderCommand& command) {
     if (!command.method) {
         if (command.filter)
-            return invalid_argument("--filter chooses the tets that a method draws, but --method clusters draws surfaces");
+            return invalid_argument(
+                "--filter chooses the tets that a method draws, but --method clusters draws surfaces");
         return {};
     }
     const std::string_view name = name_of(*command.method);
@@ -41,13 +42,12 @@ Result<RenderTets> RenderTets::load(const RenderCommand& command, const RenderIn
     TetStoreOptions options;
     options.gradients = method == DrawMethod::textures || method == DrawMethod::mesh;
     options.picture_bytes = picture_bytes(command.picture, input.packed->report().tets);
-    Result<TetStore> store =
-        TetStore::upload(device, *input.packed, method, options, command.common.threads, console.progress());
+    Result<TetStore> store = TetStore::upload(device, *input.packed, method, options, console.run());
     if (!store) return store.error();
     RenderTets tets(*std::move(store));
-    const Filter filter = command.filter.value_or(filter_without_a_word);
-    if (filter == Filter::none) return tets;
-    Result<TetFilter> built = TetFilter::build(*input.packed, filter, command.common.threads, console.progress());
+    const SearchIndex filter = command.filter.value_or(filter_without_a_word);
+    if (filter == SearchIndex::none) return tets;
+    Result<TetIndex> built = TetIndex::create(*input.packed, filter, console.run());
     if (!built) return built.error();
     tets.filter_ = *std::move(built);
     return tets;
@@ -60,7 +60,7 @@ Result<void> RenderTets::show(const std::vector<double>& isovalues) {
         if (filter_) {
             const auto found = filter_->find(isovalue);
             if (!found) return found.error();
-            surface = store_.at(isovalue, **found);
+            surface = store_.at(isovalue, *found);
         } else {
             surface = store_.at(isovalue);
         }

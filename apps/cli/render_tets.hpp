@@ -33,7 +33,7 @@ private:
     explicit RenderTets(TetStore store) : store_(std::move(store)) {}
 
     TetStore store_;
-    std::optional<TetFilter> filter_; ///< nothing: all tets
+    std::optional<TetIndex> filter_; ///< nothing: all tets
     std::vector<TetSurface> surfaces_;
 };
 

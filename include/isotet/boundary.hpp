@@ -16,6 +16,6 @@ namespace isotet {
 /// Errors       out_of_memory; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       faces cancel within each cluster first; those left over are sorted
-Result<Surface> boundary_of(const PackedGrid& packed, const Progress& progress = {});
+Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
 } // namespace isotet

@@ -10,7 +10,7 @@
 
 #include <tbb/parallel_sort.h>
 
-#include "core/guard.hpp"
+#include "core/carry_out.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
 
@@ -106,7 +106,8 @@ Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& point
                 });
                 return Array::own(std::move(out), 3);
             };
-            if (packed.origin == std::array<double, 3>{}) return positions(Real{}, [](Real x, std::size_t) { return x; });
+            if (packed.origin == std::array<double, 3>{})
+                return positions(Real{}, [](Real x, std::size_t) { return x; });
             return positions(double{}, [&](Real x, std::size_t axis) { return x + packed.origin[axis]; });
         },
         packed.reals);
@@ -137,8 +138,8 @@ Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
 } // namespace
 } // namespace core
 
-Result<Surface> boundary_of(const PackedGrid& packed, const Progress& progress) {
-    return core::guarded("finding the boundary", [&]() -> Result<Surface> {
+Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
+    return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
         const auto faces = core::boundary_faces(packed.data(), progress);
         if (!faces) return faces.error();
         return core::surface_of(packed.data(), *faces);
