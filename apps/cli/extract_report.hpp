@@ -37,12 +37,12 @@ struct ExtractNumbers {
     FieldReport field; ///< of the last time step
     bool averaged = false;
     Precision precision = Precision::float32;
-    Method method = Method::direct;            ///< of the last surface
-    std::string why;                           ///< the method, in words
-    std::optional<Estimate> predicted;         ///< nothing for devices and the reference engine
-    std::optional<std::uint64_t> peak_bytes;   ///< taken beyond the first grid, if the system tells
-    bool on_device = false, reference = false; ///< of the last surface
-    std::string device;                        ///< its name
+    Method method = Method::direct;          ///< of the last surface
+    std::string why;                         ///< the method, in words
+    std::optional<Estimate> predicted;       ///< nothing for devices and the reference engine
+    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, if the system tells
+    std::string_view engine;                 ///< of the last surface
+    std::string device;                      ///< its name
     unsigned threads = 1;
     double read_seconds = 0;
     double pack_seconds = 0;       ///< uploading included
@@ -53,7 +53,7 @@ struct ExtractNumbers {
 
     std::uint64_t transient_peak() const;
     double work_seconds() const; ///< packing, uploading, extracting: what is predicted
-    const char* engine() const { return on_device ? "vulkan" : reference ? "reference" : "cpu"; }
+    bool on_device() const { return engine == "vulkan"; }
 };
 
 std::string extract_table(const ExtractNumbers& numbers);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <isotet/picture_file.hpp>
+
 #include "core/errors.hpp"
 #include "number_format.hpp"
 

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -16,6 +17,6 @@ namespace isotet {
 /// Errors       out_of_memory; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       faces cancel within each cluster first; those left over are sorted
-Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
+ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
 } // namespace isotet

@@ -7,13 +7,14 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::core {
 
 /// Bytes this process can still take: the smallest of what the system has free, what the control group allows, and what
 /// the limit on address space leaves. Huge where none of these can be told.
-std::uint64_t free_memory();
+ISOTET_API std::uint64_t free_memory();
 
 /// What the control group of a process (version 2, or 1) and those above it leave; huge where there is no limit. Files
 /// that are only cached are counted as used there, but give way.
@@ -21,7 +22,7 @@ std::uint64_t free_memory();
 std::uint64_t control_group_free(const std::string& membership, const std::string& mount);
 
 /// An out_of_memory error when `bytes` are more than free_memory(): "packing needs 12.3 GB, but 4.5 GB are free".
-Result<void> require_memory(std::string_view what, std::uint64_t bytes);
+ISOTET_API Result<void> require_memory(std::string_view what, std::uint64_t bytes);
 
 /// The memory of this process that is in the machine: now, and at its most since the process began or since the peak
 /// was last forgotten. Nothing where the system does not tell.
@@ -32,6 +33,6 @@ std::optional<std::uint64_t> peak_resident_memory();
 bool forget_peak_memory();
 
 /// "12.3 GB", decimal.
-std::string format_bytes(std::uint64_t bytes);
+ISOTET_API std::string format_bytes(std::uint64_t bytes);
 
 } // namespace isotet::core

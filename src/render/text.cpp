@@ -101,12 +101,13 @@ double TextPainter::width(std::string_view text) const {
     return data_->each_glyph(text, [](FT_GlyphSlot, double) {});
 }
 
-bool TextPainter::has_all(std::string_view text) const {
+std::size_t TextPainter::count_missing(std::string_view text) const {
+    std::size_t missing = 0;
     while (!text.empty()) {
         const std::uint32_t character = next_character(text);
-        if (character == replacement || FT_Get_Char_Index(data_->face, character) == 0) return false;
+        missing += character == replacement || FT_Get_Char_Index(data_->face, character) == 0;
     }
-    return true;
+    return missing;
 }
 
 double TextPainter::ascent() const noexcept {
