@@ -13,7 +13,7 @@
 #include "console.hpp"
 #include "device_choice.hpp"
 #include "json_output.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "render_frames.hpp"
 #include "render_input.hpp"
 #include "render_report.hpp"
@@ -107,7 +107,7 @@ Result<void> compare(const Picture& picture, const Picture& reference, const Ren
 Result<PictureFiles> open_files(const RenderCommand& command) {
     const Result<std::size_t> pictures = count_frames(command);
     if (!pictures) return pictures.error();
-    Result<PictureFiles> files = PictureFiles::open(name_of_picture(command), *pictures, command.frames_a_second);
+    Result<PictureFiles> files = PictureFiles::open(name_of_picture(command), *pictures, command.frames_per_second);
     if (!files) return files;
     std::vector<std::string> outputs = files->names();
     outputs.push_back(command.common.json);
@@ -133,7 +133,7 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     if (!device) return device.error();
     Result<Renderer> renderer = Renderer::make(*device);
     if (!renderer) return renderer.error();
-    const Result<RenderInput> input = read_render_input(command, console);
+    Result<RenderInput> input = read_render_input(command, *device, console);
     if (!input) return input.error();
     const Result<std::vector<RenderFrame>> frames = frames_of(command, input->isovalues);
     if (!frames) return frames.error();
@@ -148,13 +148,10 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     if (reference)
         if (Result<void> compared = compare(*last, *reference, command, numbers, console); !compared)
             return compared.error();
-    if (Result<void> printed = console.print(render_table(command, *input, scene, *device, numbers)); !printed)
-        return printed.error();
-    Json report = render_json(command, *input, scene, *device, numbers);
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.progress()); !written)
-        return written.error();
-    return numbers.differs.value_or(0) > command.threshold ? ExitCode::check_says_no : ExitCode::done;
+    const bool differs = numbers.differs.value_or(0) > command.threshold;
+    return finish(console, command.common, render_table(command, *input, scene, *device, numbers),
+                  render_json(command, *input, scene, *device, numbers),
+                  differs ? ExitCode::check_says_no : ExitCode::done);
 }
 
 } // namespace isotet::cli

@@ -2,49 +2,29 @@
 #include "render_input.hpp"
 
 #include <algorithm>
-#include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <isotet/boundary.hpp>
+#include <isotet/field_statistics.hpp>
+#include <isotet/levels.hpp>
 
+#include "field_choice.hpp"
 #include "grid_source.hpp"
-#include "read_field.hpp"
 #include "render_colors.hpp"
 #include "stopwatch.hpp"
-#include "varied_field.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
-constexpr std::uint64_t levels_without_a_word = 3;
-
-/// What the ending of a name can be.
-struct Kinds {
-    bool grid = false, surface = false;
-};
-Kinds kinds_of(const std::string& file) {
-    if (file.starts_with("make:")) return {true, false};
-    std::string ending = std::filesystem::path(file).extension().string();
-    std::ranges::transform(ending, ending.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    Kinds kinds;
-    for (const Format& format : formats()) {
-        if (std::ranges::find(format.extensions, ending) == format.extensions.end()) continue;
-        kinds.grid = kinds.grid || format.reads_grid;
-        kinds.surface = kinds.surface || format.reads_surface;
-    }
-    return kinds;
-}
-
 Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file, double seconds, Console& console) {
     if (!command.isovalues.empty() || !command.sweep.empty() || command.levels > 0 || !command.field.name.empty() ||
-        command.boundary || command.method) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("{} is a surface: it has no isovalues, no field to contour (--color-by colours it), "
+        command.boundary || command.method.draw || command.method.extract) {
+        return usage_error(fmt::format("{} is a surface: it has no isovalues, no field to contour (--color-by colours it), "
                                  "no boundary and no tets",
-                                 command.grid.file)};
+                                 command.grid.file));
     }
     RenderInput input;
     input.format = file.format;
@@ -61,69 +41,107 @@ Result<RenderInput> take_surface(const RenderCommand& command, SurfaceFile file,
 
 Result<std::vector<double>> choose_levels(const RenderCommand& command, const PointField& field) {
     if (!command.isovalues.empty()) return command.isovalues;
-    const std::uint64_t count = command.levels > 0 ? command.levels : levels_without_a_word;
-    std::vector<double> levels = levels_within(field, count);
+    const ValueRange range = typical_range(field.values);
+    std::vector<double> levels =
+        evenly_spaced_levels(range.lower, range.upper, command.levels > 0 ? command.levels : default_levels,
+                             LevelRounding::short_decimals);
     if (!levels.empty()) return levels;
     return Error{ErrorCode::invalid_data,
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
 }
 
-Result<RenderInput> take_grid(const RenderCommand& command, Console& console) {
+/// Starts the session. A device colours by the grid's own values; on the CPU surfaces carry the field that colours.
+Result<void> start(const RenderCommand& command, const Device& device, const Run& run, ContourInput source,
+                   RenderInput& input) {
+    ContourOptions options;
+    options.normals = Normals::gradient;
+    options.method = command.method.draw ? Method::clusters : command.method.extract;
+    options.surfaces = command.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(command.sweep[2]);
+    const bool by_cells = input.colors && input.colors->association == Association::cell;
+    const bool by_points = input.colors && !by_cells;
+    const bool card = device.info().kind != DeviceKind::software && options.method != Method::direct;
+    const bool asked = command.engine == EngineChoice::vulkan;
+    ContourInput carrying = source;
+    if (by_points) carrying.point_fields.push_back({input.colors->name, input.colors->values});
+    if (by_cells) carrying.cell_fields.push_back({input.colors->name, input.colors->values});
+    if (!command.method.draw && (asked || (card && command.engine == EngineChoice::automatic))) {
+        options.device = ContourDevice{device, asked};
+        options.edge_ends = by_points;
+        options.source_cells = by_cells;
+        input.source = std::move(carrying);
+    } else {
+        source = std::move(carrying);
+    }
+    Result<Contour> contour = Contour::create(std::move(source), options);
+    if (!contour) return contour.error();
+    input.contour = *std::move(contour);
+    const Stopwatch packing;
+    if (Result<void> ready = input.contour->prepare(run); !ready) return ready;
+    if (input.contour->packed()) input.pack_seconds = packing.seconds();
+    return {};
+}
+
+/// The boundary if it is drawn, and the box around the grid.
+Result<void> look_around(const RenderCommand& command, const Grid& grid, const Run& run, RenderInput& input) {
+    const Stopwatch looking;
+    if (command.boundary.value_or(default_boundary_opacity) > 0) {
+        Result<Surface> boundary = boundary_of(grid, run);
+        if (!boundary) return boundary.error();
+        input.boundary = *std::move(boundary);
+        input.bounds = bounds_of(*input.boundary);
+    } else {
+        const Result<GridReport> report = survey(grid, {.faces = false, .threads = run.threads}, run.progress);
+        if (!report) return report.error();
+        input.bounds.add(report->lower);
+        input.bounds.add(report->upper);
+    }
+    input.boundary_seconds = looking.seconds();
+    return {};
+}
+
+Result<RenderInput> take_grid(const RenderCommand& command, const Device& device, Console& console) {
     RenderInput input;
     const Stopwatch reading;
+    const Run run{command.common.threads, console.progress()};
     const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
     if (!source) return source.error();
     input.format = source->info().format;
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
+    input.time = time_of(source->info(), steps->front());
     Grid grid;
     const Result<PointField> field =
-        read_field(*source, steps->front(), command.field, command.color_by, command.common.threads, console, grid);
+        read_field(*source, steps->front(), command.field, command.color_by, run.threads, console, grid);
     if (!field) return field.error();
     input.read_seconds = reading.seconds();
+    input.cells = grid.cells.count();
+    input.field = field->name;
 
     if (!command.color_by.empty()) {
         Result<ColorField> colors = colors_of(grid, command, console);
         if (!colors) return colors.error();
         input.colors = *std::move(colors);
     }
-    const bool by_cells = input.colors && input.colors->association == Association::cell;
     Result<std::vector<double>> levels = choose_levels(command, *field);
     if (!levels) return levels.error();
     input.isovalues = *std::move(levels);
-
-    const Stopwatch packing;
-    Result<PackedGrid> packed =
-        pack(grid, *field, {.source_cells = by_cells, .gradients = true, .threads = command.common.threads},
-             console.progress());
-    if (!packed) return packed.error();
-    input.pack_seconds = packing.seconds();
-    input.cells = grid.cells.count();
-    input.field = field->name;
-    input.lower = packed->field().lower;
-    input.upper = packed->field().upper;
-    input.bounds = bounds_of(*packed);
-    if (command.boundary.value_or(boundary_without_a_word) > 0) {
-        const Stopwatch looking;
-        Result<Surface> boundary = boundary_of(*packed, console.progress());
-        if (!boundary) return boundary.error();
-        input.boundary = *std::move(boundary);
-        input.boundary_seconds = looking.seconds();
-    }
-    input.packed = *std::move(packed);
+    grid.point_fields = grid.cell_fields = {};
+    if (auto looked = look_around(command, grid, run, input); !looked) return looked.error();
+    if (auto started = start(command, device, run, {std::move(grid), *field, {}, {}}, input); !started)
+        return started.error();
     return input;
 }
 
 } // namespace
 
-Result<RenderInput> read_render_input(const RenderCommand& command, Console& console) {
-    const Kinds kinds = kinds_of(command.grid.file);
-    if (!kinds.surface || !command.grid.format.empty()) return take_grid(command, console);
+Result<RenderInput> read_render_input(const RenderCommand& command, const Device& device, Console& console) {
+    const FileKinds kinds = kinds_of(command.grid.file);
+    if (!kinds.surface || !command.grid.format.empty()) return take_grid(command, device, console);
     const Stopwatch reading;
     Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.progress());
     if (file) return take_surface(command, *std::move(file), reading.seconds(), console);
     // A name such as grid.vtk can be either.
-    if (kinds.grid && file.error().code == ErrorCode::invalid_data) return take_grid(command, console);
+    if (kinds.grid && file.error().code == ErrorCode::invalid_data) return take_grid(command, device, console);
     return file.error();
 }
 

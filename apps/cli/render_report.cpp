@@ -12,9 +12,9 @@ namespace {
 
 std::string times_text(const RenderInput& input, const RenderScene& scene, const PictureNumbers& picture) {
     std::string text = "read " + seconds_text(input.read_seconds);
-    if (input.packed) text += ", pack " + seconds_text(input.pack_seconds);
+    if (input.pack_seconds > 0) text += ", pack " + seconds_text(input.pack_seconds);
     if (input.boundary) text += ", boundary " + seconds_text(input.boundary_seconds);
-    if (input.packed)
+    if (input.contour)
         text += fmt::format(", upload {}, extract {}", seconds_text(scene.upload_seconds()),
                             seconds_text(scene.extract_seconds()));
     else text += ", upload " + seconds_text(scene.extract_seconds());
@@ -22,9 +22,7 @@ std::string times_text(const RenderInput& input, const RenderScene& scene, const
            fmt::format(", draw {}, write {}", seconds_text(picture.draw_seconds), seconds_text(picture.write_seconds));
 }
 
-std::string_view filter_name(const RenderCommand& command) {
-    return name_of(command.filter.value_or(filter_without_a_word));
-}
+std::string_view index_name(const RenderCommand& command) { return name_of(command.index.value_or(default_index)); }
 
 Json json_of(const DeviceWork& work) {
     Json passes = Json::array();
@@ -44,7 +42,7 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
                          const Device& device, const PictureNumbers& picture) {
     Table table = facts();
     table.row({input.surface ? "surface" : "grid", fmt::format("{} ({})", command.grid.file, input.format)});
-    if (input.packed) {
+    if (input.contour) {
         table.row({"cells", grouped(input.cells)});
         const bool finite = input.lower <= input.upper;
         table.row({"field", finite
@@ -60,24 +58,24 @@ std::string render_table(const RenderCommand& command, const RenderInput& input,
         const SurfaceCounts& surface = scene.surfaces()[i];
         const std::string what = surface.isovalue ? "isovalue " + isovalues[i] : "surface";
         table.row({what, scene.tets() ? fmt::format("{} drawn, {} sent", counted(surface.tets, "tet"),
-                                                    bytes_text(surface.sent_bytes))
+                                                    format_bytes(surface.sent_bytes))
                                       : counted(surface.triangles, "triangle")});
     }
     if (input.colors)
         table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower),
                                               rounded(input.colors->scale.upper))});
     table.row({"device", fmt::format("{} ({})", device.info().name, name_of(device.info().kind))});
-    if (input.packed && !scene.tets()) table.row({"engine", scene.engine()});
+    if (input.contour && !scene.tets()) table.row({"engine", fmt::format("{}, {}", scene.engine(), scene.method())});
     if (scene.tets()) {
         const TetStoreReport& store = scene.tets()->report();
-        table.row({"method", fmt::format("{}, filter {}", name_of(*command.method), filter_name(command))});
-        table.row({"store", fmt::format("{}, of them {} sent again for every picture", bytes_text(store.stored_bytes),
-                                        bytes_text(store.host_bytes))});
+        table.row({"method", fmt::format("{}, index {}", scene.method(), index_name(command))});
+        table.row({"store", fmt::format("{}, of them {} sent again for every picture", format_bytes(store.stored_bytes),
+                                        format_bytes(store.host_bytes))});
     }
     table.row({"time", times_text(input, scene, picture)});
     const std::string count = picture.pictures == 1 ? "picture" : fmt::format("{} pictures", picture.pictures);
     table.row({count, fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height,
-                                  bytes_text(picture.bytes))});
+                                  format_bytes(picture.bytes))});
     if (picture.differs)
         table.row({"reference",
                    fmt::format("{}: {} of the pixels differ", command.reference, percent_text(*picture.differs))});
@@ -89,9 +87,9 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     Json report = json_report("render");
     report["input"] = json_text(command.grid.file);
     report["format"] = input.format;
-    report["field"] = input.packed ? json_text(input.field) : Json(nullptr);
+    report["field"] = input.contour ? json_text(input.field) : Json(nullptr);
     report["range"] =
-        input.packed && input.lower <= input.upper ? Json::array({input.lower, input.upper}) : Json(nullptr);
+        input.contour && input.lower <= input.upper ? Json::array({input.lower, input.upper}) : Json(nullptr);
     report["color_by"] = input.colors ? json_text(input.colors->name) : Json(nullptr);
     report["color_range"] =
         input.colors ? Json::array({input.colors->scale.lower, input.colors->scale.upper}) : Json(nullptr);
@@ -108,8 +106,8 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     report["surfaces"] = std::move(surfaces);
     report["device"] = {{"name", json_text(device.info().name)}, {"kind", name_of(device.info().kind)}};
     report["engine"] = scene.engine();
-    report["method"] = command.method ? name_of(*command.method) : "clusters";
-    report["filter"] = command.method ? Json(filter_name(command)) : Json(nullptr);
+    report["method"] = scene.method();
+    report["index"] = scene.tets() ? Json(index_name(command)) : Json(nullptr);
     report["store"] = nullptr;
     if (scene.tets()) {
         const TetStoreReport& store = scene.tets()->report();

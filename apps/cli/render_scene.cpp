@@ -5,10 +5,9 @@
 #include <filesystem>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
-
-#include <isotet/extract.hpp>
 
 #include "number_format.hpp"
 #include "stopwatch.hpp"
@@ -32,46 +31,26 @@ Color color_among(const std::vector<SurfaceCounts>& surfaces, std::size_t which,
 Result<void> RenderScene::load() {
     const Stopwatch uploading;
     scene_.bounds = input_.bounds;
-    if (input_.boundary)
-        if (Result<void> done = upload_boundary(); !done) return done;
-    if (command_.method) {
-        Result<RenderTets> tets = RenderTets::load(command_, input_, device_, console_);
+    if (input_.boundary) {
+        Result<DeviceMesh> mesh = DeviceMesh::upload(device_, *input_.boundary);
+        if (!mesh) return mesh.error();
+        boundary_ = *std::move(mesh);
+    }
+    if (command_.method.draw) {
+        const PackedGrid packed = *input_.contour->packed();
+        input_.lower = packed.field().lower;
+        input_.upper = packed.field().upper;
+        Result<RenderTets> tets = RenderTets::load(command_, packed, device_, console_);
         if (!tets) return tets.error();
         tets_ = *std::move(tets);
-        upload_seconds_ = uploading.seconds();
-        return {};
-    }
-    const bool card = device_.info().kind != DeviceKind::software;
-    if (input_.packed &&
-        (command_.engine == EngineChoice::vulkan || (command_.engine == EngineChoice::automatic && card))) {
-        if (Result<void> done = upload_grid(); !done) {
-            if (command_.engine == EngineChoice::vulkan || done.error().code == ErrorCode::cancelled) return done;
-            console_.note(fmt::format("{}: the CPU extracts instead", done.error().message));
-            grid_.reset();
-        }
     }
     upload_seconds_ = uploading.seconds();
     return {};
 }
 
-Result<void> RenderScene::upload_boundary() {
-    Result<DeviceMesh> mesh = DeviceMesh::upload(device_, *input_.boundary);
-    if (!mesh) return mesh.error();
-    boundary_ = *std::move(mesh);
-    return {};
-}
-
-Result<void> RenderScene::upload_grid() {
-    Result<DeviceGrid> grid = DeviceGrid::upload(device_, *input_.packed, {}, {.progress = console_.progress()});
-    if (!grid) return grid.error();
-    grid_ = *std::move(grid);
-    if (!input_.colors) return {};
-    const ColorField& field = *input_.colors;
-    Result<DeviceColors> colors =
-        DeviceColors::of_grid(device_, *input_.packed, field.values, field.association, field.scale);
-    if (!colors) return colors.error();
-    grid_colors_ = *std::move(colors);
-    return {};
+std::string_view RenderScene::method() const {
+    if (input_.surface) return "none";
+    return tets_ ? name_of(*command_.method.draw) : name_of(method_);
 }
 
 Result<void> RenderScene::show(const std::vector<double>& isovalues) {
@@ -83,8 +62,7 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     const Stopwatch extracting;
     const Result<void> done = input_.surface ? add_mesh(*input_.surface)
                               : tets_        ? choose_tets(isovalues)
-                              : grid_        ? extract_on_device(isovalues)
-                                             : extract_on_cpu(isovalues);
+                                             : show_extracted(isovalues);
     if (!done) return done;
     extract_seconds_ += extracting.seconds();
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
@@ -102,7 +80,7 @@ Result<void> RenderScene::show(const std::vector<double>& isovalues) {
     return {};
 }
 
-/// Of tets nobody knows before they are drawn; but values on both sides of the isovalue make a surface, as a rule.
+/// Of tets it is not known before they are drawn; values on both sides of the isovalue make a surface, as a rule.
 bool RenderScene::is_empty(std::size_t surface) const {
     if (!tets_) return counts_[surface].triangles == 0;
     const double isovalue = *counts_[surface].isovalue;
@@ -118,37 +96,55 @@ Result<void> RenderScene::choose_tets(const std::vector<double>& isovalues) {
     return {};
 }
 
+/// By the session: surfaces stay on its device, or come from the CPU.
+Result<void> RenderScene::show_extracted(const std::vector<double>& isovalues) {
+    Contour& contour = *input_.contour;
+    if (contour.has_device()) {
+        const Result<void> done = extract_on_device(isovalues);
+        if (done || command_.engine == EngineChoice::vulkan || done.error().code == ErrorCode::cancelled) return done;
+        console_.note(done.error().message + ": the CPU extracts instead");
+        scene_.surfaces.clear();
+        counts_.clear();
+    }
+    if (on_device_ || !input_.source.grid.points.empty()) { // surfaces must carry the field that colours
+        on_device_ = false;
+        if (auto set = contour.set(std::exchange(input_.source, {}), run()); !set) return set.error();
+    }
+    Result<ContourResult> result = contour.extract(isovalues, run());
+    if (!result) return result.error();
+    console_.notes(result->notes);
+    method_ = result->method;
+    input_.lower = result->field.lower;
+    input_.upper = result->field.upper;
+    input_.pack_seconds += result->pack_seconds;
+    for (const Extraction& extraction : result->surfaces)
+        if (Result<void> added = add_mesh(extraction.surface); !added) return added;
+    return {};
+}
+
 Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues) {
-    ExtractOptions options;
-    options.normals = Normals::gradient;
-    options.edge_ends = input_.colors && input_.colors->association == Association::point;
-    options.source_cells = input_.colors && input_.colors->association == Association::cell;
-    Result<std::vector<DeviceSurface>> surfaces = grid_->extract(isovalues, options, console_.progress());
+    const PackedGrid packed = *input_.contour->packed();
+    if (input_.colors && !grid_colors_) {
+        const ColorField& field = *input_.colors;
+        Result<DeviceColors> colors =
+            DeviceColors::of_grid(device_, packed, field.values, field.association, field.scale);
+        if (!colors) return colors.error();
+        grid_colors_ = *std::move(colors);
+    }
+    Result<std::vector<DeviceSurface>> surfaces = input_.contour->extract_on_device(isovalues, run());
     if (!surfaces) return surfaces.error();
     surfaces_ = *std::move(surfaces);
-    work_ = grid_->work();
+    on_device_ = true;
+    work_ = input_.contour->device_work();
+    method_ = Method::clusters;
+    input_.lower = packed.field().lower;
+    input_.upper = packed.field().upper;
     for (const DeviceSurface& surface : surfaces_) {
         DrawnSurface& drawn = scene_.surfaces.emplace_back();
         drawn.surface = &surface;
         if (grid_colors_) drawn.colors = &*grid_colors_;
         counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
     }
-    return {};
-}
-
-Result<void> RenderScene::extract_on_cpu(const std::vector<double>& isovalues) {
-    ExtractOptions options;
-    options.normals = Normals::gradient;
-    options.threads = command_.common.threads;
-    if (input_.colors) {
-        auto& fields = input_.colors->association == Association::point ? options.point_fields : options.cell_fields;
-        fields.push_back({input_.colors->name, input_.colors->values});
-    }
-    const Result<std::vector<Extraction>> extractions =
-        extract(*input_.packed, isovalues, options, console_.progress());
-    if (!extractions) return extractions.error();
-    for (const Extraction& extraction : *extractions)
-        if (Result<void> added = add_mesh(extraction.surface); !added) return added;
     return {};
 }
 
@@ -188,7 +184,7 @@ void RenderScene::dress() {
     DrawnSurface& drawn = scene_.surfaces.emplace_back();
     drawn.mesh = &*boundary_;
     drawn.color = {0.62F, 0.66F, 0.70F, 1};
-    drawn.opacity = command_.boundary.value_or(boundary_without_a_word);
+    drawn.opacity = command_.boundary.value_or(default_boundary_opacity);
 }
 
 void RenderScene::fit(Camera& camera, double aspect) const {
@@ -214,6 +210,7 @@ Annotation RenderScene::annotation() const {
     for (const SurfaceCounts& surface : counts_) all += surface.size();
     const std::string drawn = tets_ ? counted(all, "tet") + " drawn" : counted(all, "triangle");
     const std::string name = std::filesystem::path(command_.grid.file).filename().string();
+    const std::string time = input_.time ? fmt::format("  ·  time {}", rounded(*input_.time)) : "";
     if (input_.surface) annotation.caption = fmt::format("{}  ·  {}", name, drawn);
     else if (counts_.size() == 1)
         annotation.caption =
@@ -222,6 +219,7 @@ Annotation RenderScene::annotation() const {
     else
         annotation.caption = fmt::format("{}  ·  {}  ·  {} at {} isovalues  ·  {}", name, counted(input_.cells, "cell"),
                                          input_.field, counts_.size(), drawn);
+    annotation.caption += time;
     if (input_.colors) {
         annotation.title = input_.colors->name;
         annotation.scale = input_.colors->scale;

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What `isotet render` draws, in the device's memory: extracted there, or by the CPU and uploaded.
+// What `isotet render` draws, in the device's memory: extracted there, or on the CPU and uploaded.
 #pragma once
 
 #include <deque>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <isotet/annotation.hpp>
-#include <isotet/device_grid.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/render.hpp>
 
 #include "console.hpp"
@@ -22,7 +22,7 @@ namespace isotet::cli {
 struct SurfaceCounts {
     std::optional<double> isovalue; ///< nothing for a surface file
     std::uint64_t vertices = 0, triangles = 0;
-    std::uint64_t tets = 0, sent_bytes = 0; ///< of a method that draws tets: how many, and over the bus for this
+    std::uint64_t tets = 0, sent_bytes = 0; ///< of a method that draws tets: how many, and bytes over the bus for this
                                             ///< isovalue
 
     std::uint64_t size() const { return triangles + tets; }
@@ -30,10 +30,10 @@ struct SurfaceCounts {
 
 class RenderScene {
 public:
-    RenderScene(const RenderCommand& command, const RenderInput& input, const Device& device, Console& console)
+    RenderScene(const RenderCommand& command, RenderInput& input, const Device& device, Console& console)
         : command_(command), input_(input), device_(device), console_(console) {}
 
-    /// Uploads what is the same for all isovalues, and decides which engine extracts.
+    /// Uploads what is the same for all isovalues.
     Result<void> load();
 
     /// Makes the scene that of these isovalues; of a surface file there are none.
@@ -49,7 +49,8 @@ public:
     std::vector<std::string> isovalue_texts() const; ///< of surfaces(), each different
 
     /// "vulkan", "cpu", or "none" where nothing is extracted: of a surface file, or by a method that draws tets.
-    const char* engine() const { return input_.surface || tets_ ? "none" : grid_ ? "vulkan" : "cpu"; }
+    const char* engine() const { return input_.surface || tets_ ? "none" : on_device_ ? "vulkan" : "cpu"; }
+    std::string_view method() const; ///< of extracting or of drawing tets; "none" for a surface file
     const RenderTets* tets() const { return tets_ ? &*tets_ : nullptr; } ///< null: surfaces are drawn
     double upload_seconds() const noexcept { return upload_seconds_; }
     double extract_seconds() const noexcept { return extract_seconds_; } ///< of all isovalues so far, with uploading by
@@ -57,22 +58,21 @@ public:
     const DeviceWork& extract_work() const noexcept { return work_; }    ///< empty with the CPU engine
 
 private:
-    Result<void> upload_boundary();
-    Result<void> upload_grid();
+    Result<void> show_extracted(const std::vector<double>& isovalues);
     Result<void> extract_on_device(const std::vector<double>& isovalues);
     Result<void> choose_tets(const std::vector<double>& isovalues);
     Result<void> extract_on_cpu(const std::vector<double>& isovalues);
     Result<void> add_mesh(const Surface& surface);
     Result<void> add_colors(DrawnSurface& drawn, const Surface& surface);
     bool is_empty(std::size_t surface) const;
+    Run run() const { return {command_.common.threads, console_.progress()}; }
     void dress();
 
     const RenderCommand& command_;
-    const RenderInput& input_;
+    RenderInput& input_;
     const Device& device_;
     Console& console_;
     std::optional<DeviceMesh> boundary_;
-    std::optional<DeviceGrid> grid_;
     std::optional<DeviceColors> grid_colors_;
     std::optional<RenderTets> tets_;
     std::vector<DeviceSurface> surfaces_;   ///< by the Vulkan engine
@@ -80,6 +80,8 @@ private:
     std::deque<DeviceColors> mesh_colors_;
     Scene scene_;
     std::vector<SurfaceCounts> counts_;
+    bool on_device_ = false;
+    Method method_ = Method::direct;
     double upload_seconds_ = 0, extract_seconds_ = 0;
     DeviceWork work_;
 };

@@ -2,11 +2,10 @@
 #include "render_tets.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "core/errors.hpp"
 
 namespace isotet::cli {
 
@@ -14,42 +13,42 @@ namespace {
 
 /// Device memory that pictures of this size need beside the store, with the numbers of all tets.
 std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
-    constexpr std::uint64_t most_samples = std::uint64_t{1} << 24, bytes_a_sample = 28, corners_of_quads = 2'000'000;
+    constexpr std::uint64_t max_samples = std::uint64_t{1} << 24, bytes_per_sample = 28, corners_of_quads = 2'000'000;
     const std::uint64_t samples = std::uint64_t{picture.width} * picture.height * picture.samples * picture.samples;
-    return std::min(samples, most_samples) * bytes_a_sample + 4 * tets + corners_of_quads;
+    return std::min(samples, max_samples) * bytes_per_sample + 4 * tets + corners_of_quads;
 }
 
 } // namespace
 
 Result<void> check_method(const RenderCommand& command) {
-    if (!command.method) {
-        if (command.filter)
-            return invalid_argument("--filter chooses the tets that a method draws, but --method clusters draws surfaces");
+    if (!command.method.draw) {
+        if (command.index)
+            return usage_error("--index finds the tets for a method that draws tets, but surfaces are drawn: --method");
         return {};
     }
-    const std::string_view name = name_of(*command.method);
+    const std::string_view name = name_of(*command.method.draw);
     if (!command.color_by.empty())
-        return invalid_argument(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
+        return usage_error(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
     if (command.engine != EngineChoice::automatic)
-        return invalid_argument(fmt::format("--engine says what extracts, but --method {} extracts nothing", name));
+        return usage_error(fmt::format("--engine says what extracts, but --method {} extracts nothing", name));
     return {};
 }
 
-Result<RenderTets> RenderTets::load(const RenderCommand& command, const RenderInput& input, const Device& device,
+Result<RenderTets> RenderTets::load(const RenderCommand& command, const PackedGrid& packed, const Device& device,
                                     Console& console) {
-    const DrawMethod method = *command.method;
+    const DrawMethod method = *command.method.draw;
     TetStoreOptions options;
     options.gradients = method == DrawMethod::textures || method == DrawMethod::mesh;
-    options.picture_bytes = picture_bytes(command.picture, input.packed->report().tets);
+    options.picture_bytes = picture_bytes(command.picture, packed.report().tets);
     Result<TetStore> store =
-        TetStore::upload(device, *input.packed, method, options, command.common.threads, console.progress());
+        TetStore::upload(device, packed, method, options, command.common.threads, console.progress());
     if (!store) return store.error();
     RenderTets tets(*std::move(store));
-    const Filter filter = command.filter.value_or(filter_without_a_word);
-    if (filter == Filter::none) return tets;
-    Result<TetFilter> built = TetFilter::build(*input.packed, filter, command.common.threads, console.progress());
+    const Filter index = command.index.value_or(default_index);
+    if (index == Filter::none) return tets;
+    Result<TetFilter> built = TetFilter::build(packed, index, command.common.threads, console.progress());
     if (!built) return built.error();
-    tets.filter_ = *std::move(built);
+    tets.index_ = *std::move(built);
     return tets;
 }
 
@@ -57,8 +56,8 @@ Result<void> RenderTets::show(const std::vector<double>& isovalues) {
     surfaces_.clear();
     for (const double isovalue : isovalues) {
         Result<TetSurface> surface = Error{};
-        if (filter_) {
-            const auto found = filter_->find(isovalue);
+        if (index_) {
+            const auto found = index_->find(isovalue);
             if (!found) return found.error();
             surface = store_.at(isovalue, **found);
         } else {

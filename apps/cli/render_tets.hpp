@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Drawing by a method that makes no surface: a store of tets on the device, and a filter that says which to draw.
+// Drawing by a method that makes no surface: a store of tets on the device, and a search index that finds
+// those to draw.
 #pragma once
 
 #include <optional>
@@ -10,17 +11,17 @@
 
 #include "console.hpp"
 #include "options.hpp"
-#include "render_input.hpp"
 
 namespace isotet::cli {
 
-/// Refuses options that say how surfaces are extracted, or coloured, beside such a method, and a filter without one.
+/// Refuses options that say how surfaces are extracted, or coloured, beside such a method, and a search index without one.
 Result<void> check_method(const RenderCommand& command);
 
 class RenderTets {
 public:
-    /// Uploads the store and builds the filter.
-    static Result<RenderTets> load(const RenderCommand& command, const RenderInput& input, const Device& device,
+    /// Uploads the store and builds the search index.
+    /// `packed`   in single precision, with gradients for the methods that shade by them
+    static Result<RenderTets> load(const RenderCommand& command, const PackedGrid& packed, const Device& device,
                                    Console& console);
 
     /// The tets to draw at each isovalue; those of the last call go.
@@ -33,7 +34,7 @@ private:
     explicit RenderTets(TetStore store) : store_(std::move(store)) {}
 
     TetStore store_;
-    std::optional<TetFilter> filter_; ///< nothing: all tets
+    std::optional<TetFilter> index_; ///< nothing: all tets
     std::vector<TetSurface> surfaces_;
 };
 

@@ -132,6 +132,9 @@ public:
     /// The packed grid; nothing where surfaces are extracted directly, or before the first of them.
     std::optional<PackedGrid> packed() const;
 
+    /// What the last extraction on the device took; nothing without a device.
+    DeviceWork device_work() const;
+
     /// Whether a device extracts; false after it failed and the CPU took over.
     bool has_device() const;
 

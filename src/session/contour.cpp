@@ -421,6 +421,11 @@ std::optional<PackedGrid> Contour::packed() const {
     return data_->behind == ContourUpdate::nothing ? data_->packed : std::nullopt;
 }
 
+DeviceWork Contour::device_work() const {
+    const std::lock_guard lock(data_->mutex);
+    return data_->on_device ? data_->on_device->work() : DeviceWork{};
+}
+
 bool Contour::has_device() const {
     const std::lock_guard lock(data_->mutex);
     return data_->options.device.has_value();
