@@ -50,9 +50,9 @@ private:
     Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
         DirectOptions options;
         options.extract.threads = bed.threads;
-        Result<DirectExtraction> once = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), options, bed.progress);
-        if (!once) return once.error();
-        return std::move(once->surfaces.front());
+        Result<DirectExtraction> direct = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), options, bed.progress);
+        if (!direct) return direct.error();
+        return std::move(direct->surfaces.front());
     }
 };
 
@@ -98,10 +98,10 @@ private:
     DeviceSurface surface_;
 };
 
-/// The paper's: the vertex shader cuts tets, all of them or those that a filter finds.
+/// The paper's: the vertex shader cuts tets, all of them or those that a search index finds.
 class InTheVertexShader final : public Contestant {
 public:
-    InTheVertexShader(DrawMethod method, Filter filter) : method_(method), filter_(filter) {}
+    InTheVertexShader(DrawMethod method, Filter index) : method_(method), index_(index) {}
 
     Result<BenchCosts> prepare(BenchBed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
@@ -110,8 +110,8 @@ public:
         if (!store) return store.error();
         store_ = *std::move(store);
         BenchCosts costs;
-        if (filter_ != Filter::none) {
-            Result<TetFilter> tets = TetFilter::build(*bed.packed, filter_, bed.threads, bed.progress);
+        if (index_ != Filter::none) {
+            Result<TetFilter> tets = TetFilter::build(*bed.packed, index_, bed.threads, bed.progress);
             if (!tets) return tets.error();
             tets_ = *std::move(tets);
             costs.host_bytes = tets_->report().table_bytes + tets_->report().filter_bytes;
@@ -124,13 +124,13 @@ public:
     }
 
     Result<DrawnSurface> make(BenchBed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
-        const Stopwatch asking;
+        const Stopwatch searching;
         const std::vector<std::uint32_t>* found = nullptr;
         if (tets_) {
             const auto list = tets_->find(isovalue);
             if (!list) return list.error();
             found = *list;
-            times.ask = asking.seconds();
+            times.search = searching.seconds();
         }
         const Stopwatch sending;
         Result<TetSurface> surface = found ? store_->at(isovalue, *found) : store_->at(isovalue);
@@ -146,7 +146,7 @@ public:
 
 private:
     DrawMethod method_;
-    Filter filter_;
+    Filter index_;
     std::optional<TetStore> store_;
     std::optional<TetFilter> tets_;
     std::optional<TetSurface> surface_;
@@ -168,7 +168,7 @@ Result<void> BenchBed::pack() {
 
 std::unique_ptr<Contestant> make_contestant(const BenchPair& pair) {
     if (const std::optional<DrawMethod> method = draw_method_of(pair.method))
-        return std::make_unique<InTheVertexShader>(*method, pair.filter);
+        return std::make_unique<InTheVertexShader>(*method, pair.index);
     if (pair.method == BenchMethod::direct) return std::make_unique<Direct>();
     if (pair.method == BenchMethod::clusters) return std::make_unique<Clusters>();
     return std::make_unique<ClustersOnDevice>();

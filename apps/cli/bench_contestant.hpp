@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A pair of a method and a filter on one grid, measured by `isotet bench`.
+// A pair of a method and a search index on one grid, measured by `isotet bench`.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace isotet::cli {
 
-/// What all contestants share: the grid, packed once for those that want it, and what draws.
+/// What all contestants share: the grid, packed once for those that need it, and what draws.
 struct BenchBed {
     const Grid& grid;
     const PointField& field;
@@ -35,17 +35,17 @@ struct BenchBed {
 
 /// What happens once.
 struct BenchCosts {
-    double prepare_seconds = 0; ///< packing, building the filter, uploading
-    std::uint64_t host_bytes = 0, device_bytes = 0; ///< that stay: packed grid, tables, filter; on the device
+    double prepare_seconds = 0; ///< packing, building the index, uploading
+    std::uint64_t host_bytes = 0, device_bytes = 0; ///< that stay: packed grid, tables, index; on the device
     std::uint64_t crossing_bytes = 0; ///< of the store: found no room on the device, and cross the bus for every
                                       ///< picture
 };
 
 /// From an isovalue to its picture, or without a device to its surface.
 struct BenchTimes {
-    double ask = 0, extract = 0, draw = 0; ///< seconds
+    double search = 0, extract = 0, draw = 0; ///< seconds
 
-    double total() const noexcept { return ask + extract + draw; }
+    double total() const noexcept { return search + extract + draw; }
 };
 
 /// What an isovalue makes.
@@ -62,7 +62,7 @@ public:
     /// Does what is done once, and tells what it costs.
     virtual Result<BenchCosts> prepare(BenchBed& bed) = 0;
 
-    /// Makes the surface of an isovalue ready to be drawn: `times` has the parts ask and extract then. The surface
+    /// Makes the surface of an isovalue ready to be drawn: `times` has the parts search and extract then. The surface
     /// lasts until the next call.
     virtual Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) = 0;
 };

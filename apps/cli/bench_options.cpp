@@ -14,22 +14,22 @@ namespace {
 
 constexpr const char* bench_details = R"(
 Each method gets every isovalue in every round. With a device each isovalue ends as a picture of it, shaded by faces; without
-one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the filter,
-uploading. Ask is the filter's search; extract is making triangles, and sending them or the list of tets to the device; draw
-is the rest of the way to the picture. Medians; the best round in JSON and CSV.
+one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the search
+index, uploading. Search is the index's; extract is making triangles, and sending them or the list of tets to the device; draw
+is the rest of the way to the picture. Medians; the best round in JSON.
 
 Methods: direct and clusters (CPU), clusters_vulkan (device); and those that draw without making a surface: registers,
 registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh shaders. The last four
-draw the tets that a filter finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
+draw the tets that a search index finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
 
 --paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the interval
 tree gains. --device-memory makes grids that do not fit visible at sizes that one can run.
 
 Examples:
   isotet bench grid.vtu -f pressure -i 0.5
-  isotet bench grid.vtu -f pressure --methods clusters,textures --filters none,interval_tree
-  isotet bench --paper --device software --max-tets 1000000 --svg figure4.svg --csv figure4.csv
-  isotet bench --paper --device-memory 256MB --svg figure4.svg
+  isotet bench grid.vtu -f pressure --methods clusters,textures --indexes none,interval_tree
+  isotet bench --paper --device software --max-tets 1000000 --json figure4.json
+  isotet bench --paper --device-memory 256MB --json figure4.json
 )";
 
 /// Words separated by commas, each one of `all` by its name.
@@ -74,23 +74,23 @@ bool needs_device(BenchMethod method) noexcept {
 
 std::string BenchPair::name() const {
     std::string name = name_of(method);
-    if (draw_method_of(method) && filter != Filter::none) name += fmt::format(" + {}", name_of(filter));
+    if (draw_method_of(method) && index != Filter::none) name += fmt::format(" + {}", name_of(index));
     return name;
 }
 
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& filters) {
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& indexes) {
     std::vector<BenchPair> pairs;
     for (const BenchMethod method : methods) {
         if (!draw_method_of(method)) pairs.push_back({method});
         else
-            for (const Filter filter : filters) pairs.push_back({method, filter});
+            for (const Filter index : indexes) pairs.push_back({method, index});
     }
     return pairs;
 }
 
 Command add_bench_command(const Command& program, BenchCommand& bench) {
     const Command command =
-        program.add_command("bench", "Measure methods and filters on a grid, and say which to take");
+        program.add_command("bench", "Measure methods and search indexes on a grid, and tell the fastest");
     const Option file =
         command.add_file("FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
     const Option paper = command.add_flag(
@@ -98,27 +98,24 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
     paper.excludes(file);
     command
         .add_count(
-            "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",
+            "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.max_tets = n; }, "N",
             "Largest grid of --paper; without it 5000000")
         .needs(paper);
     command
         .add_text("-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")
         .excludes(paper);
     command.add_flag("--cell-field", bench.field.cell_field,
-                     "Of a name that is both a point and a cell field, the cell field");
+                     "Use the cell field if a point field has the same name");
     command
         .add_numbers("-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")
         .excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,
              "Methods, separated by commas; without it all that this machine can");
-    add_list(command, "--filters", bench.filters, all_filters,
-             "Filters, separated by commas; without it none and interval_tree");
+    add_list(command, "--indexes", bench.indexes, all_filters,
+             "Search indexes, separated by commas; without it none and interval_tree");
     command.add_count(
         "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",
         "How often everything is measured; without it 5");
-    command.add_file("--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
-    command.add_file("--svg", bench.svg, "OUT_FILE",
-                     "Draw a chart: with --paper tets a second against tets, else time against surfaces");
     command.set_details(bench_details);
     return command;
 }

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What `isotet bench` measures: pairs of a method and a filter.
+// What `isotet bench` measures: pairs of a method and a search index.
 #pragma once
 
 #include <array>
@@ -24,19 +24,19 @@ inline constexpr std::array all_bench_methods{BenchMethod::direct,    BenchMetho
 
 const char* name_of(BenchMethod method) noexcept;
 
-/// Methods of DrawMethod draw lists of tets that a filter finds; the others find theirs themselves.
+/// Methods of DrawMethod draw lists of tets that a search index finds; the others find theirs themselves.
 std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept;
 bool needs_device(BenchMethod method) noexcept;
 
 struct BenchPair {
     BenchMethod method = BenchMethod::direct;
-    Filter filter = Filter::none; ///< of a method that takes lists
+    Filter index = Filter::none; ///< of a method that takes lists
 
     std::string name() const; ///< "textures + interval_tree", "clusters"
 };
 
-/// Each method that takes lists with each filter, the others once.
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& filters);
+/// Each method that takes lists with each index, the others once.
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& indexes);
 
 Command add_bench_command(const Command& program, BenchCommand& bench);
 

@@ -24,7 +24,7 @@ Table rows_table(const BenchNumbers& numbers) {
     using enum Table::Align;
     Table table({left, right, right, right, right, right, right, right, right, right, right, right, right});
     table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut",
-               "triangles", "bytes sent", "ask, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms",
+               "triangles", "bytes sent", "search, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms",
                "best, ms", "tets a second"});
     for (const BenchRow& row : numbers.rows) {
         const std::string name =
@@ -33,10 +33,10 @@ Table rows_table(const BenchNumbers& numbers) {
             table.row({name, "not measured"});
             continue;
         }
-        table.row({name, seconds_text(row.costs.prepare_seconds), bytes_text(row.costs.host_bytes),
-                   bytes_text(row.costs.device_bytes), count_or_nothing(row.outcome.tets_looked_at),
+        table.row({name, seconds_text(row.costs.prepare_seconds), format_bytes(row.costs.host_bytes),
+                   format_bytes(row.costs.device_bytes), count_or_nothing(row.outcome.tets_looked_at),
                    count_or_nothing(row.outcome.triangles), grouped(row.outcome.sent_bytes + row.costs.crossing_bytes),
-                   milliseconds(row.median.ask), milliseconds(row.median.extract),
+                   milliseconds(row.median.search), milliseconds(row.median.extract),
                    numbers.device ? milliseconds(row.median.draw) : "", milliseconds(row.median.total()),
                    milliseconds(row.best.total()), grouped(static_cast<std::uint64_t>(row.tets_per_second()))});
     }
@@ -74,7 +74,7 @@ std::string gains_text(const std::vector<BenchRow>& rows) {
 }
 
 Json json_of(const BenchTimes& times) {
-    return {{"ask", times.ask}, {"extract", times.extract}, {"draw", times.draw}, {"all", times.total()}};
+    return {{"search", times.search}, {"extract", times.extract}, {"draw", times.draw}, {"all", times.total()}};
 }
 
 } // namespace
@@ -84,7 +84,10 @@ std::string bench_table(const BenchNumbers& numbers) {
     if (numbers.command->paper) table.row({"grids", "regular, six tets a cube (make:kuhn), field gyroid"});
     else if (!numbers.rows.empty()) {
         table.row({"grid", numbers.rows.front().grid});
-        table.row({"tets", grouped(numbers.rows.front().tets)});
+        const BenchRow& first = numbers.rows.front();
+        table.row({"tets", first.dropped_tets == 0 ? grouped(first.tets)
+                                                   : fmt::format("{}, {} repeated or collapsed ones dropped",
+                                                                 grouped(first.tets), grouped(first.dropped_tets))});
         table.row({"field", numbers.field});
     }
     std::string isovalues;
@@ -117,9 +120,10 @@ Json bench_json(const BenchNumbers& numbers) {
     for (const BenchRow& row : numbers.rows) {
         Json one = {{"grid", json_text(row.grid)},
                     {"tets", row.tets},
+                    {"dropped_tets", row.dropped_tets},
                     {"points", row.points},
                     {"method", name_of(row.pair.method)},
-                    {"filter", draw_method_of(row.pair.method) ? Json(name_of(row.pair.filter)) : Json(nullptr)}};
+                    {"index", draw_method_of(row.pair.method) ? Json(name_of(row.pair.index)) : Json(nullptr)}};
         one["missing"] = row.missing.empty() ? Json(nullptr) : json_text(row.missing);
         if (row.missing.empty()) {
             one["prepare_seconds"] = row.costs.prepare_seconds;
@@ -148,32 +152,6 @@ Json bench_json(const BenchNumbers& numbers) {
             gains[name_of(method)] = *gain;
     report["gain_of_interval_tree"] = std::move(gains);
     return report;
-}
-
-std::string bench_csv(const BenchNumbers& numbers) {
-    std::string text = "grid,tets,points,method,filter,prepare_s,host_bytes,device_bytes,crossing_bytes,sent_bytes,"
-                       "tets_looked_at,triangles,"
-                       "ask_s,extract_s,draw_s,all_s,best_all_s,tets_per_s,missing\n";
-    const auto quoted = [](std::string word) {
-        std::string out = "\"";
-        for (const char c : word) out += c == '"' ? "\"\"" : std::string(1, c);
-        return out + "\"";
-    };
-    for (const BenchRow& row : numbers.rows) {
-        text += fmt::format("{},{},{},{},{},", quoted(row.grid), row.tets, row.points, name_of(row.pair.method),
-                            draw_method_of(row.pair.method) ? name_of(row.pair.filter) : "");
-        if (!row.missing.empty()) {
-            text += ",,,,,,,,,,,,," + quoted(row.missing) + "\n";
-            continue;
-        }
-        const auto count = [](std::optional<std::uint64_t> known) { return known ? std::to_string(*known) : ""; };
-        text += fmt::format("{},{},{},{},{},{},{},", row.costs.prepare_seconds, row.costs.host_bytes,
-                            row.costs.device_bytes, row.costs.crossing_bytes, row.outcome.sent_bytes,
-                            count(row.outcome.tets_looked_at), count(row.outcome.triangles));
-        text += fmt::format("{},{},{},{},{},{},\n", row.median.ask, row.median.extract, row.median.draw,
-                            row.median.total(), row.best.total(), row.tets_per_second());
-    }
-    return text;
 }
 
 } // namespace isotet::cli

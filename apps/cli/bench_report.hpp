@@ -24,7 +24,5 @@ struct BenchNumbers {
 
 std::string bench_table(const BenchNumbers& numbers);
 Json bench_json(const BenchNumbers& numbers);
-std::string bench_csv(const BenchNumbers& numbers);
-std::string bench_svg(const BenchNumbers& numbers);
 
 } // namespace isotet::cli

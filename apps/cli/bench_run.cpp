@@ -10,7 +10,7 @@ namespace isotet::cli {
 
 namespace {
 
-/// One isovalue, from the question to the picture.
+/// One isovalue, from the search to the picture.
 Result<void> measure_isovalue(Contestant& contestant, BenchBed& bed, double isovalue, const PictureOptions& picture,
                               BenchTimes& times, BenchOutcome& outcome) {
     const Result<DrawnSurface> drawn = contestant.make(bed, isovalue, times, outcome);
@@ -29,7 +29,7 @@ Result<void> measure_isovalue(Contestant& contestant, BenchBed& bed, double isov
 BenchTimes mean_of(const std::vector<BenchTimes>& all) {
     BenchTimes mean;
     for (const BenchTimes& one : all) {
-        mean.ask += one.ask / static_cast<double>(all.size());
+        mean.search += one.search / static_cast<double>(all.size());
         mean.extract += one.extract / static_cast<double>(all.size());
         mean.draw += one.draw / static_cast<double>(all.size());
     }

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Measuring pairs of methods and filters on one grid.
+// Measuring pairs of methods and search indexes on one grid.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@ namespace isotet::cli {
 struct BenchRow {
     std::string grid;
     std::uint64_t tets = 0, points = 0;
+    std::uint64_t dropped_tets = 0; ///< repeated and collapsed ones, where the grid was packed; 0 else
     BenchPair pair;
     BenchCosts costs;
     BenchTimes median, best; ///< of an isovalue, the mean over all of them: the round in the middle, and the shortest

@@ -13,7 +13,7 @@
 #include "grid_source.hpp"
 #include "json_output.hpp"
 #include "number_format.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -46,11 +46,8 @@ Result<Origin> read_origin(const CheckCommand& command, Console& console) {
     if (!grid) return grid.error();
     Origin origin{*std::move(grid), std::nullopt};
     if (!found) return origin;
-    const auto prefer = command.field.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field =
-        find_field(origin.grid, found->name, {.prefer = prefer, .threads = command.common.threads});
+    Result<PointField> field = find_chosen(origin.grid, found->name, command.field, command.common.threads, console);
     if (!field) return field.error();
-    console.note(field->note);
     origin.field = *std::move(field);
     return origin;
 }
@@ -161,12 +158,10 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     std::optional<Origin> origin;
     if (!command.grid.file.empty()) {
         if (file->surface.edge_ends.empty()) {
-            return Error{
-                ErrorCode::invalid_argument,
-                fmt::format(
+            return usage_error(fmt::format(
                     "{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends writes it "
                     "into .vtp and .vtk",
-                    command.surface)};
+                    command.surface));
         }
         Result<Origin> read = read_origin(command, console);
         if (!read) return read.error();
@@ -177,13 +172,9 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     const Result<SurfaceReport> report = check(file->surface, options, console.progress());
     if (!report) return report.error();
 
-    const std::string text = check_table(*report, *file, command) + findings_table(report->findings);
-    if (Result<void> printed = console.print(text); !printed) return printed.error();
-    Json json = check_json(*report, *file, command);
-    json["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(json, command.common.json, console.progress()); !written)
-        return written.error();
-    return report->sound && (report->clean || !command.strict) ? ExitCode::done : ExitCode::check_says_no;
+    const bool passed = report->sound && (report->clean || !command.strict);
+    return finish(console, command.common, check_table(*report, *file, command) + findings_table(report->findings),
+                  check_json(*report, *file, command), passed ? ExitCode::done : ExitCode::check_says_no);
 }
 
 } // namespace isotet::cli

@@ -140,8 +140,10 @@ void add_info(const Command& program, InfoCommand& info) {
 }
 
 void add_isovalues(const Command& command, ExtractCommand& extract) {
-    const Option isovalues = command.add_numbers("-i,--isovalue", extract.isovalues, "V[,W...]",
-                                                 "Isovalues, separated by commas; may be repeated");
+    const Option isovalues =
+        command.add_numbers("-i,--isovalue", extract.isovalues, "V[,W...]",
+                            "Isovalues, separated by commas, or @NAME: from that file, separated by blanks, commas or "
+                            "line ends, # begins a comment; may be repeated");
     command
         .add_count(
             "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
@@ -157,9 +159,9 @@ void add_surface_arrays(const Command& command, ExtractCommand& extract) {
                                 {{"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}},
                                 "Normals: of the field's gradient, a vertex; of the triangles, a face");
     command.add_texts(
-        "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD",
-        "Carry this point or cell field onto the surface; may be repeated; an empty name carries none. Without it: "
-        "point fields that the format can hold");
+        "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
+        "Carry these point and cell fields onto the surface, separated by commas; may be repeated; an empty name "
+        "carries none. Without it: point fields that the format can hold");
     command.add_flag(
         "--edge-ends", extract.edge_ends,
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
@@ -178,12 +180,14 @@ void add_extract(const Command& program, ExtractCommand& extract) {
                      "Of a name that is both a point and a cell field, the cell field");
     add_isovalues(command, extract);
     add_time(command, extract.grid);
-    command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {time}")
+    command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {step} or {time}")
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
     add_surface_arrays(command, extract);
     command.add_flag("--keep-degenerate", extract.keep_degenerate,
                      "One vertex for every crossed edge and one or two triangles for every cut tet, ties or not");
+    command.add_flag("--fail-if-empty", extract.fail_if_empty,
+                     "An empty surface is an error, exit status 3, and is not written");
     command.add_choice<Precision>("--precision", extract.precision,
                                   {{"float", Precision::single}, {"double", Precision::double_}},
                                   "Precision of the packed grid");
@@ -285,6 +289,11 @@ void add_devices(const Command& program, DevicesCommand& devices) {
     command.set_details(devices_details);
 }
 
+void add_help(const Command& program, HelpCommand& help) {
+    const Command command = program.add_command("help", "Show the help of a command, or this list");
+    command.add_text("COMMAND", help.topic, "COMMAND", "A command, such as extract");
+}
+
 void add_docs(const Command& program, DocsCommand& docs) {
     const Command command =
         program.add_command("docs", "Print the man page, the bash completion or docs/command-line.md");
@@ -305,6 +314,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_make(program, line.make);
     add_formats(program, line.formats);
     add_devices(program, line.devices);
+    add_help(program, line.topic);
     add_docs(program, line.docs);
 }
 

@@ -43,7 +43,7 @@ Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& c
 
 Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console) {
     if (choice.name == "none")
-        return Error{ErrorCode::invalid_argument, "--device is none, but only a device can draw"};
+        return usage_error("--device is none, but only a device can draw");
     Result<std::optional<Device>> device = open_device(choice, console);
     if (!device && choice.name.empty() && device.error().code == ErrorCode::machine) {
         const Result<DeviceList> list = list_devices();

@@ -2,6 +2,9 @@
 // The exit status of the program: who has to act.
 #pragma once
 
+#include <string>
+#include <utility>
+
 #include <isotet/result.hpp>
 
 namespace isotet::cli {
@@ -15,6 +18,9 @@ enum class ExitCode : int {
     fault = 5,   ///< of isotet
     interrupted = 130,
 };
+
+/// The error for an option or a name that is wrong.
+inline Error usage_error(std::string sentence) { return {ErrorCode::invalid_argument, std::move(sentence)}; }
 
 inline ExitCode exit_code_of(ErrorCode code) noexcept {
     switch (code) {

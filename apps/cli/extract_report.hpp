@@ -50,13 +50,15 @@ struct ExtractNumbers {
     double measure_seconds = 0; ///< for the areas
     std::uint64_t peak_before = 0; ///< of the process, with the first grid
     std::vector<SurfaceNumbers> surfaces;
+    std::string collection; ///< of a series; empty: none
 
     std::uint64_t transient_peak() const;
     double work_seconds() const; ///< packing, uploading, extracting: what is predicted
     const char* engine() const { return on_device ? "vulkan" : reference ? "reference" : "cpu"; }
 };
 
-std::string extract_table(const ExtractNumbers& numbers);
+/// The surfaces, then the grid and the field; `verbose`: also how they were made.
+std::string extract_table(const ExtractNumbers& numbers, bool verbose);
 Json extract_json(const ExtractNumbers& numbers);
 
 } // namespace isotet::cli

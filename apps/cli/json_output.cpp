@@ -6,9 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <isotet/write_file.hpp>
+
 #include "standard_streams.hpp"
 #include "text.hpp"
-#include "text_file.hpp"
 
 namespace isotet::cli {
 
@@ -35,6 +36,21 @@ Tree tree_of(const Json& json) {
         json.value());
 }
 
+/// Where --json says: standard output ("-"), a file, which is replaced as a whole, or nowhere ("").
+Result<void> write_json(const Json& report, const std::string& where, const Progress& progress) {
+    if (where.empty()) return {};
+    // All texts are valid by now; "replace" is for the one that somebody forgets.
+    const std::string text = tree_of(report).dump(2, ' ', false, Tree::error_handler_t::replace) + "\n";
+    if (where == "-") {
+        if (stdout_was_closed()) {
+            return Error{ErrorCode::machine,
+                         "--json - writes to standard output, which was closed when isotet started"};
+        }
+        return write_to_stdout(text);
+    }
+    return write_text(text, where, progress);
+}
+
 } // namespace
 
 Json json_report(const std::string& command) { return {{"schema", json_schema}, {"command", command}}; }
@@ -47,18 +63,12 @@ Json json_texts(const std::vector<std::string>& texts) {
     return list;
 }
 
-Result<void> write_json(const Json& report, const std::string& where, const Progress& progress) {
-    if (where.empty()) return {};
-    // All texts are valid by now; "replace" is for the one that somebody forgets.
-    const std::string text = tree_of(report).dump(2, ' ', false, Tree::error_handler_t::replace) + "\n";
-    if (where == "-") {
-        if (stdout_was_closed()) {
-            return Error{ErrorCode::machine,
-                         "--json - writes to standard output, which was closed when isotet started"};
-        }
-        return write_to_stdout(text);
-    }
-    return write_text_file(where, text, progress);
+Result<ExitCode> finish(Console& console, const CommonOptions& common, std::string_view table, Json report,
+                        ExitCode status) {
+    if (Result<void> printed = console.print(table); !printed) return printed.error();
+    report["notes"] = json_texts(console.noted());
+    if (Result<void> written = write_json(report, common.json, console.progress()); !written) return written.error();
+    return status;
 }
 
 } // namespace isotet::cli

@@ -8,12 +8,15 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
+#include "console.hpp"
+#include "exit_code.hpp"
 #include "json.hpp"
+#include "options.hpp"
 
 namespace isotet::cli {
 
 /// The number under "schema": it grows when a key changes its meaning or goes; new keys leave it as it is.
-constexpr int json_schema = 2;
+constexpr int json_schema = 3;
 
 /// An object with "schema" and "command".
 Json json_report(const std::string& command);
@@ -22,7 +25,8 @@ Json json_report(const std::string& command);
 Json json_text(const std::string& text);
 Json json_texts(const std::vector<std::string>& texts);
 
-/// Writes the report where --json says: standard output ("-"), a file, or nowhere (""). A file is replaced as a whole.
-Result<void> write_json(const Json& report, const std::string& where, const Progress& progress);
+/// The end of a command: prints the table, and writes the report with the notes of the console where --json says.
+Result<ExitCode> finish(Console& console, const CommonOptions& common, std::string_view table, Json report,
+                        ExitCode status = ExitCode::done);
 
 } // namespace isotet::cli

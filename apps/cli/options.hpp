@@ -69,6 +69,7 @@ struct ExtractCommand {
     Normals normals = Normals::none;
     std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
     bool keep_degenerate = false;
+    bool fail_if_empty = false;
     bool edge_ends = false;
     bool source_cells = false;
     Precision precision = Precision::single;
@@ -78,10 +79,19 @@ struct ExtractCommand {
 };
 
 /// The opacity of the grid's boundary where none is given.
-constexpr double boundary_without_a_word = 0.1;
+constexpr double default_boundary_opacity = 0.1;
 
-/// What chooses tets for a method that draws tets, where nothing else is given.
-constexpr Filter filter_without_a_word = Filter::cluster_ranges;
+/// What finds tets for a method that draws tets, where no search index is given.
+constexpr Filter default_index = Filter::cluster_ranges;
+
+/// Isovalues where neither -i nor --levels is given.
+constexpr std::uint64_t default_levels = 3;
+
+/// How a picture comes about: surfaces are extracted (by the rule where nothing is set), or tets are drawn.
+struct RenderMethod {
+    std::optional<Method> extract;
+    std::optional<DrawMethod> draw; ///< draws tets, and no surface is made
+};
 
 struct RenderCommand {
     CommonOptions common;
@@ -100,11 +110,11 @@ struct RenderCommand {
     std::vector<double> range; ///< both ends of the scale, or none
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
-    std::optional<DrawMethod> method; ///< that draws tets; nothing: clusters, which extracts surfaces
-    std::optional<Filter> filter;     ///< nothing: none was given
+    RenderMethod method;
+    std::optional<Filter> index;      ///< nothing: none was given
     std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
     std::uint64_t orbit = 0;    ///< pictures around; 0: one
-    double frames_a_second = 12;
+    double frames_per_second = 12;
     std::string reference;     ///< a picture to compare with; empty: none
     double threshold = 0.001;  ///< share of its pixels that may differ
     DeviceChoice device;
@@ -121,11 +131,10 @@ struct BenchCommand {
     FieldChoice field;
     std::vector<double> isovalues;     ///< none: three
     bool paper = false;
-    std::uint64_t most_tets = 5'000'000;
+    std::uint64_t max_tets = 5'000'000;
     std::vector<BenchMethod> methods;  ///< none: all that can be
-    std::vector<Filter> filters;       ///< none: without and with the interval tree
+    std::vector<Filter> indexes;       ///< none: without and with the interval tree
     std::uint64_t rounds = 5;
-    std::string csv, svg;              ///< files; empty for none
     DeviceChoice device;
 };
 
@@ -154,6 +163,10 @@ struct DevicesCommand {
     DeviceChoice device; ///< `name` is empty without --device
 };
 
+struct HelpCommand {
+    std::string topic; ///< a command; empty: the program
+};
+
 /// The hidden command `docs`: man, completion or markdown.
 struct DocsCommand {
     std::string kind;
@@ -161,7 +174,7 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "docs" or none
+    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "help", "docs" or none
     bool help = false;
     bool version = false;
     InfoCommand info;
@@ -172,6 +185,7 @@ struct CommandLine {
     MakeCommand make;
     FormatsCommand formats;
     DevicesCommand devices;
+    HelpCommand topic;
     DocsCommand docs;
 };
 

@@ -42,7 +42,8 @@ VKAPI_ATTR VkBool32 VKAPI_CALL hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDe
 /// Always the machine's fault: loaders speak of memory, too, when a driver's description is broken.
 Error no_instance(VkResult result) {
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-        return {ErrorCode::machine, "there is a Vulkan loader on this machine, but no driver that it can use"};
+        return {ErrorCode::machine, "there is a Vulkan loader on this machine, but no driver that it can use; drivers of graphics cards bring "
+                "one, and the package mesa-vulkan-drivers of Debian and Ubuntu has a software device"};
     return {ErrorCode::machine, failure("starting Vulkan", result).message};
 }
 

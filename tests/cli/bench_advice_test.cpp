@@ -1,13 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What isotet bench concludes from its rows, and the charts it draws of them.
-#include <algorithm>
+// What isotet bench concludes from its rows.
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "bench_advice.hpp"
-#include "chart.hpp"
 
 namespace isotet::cli {
 namespace {
@@ -50,41 +48,6 @@ TEST(BenchAdvice, GainsAreMeansOverTheGridsThatHaveBoth) {
                                      row(0, 1, tree, "b"), row(0, 1, tree, "c")};
     EXPECT_DOUBLE_EQ(gain_of_interval_tree(rows, BenchMethod::textures).value(), 4);
     EXPECT_FALSE(gain_of_interval_tree(rows, BenchMethod::registers));
-}
-
-/// Where names of lines stand, from above.
-std::vector<double> label_heights(const std::string& svg) {
-    std::vector<double> heights;
-    for (std::size_t at = svg.find(">line "); at != std::string::npos; at = svg.find(">line ", at + 1)) {
-        const std::size_t y = svg.rfind(" y=\"", at);
-        heights.push_back(std::stod(svg.substr(y + 4)));
-    }
-    return heights;
-}
-
-TEST(Chart, NamesOfManyLinesStayInThePictureAndApart) {
-    Chart chart;
-    for (int i = 0; i < 21; ++i)
-        chart.lines.push_back({"line " + std::to_string(i), {{10, 100}, {1000, i % 2 ? 1.0 : 1.01}}, false});
-    const std::vector<double> heights = label_heights(chart.svg());
-    ASSERT_EQ(heights.size(), 21u);
-    std::vector<double> sorted = heights;
-    std::sort(sorted.begin(), sorted.end());
-    EXPECT_GE(sorted.front(), 0);
-    EXPECT_LE(sorted.back(), 560);
-    for (std::size_t i = 1; i < sorted.size(); ++i) EXPECT_GE(sorted[i] - sorted[i - 1], 12);
-}
-
-TEST(Chart, HasNothingOfWhatALogarithmCannotShow) {
-    Chart chart;
-    chart.title = "a < b & c";
-    chart.lines.push_back({"line", {{0, 1}, {-1, 1}, {1, INFINITY}, {NAN, 1}, {10, 100}}, false});
-    const std::string svg = chart.svg();
-    EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
-    EXPECT_EQ(svg.find("nan"), std::string::npos);
-    EXPECT_EQ(svg.find("inf"), std::string::npos);
-    EXPECT_EQ(svg.find("<circle"), svg.rfind("<circle")) << "one point is left";
-    EXPECT_NE(Chart().svg().find("</svg>"), std::string::npos);
 }
 
 } // namespace
