@@ -95,7 +95,7 @@ Row measure(const Device& device, std::uint64_t side, int rounds) {
     // Ranges and counts of all clusters, the selected ones once, the surface once.
     const auto clusters = static_cast<double>(row.pack.clusters);
     row.must_move = 16 * clusters + static_cast<double>(row.selected) * static_cast<double>(row.pack.bytes) / clusters +
-                    12.0 * static_cast<double>(surface.vertices() + surface.triangle_count());
+                    12.0 * static_cast<double>(surface.vertex_count() + surface.triangle_count());
     return row;
 }
 

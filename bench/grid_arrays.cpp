@@ -23,8 +23,7 @@ Grid load(const std::string& source, const std::string& field, int threads) {
     if (source.starts_with(make_prefix)) {
         MakeOptions options = parse_make(source.substr(make_prefix.size())).value();
         options.fields = {field};
-        options.threads = threads;
-        return make_grid(options).value();
+        return make_grid(options, {.threads = threads}).value();
     }
     ReadOptions options;
     options.reader_program = std::filesystem::read_symlink("/proc/self/exe");

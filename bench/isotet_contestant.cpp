@@ -32,7 +32,7 @@ Array negated(const Array& array) {
 Reply describe(const Extraction& extraction, double seconds) {
     Reply reply;
     reply.number("seconds", seconds)
-        .count("vertices", extraction.surface.vertices())
+        .count("vertices", extraction.surface.vertex_count())
         .count("triangles", extraction.surface.triangle_count())
         .count("tied_points", extraction.report.tied_points)
         .count("transient_bytes", extraction.report.transient_bytes);
@@ -90,14 +90,8 @@ Reply IsotetContestant::open(const std::string& folder, int threads) {
         .text("level", std::string(core::name_of(core::best_level())));
 }
 
-PackOptions IsotetContestant::pack_options() const {
-    PackOptions options;
-    options.threads = threads_;
-    return options;
-}
-
 Reply IsotetContestant::pack_as(const std::string& name, const Words& words) {
-    PackOptions options = pack_options();
+    PackOptions options;
     for (const std::string& option : words) {
         if (option == "gradients") options.gradients = true;
         else if (option == "source_cells") options.source_cells = true;
@@ -105,7 +99,7 @@ Reply IsotetContestant::pack_as(const std::string& name, const Words& words) {
     }
     packed_.erase(name);
     const Stopwatch watch;
-    PackedGrid made = pack(grid_, field_, options).value();
+    PackedGrid made = pack(grid_, field_, options, {.threads = threads_}).value();
     const double seconds = watch.seconds();
 
     const PackReport& report = packed_.emplace(name, std::move(made)).first->second.report();
@@ -132,7 +126,6 @@ PackedGrid& IsotetContestant::packed(const std::string& name) {
 Reply IsotetContestant::extract_from(const std::string& name, double isovalue, const Words& attributes) {
     const PackedGrid& from = packed(name);
     ExtractOptions options;
-    options.threads = threads_;
     std::optional<LowerLevel> lower;
     for (const std::string& attribute : attributes) {
         if (attribute == "gradient_normals") options.normals = Normals::gradient;
@@ -146,16 +139,15 @@ Reply IsotetContestant::extract_from(const std::string& name, double isovalue, c
         else refuse("attribute", attribute);
     }
     const Stopwatch watch;
-    const Extraction extraction = extract(from, isovalue, options).value();
+    const Extraction extraction = extract(from, isovalue, options, {.threads = threads_}).value();
     const double seconds = watch.seconds();
     return describe(extraction, seconds).count("must_move", extraction_must_move(from, isovalue, extraction.surface));
 }
 
 Reply IsotetContestant::extract_direct(double isovalue) {
-    DirectOptions options;
-    options.extract.threads = threads_;
     const Stopwatch watch;
-    const DirectExtraction once = isotet::extract_direct(grid_, field_, {&isovalue, 1}, options).value();
+    const DirectExtraction once =
+        isotet::extract_direct(grid_, field_, {&isovalue, 1}, {}, {.threads = threads_}).value();
     const double seconds = watch.seconds();
     const Extraction& extraction = once.surfaces.front();
     const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();

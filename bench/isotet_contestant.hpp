@@ -32,7 +32,6 @@ private:
     Reply set_field(const std::string& name);
 
     PackedGrid& packed(const std::string& name);
-    PackOptions pack_options() const;
 
     int threads_ = 0;
     Grid grid_;

@@ -30,7 +30,7 @@ public:
             if (!mesh) return mesh.error();
             mesh_ = *std::move(mesh);
             drawn.mesh = &*mesh_;
-            outcome.sent_bytes = 12 * (mesh_->vertices() + mesh_->triangle_count());
+            outcome.sent_bytes = 12 * (mesh_->vertex_count() + mesh_->triangle_count());
         }
         times.extract = extracting.seconds();
         return drawn;
@@ -48,9 +48,7 @@ public:
 
 private:
     Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
-        DirectOptions options;
-        options.extract.threads = bed.threads;
-        Result<DirectExtraction> direct = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), options, bed.progress);
+        Result<DirectExtraction> direct = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), {}, bed.run);
         if (!direct) return direct.error();
         return std::move(direct->surfaces.front());
     }
@@ -65,9 +63,7 @@ public:
 
 private:
     Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
-        ExtractOptions options;
-        options.threads = bed.threads;
-        return extract(*bed.packed, isovalue, options, bed.progress);
+        return extract(*bed.packed, isovalue, {}, bed.run);
     }
 };
 
@@ -76,7 +72,7 @@ public:
     Result<BenchCosts> prepare(BenchBed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch uploading;
-        Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, {.progress = bed.progress});
+        Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, bed.run);
         if (!grid) return grid.error();
         grid_ = *std::move(grid);
         return BenchCosts{bed.pack_seconds + uploading.seconds(), bed.packed->report().bytes, grid_->device_bytes(), 0};
@@ -84,7 +80,7 @@ public:
 
     Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch extracting;
-        if (Result<void> done = grid_->extract(isovalue, surface_, {}, bed.progress); !done) return done.error();
+        if (Result<void> done = grid_->extract(isovalue, surface_, {}, bed.run); !done) return done.error();
         times.extract = extracting.seconds();
         outcome.triangles = surface_.triangle_count();
         outcome.sent_bytes = grid_->work().uploaded_bytes;
@@ -101,20 +97,20 @@ private:
 /// The paper's: the vertex shader cuts tets, all of them or those that a search index finds.
 class InTheVertexShader final : public Contestant {
 public:
-    InTheVertexShader(DrawMethod method, Filter index) : method_(method), index_(index) {}
+    InTheVertexShader(DrawMethod method, SearchIndex index) : method_(method), index_(index) {}
 
     Result<BenchCosts> prepare(BenchBed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch preparing;
-        Result<TetStore> store = TetStore::upload(*bed.device, *bed.packed, method_, {}, bed.threads, bed.progress);
+        Result<TetStore> store = TetStore::upload(*bed.device, *bed.packed, method_, {}, bed.run);
         if (!store) return store.error();
         store_ = *std::move(store);
         BenchCosts costs;
-        if (index_ != Filter::none) {
-            Result<TetFilter> tets = TetFilter::build(*bed.packed, index_, bed.threads, bed.progress);
+        if (index_ != SearchIndex::none) {
+            Result<TetIndex> tets = TetIndex::create(*bed.packed, index_, bed.run);
             if (!tets) return tets.error();
             tets_ = *std::move(tets);
-            costs.host_bytes = tets_->report().table_bytes + tets_->report().filter_bytes;
+            costs.host_bytes = tets_->report().table_bytes + tets_->report().index_bytes;
         }
         costs.prepare_seconds = bed.pack_seconds + preparing.seconds();
         costs.device_bytes = store_->report().device_bytes;
@@ -125,7 +121,7 @@ public:
 
     Result<DrawnSurface> make(BenchBed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch searching;
-        const std::vector<std::uint32_t>* found = nullptr;
+        std::optional<std::span<const std::uint32_t>> found;
         if (tets_) {
             const auto list = tets_->find(isovalue);
             if (!list) return list.error();
@@ -146,9 +142,9 @@ public:
 
 private:
     DrawMethod method_;
-    Filter index_;
+    SearchIndex index_;
     std::optional<TetStore> store_;
-    std::optional<TetFilter> tets_;
+    std::optional<TetIndex> tets_;
     std::optional<TetSurface> surface_;
 };
 
@@ -157,9 +153,7 @@ private:
 Result<void> BenchBed::pack() {
     if (packed) return {};
     const Stopwatch packing;
-    PackOptions options;
-    options.threads = threads;
-    Result<PackedGrid> made = isotet::pack(grid, field, options, progress);
+    Result<PackedGrid> made = isotet::pack(grid, field, {}, run);
     if (!made) return made.error();
     packed = *std::move(made);
     pack_seconds = packing.seconds();

@@ -22,8 +22,7 @@ namespace isotet::cli {
 struct BenchBed {
     const Grid& grid;
     const PointField& field;
-    int threads = 0;
-    const Progress& progress;
+    const Run& run;
     std::optional<Device> device;     ///< nothing: surfaces are made, and not drawn
     std::optional<Renderer> renderer; ///< if there is a device
     std::optional<PackedGrid> packed;

@@ -74,16 +74,16 @@ bool needs_device(BenchMethod method) noexcept {
 
 std::string BenchPair::name() const {
     std::string name = name_of(method);
-    if (draw_method_of(method) && index != Filter::none) name += fmt::format(" + {}", name_of(index));
+    if (draw_method_of(method) && index != SearchIndex::none) name += fmt::format(" + {}", name_of(index));
     return name;
 }
 
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& indexes) {
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& indexes) {
     std::vector<BenchPair> pairs;
     for (const BenchMethod method : methods) {
         if (!draw_method_of(method)) pairs.push_back({method});
         else
-            for (const Filter index : indexes) pairs.push_back({method, index});
+            for (const SearchIndex index : indexes) pairs.push_back({method, index});
     }
     return pairs;
 }
@@ -111,7 +111,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
         .excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,
              "Methods, separated by commas; without it all that this machine can");
-    add_list(command, "--indexes", bench.indexes, all_filters,
+    add_list(command, "--indexes", bench.indexes, all_search_indexes,
              "Search indexes, separated by commas; without it none and interval_tree");
     command.add_count(
         "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",

@@ -30,13 +30,13 @@ bool needs_device(BenchMethod method) noexcept;
 
 struct BenchPair {
     BenchMethod method = BenchMethod::direct;
-    Filter index = Filter::none; ///< of a method that takes lists
+    SearchIndex index = SearchIndex::none; ///< of a method that takes lists
 
     std::string name() const; ///< "textures + interval_tree", "clusters"
 };
 
 /// Each method that takes lists with each index, the others once.
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<Filter>& indexes);
+std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& indexes);
 
 Command add_bench_command(const Command& program, BenchCommand& bench);
 

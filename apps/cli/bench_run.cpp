@@ -20,7 +20,7 @@ Result<void> measure_isovalue(Contestant& contestant, BenchBed& bed, double isov
     scene.surfaces.push_back(*drawn);
     scene.bounds = bounds_of(*bed.packed);
     const Stopwatch drawing;
-    const Result<Picture> done = bed.renderer->draw(scene, picture, bed.progress);
+    const Result<Picture> done = bed.renderer->draw(scene, picture, bed.run);
     times.draw = drawing.seconds();
     if (!done) return done.error();
     return {};
@@ -66,7 +66,7 @@ Result<void> measure_into(BenchRow& row, BenchBed& bed, const std::vector<double
         std::vector<BenchTimes> times(isovalues.size());
         std::vector<BenchOutcome> outcomes(isovalues.size());
         for (std::size_t i = 0; i < isovalues.size(); ++i) {
-            if (bed.progress.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+            if (bed.run.progress.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
             if (Result<void> done = measure_isovalue(*contestant, bed, isovalues[i], picture, times[i], outcomes[i]);
                 !done)
                 return done;
@@ -97,7 +97,7 @@ Result<BenchRow> measure(const BenchPair& pair, BenchBed& bed, const std::vector
     const Result<void> done = measure_into(row, bed, isovalues, rounds);
     if (done) return row;
     const ErrorCode code = done.error().code;
-    if (code != ErrorCode::out_of_memory && code != ErrorCode::machine) return done.error();
+    if (code != ErrorCode::out_of_memory && !is_of_device(code)) return done.error();
     row.missing = done.error().message;
     return row;
 }

@@ -57,7 +57,7 @@ Result<void> BenchRun::open_device() {
         numbers_.device = device_->info();
         return {};
     }
-    if (!command_.device.name.empty() || device.error().code != ErrorCode::machine) return device.error();
+    if (!command_.device.name.empty() || !is_of_device(device.error().code)) return device.error();
     console_.note(
         fmt::format("{}: only what needs no device is measured, and no pictures are drawn", device.error().message));
     return {};
@@ -71,8 +71,8 @@ Result<void> BenchRun::choose_pairs() {
     for (const BenchMethod method : methods)
         if (needs_device(method) && !device_)
             return usage_error(fmt::format("--methods has {}, which needs a device, but there is none", name_of(method)));
-    const std::vector<Filter> indexes =
-        command_.indexes.empty() ? std::vector{Filter::none, Filter::interval_tree} : command_.indexes;
+    const std::vector<SearchIndex> indexes =
+        command_.indexes.empty() ? std::vector{SearchIndex::none, SearchIndex::interval_tree} : command_.indexes;
     if (!command_.indexes.empty() &&
         std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
         return usage_error("--indexes was given, but none of the methods takes lists of tets: registers, "
@@ -84,18 +84,17 @@ Result<void> BenchRun::choose_pairs() {
 Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
     BenchBed bed{.grid = grid,
                  .field = field,
-                 .threads = command_.common.threads,
-                 .progress = console_.progress(),
+                 .run = console_.run(),
                  .device = device_,
                  .renderer = {},
                  .packed = {},
                  .pack_seconds = 0};
     if (device_) {
-        Result<Renderer> renderer = Renderer::make(*device_);
+        Result<Renderer> renderer = Renderer::create(*device_);
         if (!renderer) return renderer.error();
         bed.renderer = *std::move(renderer);
     }
-    const Result<FieldSample> sample = FieldSample::take(grid, field);
+    const Result<FieldSample> sample = FieldSample::create(grid, field);
     if (!sample) return sample.error();
     for (const BenchPair& pair : pairs_) {
         console_.detail(fmt::format("measuring {}: {}", name, pair.name()));
@@ -111,13 +110,13 @@ Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, co
 }
 
 Result<void> BenchRun::run_file() {
-    const Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
+    const Result<GridSource> source = GridSource::open(command_.grid, console_);
     if (!source) return source.error();
     const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
     if (!steps) return steps.error();
     Grid grid;
     const Result<PointField> field =
-        read_field(*source, steps->front(), command_.field, {}, command_.common.threads, console_, grid);
+        read_field(*source, steps->front(), command_.field, {}, console_, grid);
     if (!field) return field.error();
     numbers_.field = field->name;
     const ValueRange range = typical_range(field->values);
@@ -160,8 +159,7 @@ Result<void> BenchRun::run_paper() {
         MakeOptions options;
         options.side = side;
         options.fields = {numbers_.field};
-        options.threads = command_.common.threads;
-        const Result<Grid> grid = make_grid(options, console_.progress());
+        const Result<Grid> grid = make_grid(options, console_.run());
         if (!grid) return grid.error();
         const Result<PointField> field = find_field(*grid, numbers_.field);
         if (!field) return field.error();
@@ -198,7 +196,7 @@ Result<ExitCode> run_bench(const BenchCommand& command) {
     if (!told) return told;
     const bool nothing =
         std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
-    if (nothing) return Error{ErrorCode::machine, "nothing could be measured: " + run.numbers().rows.front().missing};
+    if (nothing) return Error{ErrorCode::system, "nothing could be measured: " + run.numbers().rows.front().missing};
     return told;
 }
 

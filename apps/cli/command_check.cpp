@@ -27,7 +27,7 @@ struct Origin {
 };
 
 Result<Origin> read_origin(const CheckCommand& command, Console& console) {
-    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
@@ -46,7 +46,7 @@ Result<Origin> read_origin(const CheckCommand& command, Console& console) {
     if (!grid) return grid.error();
     Origin origin{*std::move(grid), std::nullopt};
     if (!found) return origin;
-    Result<PointField> field = find_chosen(origin.grid, found->name, command.field, command.common.threads, console);
+    Result<PointField> field = find_chosen(origin.grid, found->name, command.field, console);
     if (!field) return field.error();
     origin.field = *std::move(field);
     return origin;
@@ -149,7 +149,7 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     Console console(command.common);
     if (Result<void> paths = check_output_paths({command.surface, command.grid.file}, {command.common.json}); !paths)
         return paths.error();
-    const Result<SurfaceFile> file = read_surface(command.surface, command.format, console.progress());
+    const Result<SurfaceFile> file = read_surface(command.surface, {command.format}, console.run());
     if (!file) return file.error();
 
     CheckOptions options;
@@ -169,7 +169,7 @@ Result<ExitCode> run_check(const CheckCommand& command) {
         options.grid = &origin->grid;
         if (origin->field) options.field = &*origin->field;
     }
-    const Result<SurfaceReport> report = check(file->surface, options, console.progress());
+    const Result<SurfaceReport> report = check(file->surface, options, console.run());
     if (!report) return report.error();
 
     const bool passed = report->sound && (report->clean || !command.strict);

@@ -49,7 +49,6 @@ private:
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
     OutputKey key(double isovalue, std::size_t step) const;
     std::string why_empty(double isovalue) const;
-    Run run_options() const { return {command_.common.threads, console_.progress()}; }
     void note_what_the_step_holds();
     void note_what_extracting_found(const SurfaceNumbers& surface);
 
@@ -86,7 +85,7 @@ Result<void> ExtractRun::open_device() {
         numbers_.device = device_->device.info().name;
         return {};
     }
-    if (required || device.error().code != ErrorCode::machine) return device.error();
+    if (required || !is_of_device(device.error().code)) return device.error();
     console_.note(device.error().message + ": the CPU extracts instead");
     return {};
 }
@@ -100,7 +99,7 @@ Result<void> ExtractRun::open() {
         return paths;
     if (Result<void> opened = open_device(); !opened) return opened;
     console_.detail("looking at " + command_.grid.file);
-    Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
+    Result<GridSource> source = GridSource::open(command_.grid, console_);
     if (!source) return source.error();
     source_ = *std::move(source);
     Result<ExtractPlan> plan = plan_extract(command_, *source_, console_);
@@ -140,7 +139,7 @@ Result<Contour> ExtractRun::start(ContourInput input) {
 /// What all steps are expected to take, from a look at the first.
 void ExtractRun::predict(const ContourInput& input) {
     if (device_ || command_.engine == EngineChoice::reference) return;
-    const Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+    const Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
     if (!sample) return; // an error that Contour::create() gives, too
     const std::vector<double> levels =
         evenly_spaced_levels(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
@@ -174,9 +173,9 @@ Result<void> ExtractRun::load(std::size_t step) {
     Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
     Result<PointField> field =
-        find_chosen(*grid, plan_.field.name, command_.field, command_.common.threads, console_);
+        find_chosen(*grid, plan_.field.name, command_.field, console_);
     if (!field) return field.error();
-    Result<StepFields> fields = carried_fields(plan_, *grid, command_.common.threads);
+    Result<StepFields> fields = carried_fields(plan_, *grid, console_.run());
     if (!fields) return fields.error();
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = grid->cells.count();
@@ -190,19 +189,19 @@ Result<void> ExtractRun::load(std::size_t step) {
         if (!started) return started.error();
         contour_ = *std::move(started);
     } else {
-        const Result<ContourUpdate> update = contour_->set(std::move(input), run_options());
+        const Result<ContourUpdate> update = contour_->set(std::move(input), console_.run());
         if (!update) return update.error();
         if (*update != ContourUpdate::grid)
             console_.detail("the cells are those of the step before: not packed again");
     }
     if (contour_->method() == Method::clusters) {
         console_.detail("packing");
-        if (Result<void> ready = contour_->prepare(run_options()); !ready) return ready;
+        if (Result<void> ready = contour_->prepare(console_.run()); !ready) return ready;
     }
     if (command_.isovalues.empty()) {
         const Stopwatch looking;
         console_.detail("looking at the field");
-        const Result<FieldReport> range = contour_->field(run_options());
+        const Result<FieldReport> range = contour_->field(console_.run());
         if (!range) return range.error();
         numbers_.field = *range;
         if (contour_->method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
@@ -267,7 +266,7 @@ void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
     const FieldReport& field = numbers_.field;
     if (surface.triangles == 0) console_.note(why_empty(surface.isovalue));
     if (const std::uint64_t ties = surface.report.false_ties.value_or(0); ties > 0) {
-        const bool double_helps = command_.precision == Precision::single && !field.unchanged;
+        const bool double_helps = command_.precision == Precision::float32 && !field.unchanged;
         console_.note(fmt::format("isovalue {}: {} point{} tied (equal to it) only by rounding{}",
                                   shortest(surface.isovalue), grouped(ties), ties == 1 ? " is" : "s are",
                                   double_helps ? "; --precision double keeps them apart" : ""));
@@ -282,7 +281,7 @@ void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
 
 Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::size_t step) {
     for (const double isovalue : isovalues) console_.detail("extracting " + shortest(isovalue));
-    Result<ContourResult> result = contour_->extract(isovalues, run_options());
+    Result<ContourResult> result = contour_->extract(isovalues, console_.run());
     if (!result) return result.error();
     console_.notes(result->notes);
     const double seconds = result->extract_seconds / static_cast<double>(isovalues.size());
@@ -303,7 +302,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         numbers.isovalue = isovalues[i];
         numbers.time = time_of(source_->info(), step);
         numbers.report = result->surfaces[i].report;
-        numbers.vertices = surface.vertices();
+        numbers.vertices = surface.vertex_count();
         numbers.triangles = surface.triangle_count();
         const Stopwatch measuring;
         numbers.area = area(surface);
@@ -320,7 +319,7 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
     console_.detail("writing " + numbers.file);
     std::error_code ignored;
     const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
-    const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.progress());
+    const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.run());
     if (!written) return written.error();
     console_.notes(written->notes);
     if (replaces) console_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));
@@ -360,7 +359,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
 Result<void> ExtractRun::run() {
     if (Result<void> opened = open(); !opened) return opened;
     for (const std::size_t step : plan_.steps) {
-        if (console_.progress().cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (console_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (Result<void> loaded = load(step); !loaded) return loaded;
         if (Result<void> extracted = extract_step(step); !extracted) return extracted;
     }
@@ -368,7 +367,7 @@ Result<void> ExtractRun::run() {
         numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
     if (plan_.collection.empty()) return {};
     numbers_.collection = plan_.collection;
-    return write_collection(series_, plan_.collection, console_.progress());
+    return write_collection(series_, plan_.collection, console_.run());
 }
 
 } // namespace

@@ -182,17 +182,17 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     Console console(command.common);
     const std::string& path = command.grid.file;
     if (Result<void> paths = check_output_paths({path}, {command.common.json}); !paths) return paths.error();
-    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
     const Result<Grid> grid = source->read({}, steps->front(), console);
     if (!grid) return grid.error();
     Result<GridReport> surveyed =
-        survey(*grid, {.faces = command.survey, .threads = command.common.threads}, console.progress());
+        survey(*grid, {.faces = command.survey}, console.run());
     if (!surveyed) return surveyed.error();
     const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
-    const auto fields = describe_fields(*grid, {command.common.threads, console.progress()});
+    const auto fields = describe_fields(*grid, console.run());
     if (!fields) return fields.error();
     Json report = json_of(found, path);
     report["fields"] = json_of(*fields);

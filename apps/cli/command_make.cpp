@@ -20,15 +20,14 @@ Result<ExitCode> run_make(const MakeCommand& command) {
     if (const Result<Format> format = format_for_writing(command.out, Writes::grid); !format) return format.error();
     if (Result<void> paths = check_output_paths({}, {command.out, command.common.json}); !paths) return paths.error();
 
-    MakeOptions options = command.grid;
-    options.threads = command.common.threads;
+    const MakeOptions& options = command.grid;
     const Stopwatch making;
-    const Result<Grid> grid = make_grid(options, console.progress());
+    const Result<Grid> grid = make_grid(options, console.run());
     if (!grid) return grid.error();
     const double make_seconds = making.seconds();
 
     const Stopwatch writing;
-    const Result<WriteReport> written = write_grid(*grid, command.out, {}, console.progress());
+    const Result<WriteReport> written = write_grid(*grid, command.out, {}, console.run());
     if (!written) return written.error();
     const double write_seconds = writing.seconds();
     console.notes(written->notes);

@@ -133,8 +133,9 @@ void add_info(const Command& program, InfoCommand& info) {
     command.add_file("FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_time(command, info.grid);
     add_reading(command, info.grid, "--format");
-    command.add_flag("--survey", info.survey,
-                     "Count repeated tets, duplicate points and boundary faces, too: that takes about as long as reading");
+    command.add_flag(
+        "--survey", info.survey,
+        "Count repeated tets, duplicate points and boundary faces, too: that takes about as long as reading");
     add_common(command, info.common);
     command.set_details(info_details);
 }
@@ -189,10 +190,11 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_flag("--fail-if-empty", extract.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
     command.add_choice<Precision>("--precision", extract.precision,
-                                  {{"float", Precision::single}, {"double", Precision::double_}},
+                                  {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
     command.add_choice<std::optional<Method>>(
-        "--method", extract.method, {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
+        "--method", extract.method,
+        {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
         "How: clusters packs the grid first, which pays for many surfaces; direct goes through all cells for each "
         "surface; auto chooses by their number");
     command.add_choice<EngineChoice>(

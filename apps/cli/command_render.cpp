@@ -61,7 +61,7 @@ Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, con
         options.height = room->height;
     }
     scene.fit(options.camera, static_cast<double>(options.width) / options.height);
-    Result<Picture> picture = renderer.draw(scene.scene(), options, console.progress());
+    Result<Picture> picture = renderer.draw(scene.scene(), options, console.run());
     if (!picture || !room) return picture;
     return annotate(*picture, annotation, whole, options.background);
 }
@@ -71,7 +71,7 @@ Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const Render
                             RenderScene& scene, PictureFiles& files, PictureNumbers& numbers, Console& console) {
     Result<Picture> picture = Error{};
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (console.progress().cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (console.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (frames.size() > 1) console.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
         if (i == 0 || frames[i].isovalues != frames[i - 1].isovalues)
             if (Result<void> shown = scene.show(frames[i].isovalues); !shown) return shown.error();
@@ -131,7 +131,7 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     }
     const Result<Device> device = open_drawing_device(command.device, console);
     if (!device) return device.error();
-    Result<Renderer> renderer = Renderer::make(*device);
+    Result<Renderer> renderer = Renderer::create(*device);
     if (!renderer) return renderer.error();
     Result<RenderInput> input = read_render_input(command, *device, console);
     if (!input) return input.error();

@@ -14,8 +14,9 @@ Console::Console(const CommonOptions& options)
       verbose_(options.verbose),
       table_(!options.quiet && options.json != "-"),
       bar_(!options.quiet && stderr_is_terminal()) {
-    progress_.report = [this](std::string_view step, double fraction) { bar_.show(step, fraction); };
-    progress_.cancel = &interrupted;
+    run_.threads = options.threads;
+    run_.progress.report = [this](std::string_view step, double fraction) { bar_.show(step, fraction); };
+    run_.progress.cancel = &interrupted;
 }
 
 void Console::note(const std::string& sentence) {

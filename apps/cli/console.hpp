@@ -31,13 +31,14 @@ public:
 
     const std::vector<std::string>& noted() const noexcept { return noted_; }
 
-    /// Draws the bar and hears Ctrl-C. The console must outlive it.
-    const Progress& progress() const noexcept { return progress_; }
+    /// Threads as asked for; progress draws the bar and hears Ctrl-C. The console must outlive it.
+    const Run& run() const noexcept { return run_; }
+    bool cancelled() const noexcept { return run_.progress.cancelled(); }
 
 private:
     bool quiet_, verbose_, table_;
     ProgressBar bar_;
-    Progress progress_;
+    Run run_;
     std::vector<std::string> noted_;
 };
 

@@ -45,13 +45,13 @@ Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console)
     if (choice.name == "none")
         return usage_error("--device is none, but only a device can draw");
     Result<std::optional<Device>> device = open_device(choice, console);
-    if (!device && choice.name.empty() && device.error().code == ErrorCode::machine) {
+    if (!device && choice.name.empty() && is_of_device(device.error().code)) {
         const Result<DeviceList> list = list_devices();
         const auto draws = [](const DeviceInfo& one) {
             return one.kind == DeviceKind::software && one.unusable.empty();
         };
         if (!list || std::ranges::none_of(list->devices, draws))
-            return Error{ErrorCode::machine, "nothing can be drawn: " + device.error().message};
+            return Error{ErrorCode::no_device, "nothing can be drawn: " + device.error().message};
         DeviceChoice software = choice;
         software.name = "software";
         device = open_device(software, console);

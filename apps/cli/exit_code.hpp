@@ -28,7 +28,10 @@ inline ExitCode exit_code_of(ErrorCode code) noexcept {
     case ErrorCode::invalid_data:
     case ErrorCode::file: return ExitCode::data;
     case ErrorCode::out_of_memory:
-    case ErrorCode::machine: return ExitCode::machine;
+    case ErrorCode::cannot_write:
+    case ErrorCode::no_device:
+    case ErrorCode::device_failed:
+    case ErrorCode::system: return ExitCode::machine;
     case ErrorCode::cancelled: return ExitCode::interrupted;
     case ErrorCode::internal: break;
     }

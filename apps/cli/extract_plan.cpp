@@ -114,7 +114,7 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     plan.read = fields_to_read(plan);
 
     plan.contour.method = command.method;
-    plan.contour.engine = command.engine == EngineChoice::reference ? Engine::reference : Engine::cpu;
+    plan.contour.by_reference = command.engine == EngineChoice::reference;
     plan.contour.precision = command.precision;
     plan.contour.ties = command.keep_degenerate ? Ties::keep : Ties::merge;
     plan.contour.normals = command.normals;
@@ -155,7 +155,7 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
     return distinct;
 }
 
-Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int threads) {
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run) {
     StepFields fields;
     if (!plan.carried) {
         fields.point = grid.point_fields;
@@ -171,7 +171,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int
         if (has(plan.carried->cell, field)) fields.cell.push_back(field);
     }
     for (const FoundField& component : plan.carried->components) {
-        const Result<PointField> found = find_field(grid, component.name, {.threads = threads});
+        const Result<PointField> found = find_field(grid, component.name, {}, run);
         if (!found) return found.error();
         fields.point.push_back({component.name, found->values});
     }

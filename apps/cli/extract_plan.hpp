@@ -41,6 +41,6 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
 struct StepFields {
     std::vector<Field> point, cell;
 };
-Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int threads);
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run);
 
 } // namespace isotet::cli

@@ -111,7 +111,7 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
     table.row({"method", fmt::format("{} ({})", name_of(numbers.method), numbers.why)});
     table.row({"", choice_text(numbers)});
     table.row({"engine", fmt::format("{}, {} precision, {} thread{}", engine_text(numbers),
-                                     numbers.precision == Precision::single ? "single" : "double", numbers.threads,
+                                     numbers.precision == Precision::float32 ? "single" : "double", numbers.threads,
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
     table.row({"time", time_text(numbers)});
@@ -158,12 +158,12 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["engine"] = numbers.engine();
     report["method"] = name_of(numbers.method);
     report["method_why"] = numbers.why;
-    report["predicted"] =
-        numbers.predicted ? Json({{"seconds", numbers.predicted->seconds}, {"bytes", numbers.predicted->bytes}})
-                          : Json(nullptr);
+    report["predicted"] = numbers.predicted
+                              ? Json({{"seconds", numbers.predicted->seconds}, {"bytes", numbers.predicted->bytes}})
+                              : Json(nullptr);
     report["measured"] = {{"seconds", numbers.work_seconds()},
                           {"bytes", numbers.peak_bytes ? Json(*numbers.peak_bytes) : Json(nullptr)}};
-    report["precision"] = numbers.precision == Precision::single ? "float" : "double";
+    report["precision"] = numbers.precision == Precision::float32 ? "float" : "double";
     report["threads"] = numbers.threads;
     report["seconds"] = {{"read", numbers.read_seconds},
                          {"pack", numbers.pack_seconds},

@@ -36,18 +36,18 @@ struct ExtractNumbers {
     std::uint64_t cells_left_out = 0;
     FieldReport field; ///< of the last time step
     bool averaged = false;
-    Precision precision = Precision::single;
-    Method method = Method::direct;                  ///< of the last surface
-    std::string why;                                 ///< the method, in words
-    std::optional<Estimate> predicted;               ///< nothing for devices and the reference engine
-    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, if the system tells
+    Precision precision = Precision::float32;
+    Method method = Method::direct;            ///< of the last surface
+    std::string why;                           ///< the method, in words
+    std::optional<Estimate> predicted;         ///< nothing for devices and the reference engine
+    std::optional<std::uint64_t> peak_bytes;   ///< taken beyond the first grid, if the system tells
     bool on_device = false, reference = false; ///< of the last surface
     std::string device;                        ///< its name
     unsigned threads = 1;
     double read_seconds = 0;
-    double pack_seconds = 0;    ///< uploading included
-    double look_seconds = 0;    ///< for the range of the field, where isovalues follow it
-    double measure_seconds = 0; ///< for the areas
+    double pack_seconds = 0;       ///< uploading included
+    double look_seconds = 0;       ///< for the range of the field, where isovalues follow it
+    double measure_seconds = 0;    ///< for the areas
     std::uint64_t peak_before = 0; ///< of the process, with the first grid
     std::vector<SurfaceNumbers> surfaces;
     std::string collection; ///< of a series; empty: none

@@ -77,16 +77,16 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
     return carried;
 }
 
-Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, int threads,
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
                                Console& console) {
-    const auto prefer = choice.cell_field ? FindFieldOptions::Prefer::cell : FindFieldOptions::Prefer::point;
-    Result<PointField> field = find_field(grid, name, {.prefer = prefer, .threads = threads});
+    const auto prefer = choice.cell_field ? Association::cell : Association::point;
+    Result<PointField> field = find_field(grid, name, {prefer}, console.run());
     if (field) console.note(field->note);
     return field;
 }
 
 Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
-                              const std::string& beside, int threads, Console& console, Grid& grid) {
+                              const std::string& beside, Console& console, Grid& grid) {
     FieldsToRead read;
     std::string name = choice.name;
     const std::size_t fields = source.info().fields.size();
@@ -114,7 +114,7 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
                                      fields)};
         console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
     }
-    return find_chosen(grid, name, choice, threads, console);
+    return find_chosen(grid, name, choice, console);
 }
 
 } // namespace isotet::cli

@@ -39,7 +39,7 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
 void add_names(std::vector<std::string>& names, const std::vector<std::string>& more);
 
 /// find_field() as a FieldChoice means it, with its note.
-Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, int threads,
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
                                Console& console);
 
 /// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which the one
@@ -48,6 +48,6 @@ Result<PointField> find_chosen(const Grid& grid, const std::string& name, const 
 /// `beside`   the name of another field, or empty
 /// Errors     as choose_field() and find_field(); invalid_data when none is named and none varies
 Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
-                              const std::string& beside, int threads, Console& console, Grid& grid);
+                              const std::string& beside, Console& console, Grid& grid);
 
 } // namespace isotet::cli

@@ -37,7 +37,7 @@ std::string coincident_points_note(const Grid& grid) {
 
 /// Merges points, and notes what that did.
 Result<Grid> merged(const Grid& grid, double tolerance, Console& console) {
-    Result<MergedPoints> result = merge_points(grid, tolerance, console.progress());
+    Result<MergedPoints> result = merge_points(grid, tolerance, console.run());
     if (!result && result.error().code == ErrorCode::invalid_argument)
         return Error{result.error().code, "--merge-points: " + result.error().message};
     if (!result) return result.error();
@@ -73,13 +73,12 @@ std::string quoted_list(const std::vector<std::string>& names) {
     return list;
 }
 
-Result<GridSource> GridSource::open(const GridOptions& options, const CommonOptions& common, const Console& console) {
+Result<GridSource> GridSource::open(const GridOptions& options, const Console& console) {
     GridSource source;
     source.options_ = options;
     if (options.file.starts_with(made_prefix)) {
         Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
         if (!made) return made.error();
-        made->threads = common.threads;
         source.info_ = info_of(*made);
         source.made_ = *std::move(made);
         return source;
@@ -90,7 +89,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, const CommonOpti
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
     read_options.reader_program = "/proc/self/exe"; // this program, wherever it lies
-    Result<FileInfo> info = inspect(options.file, read_options, console.progress());
+    Result<FileInfo> info = inspect(options.file, read_options, console.run());
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);
         if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
@@ -132,7 +131,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
     if (made_) {
         MakeOptions made = *made_;
         if (fields.point) made.fields = *fields.point;
-        Result<Grid> result = make_grid(made, console.progress());
+        Result<Grid> result = make_grid(made, console.run());
         if (!result) return result.error();
         grid = *std::move(result);
     } else {
@@ -140,7 +139,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         read_options.point_fields = fields.point;
         read_options.cell_fields = fields.cell;
         if (!info_.times.empty()) read_options.step = step;
-        Result<ReadResult> result = isotet::read(options_.file, read_options, console.progress());
+        Result<ReadResult> result = isotet::read(options_.file, read_options, console.run());
         if (!result) return result.error();
         console.notes(result->notes);
         grid = std::move(result->grid);

@@ -34,7 +34,7 @@ std::string quoted_list(const std::vector<std::string>& names);
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold.
-    static Result<GridSource> open(const GridOptions& options, const CommonOptions& common, const Console& console);
+    static Result<GridSource> open(const GridOptions& options, const Console& console);
 
     const FileInfo& info() const noexcept { return info_; }
 

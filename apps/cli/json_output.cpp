@@ -37,18 +37,18 @@ Tree tree_of(const Json& json) {
 }
 
 /// Where --json says: standard output ("-"), a file, which is replaced as a whole, or nowhere ("").
-Result<void> write_json(const Json& report, const std::string& where, const Progress& progress) {
+Result<void> write_json(const Json& report, const std::string& where, const Run& run) {
     if (where.empty()) return {};
     // All texts are valid by now; "replace" is for the one that somebody forgets.
     const std::string text = tree_of(report).dump(2, ' ', false, Tree::error_handler_t::replace) + "\n";
     if (where == "-") {
         if (stdout_was_closed()) {
-            return Error{ErrorCode::machine,
+            return Error{ErrorCode::cannot_write,
                          "--json - writes to standard output, which was closed when isotet started"};
         }
         return write_to_stdout(text);
     }
-    return write_text(text, where, progress);
+    return write_text(text, where, run);
 }
 
 } // namespace
@@ -67,7 +67,7 @@ Result<ExitCode> finish(Console& console, const CommonOptions& common, std::stri
                         ExitCode status) {
     if (Result<void> printed = console.print(table); !printed) return printed.error();
     report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, common.json, console.progress()); !written) return written.error();
+    if (Result<void> written = write_json(report, common.json, console.run()); !written) return written.error();
     return status;
 }
 

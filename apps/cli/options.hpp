@@ -72,7 +72,7 @@ struct ExtractCommand {
     bool fail_if_empty = false;
     bool edge_ends = false;
     bool source_cells = false;
-    Precision precision = Precision::single;
+    Precision precision = Precision::float32;
     std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
@@ -82,7 +82,7 @@ struct ExtractCommand {
 constexpr double default_boundary_opacity = 0.1;
 
 /// What finds tets for a method that draws tets, where no search index is given.
-constexpr Filter default_index = Filter::cluster_ranges;
+constexpr SearchIndex default_index = SearchIndex::cluster_ranges;
 
 /// Isovalues where neither -i nor --levels is given.
 constexpr std::uint64_t default_levels = 3;
@@ -111,7 +111,7 @@ struct RenderCommand {
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
     RenderMethod method;
-    std::optional<Filter> index;      ///< nothing: none was given
+    std::optional<SearchIndex> index;      ///< nothing: none was given
     std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
     std::uint64_t orbit = 0;    ///< pictures around; 0: one
     double frames_per_second = 12;
@@ -133,7 +133,7 @@ struct BenchCommand {
     bool paper = false;
     std::uint64_t max_tets = 5'000'000;
     std::vector<BenchMethod> methods;  ///< none: all that can be
-    std::vector<Filter> indexes;       ///< none: without and with the interval tree
+    std::vector<SearchIndex> indexes;       ///< none: without and with the interval tree
     std::uint64_t rounds = 5;
     DeviceChoice device;
 };

@@ -85,7 +85,7 @@ Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Con
     const Array* cells = find(grid.cell_fields, name);
     if (cells && !find(grid.point_fields, name))
         return with_scale({name, *cells, Association::cell, {}, false}, command, console);
-    const Result<PointField> found = find_field(grid, name, {.threads = command.common.threads});
+    const Result<PointField> found = find_field(grid, name, {}, console.run());
     if (!found) return found.error();
     return with_scale({name, found->values, Association::point, {}, false}, command, console);
 }
@@ -97,7 +97,7 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
     std::vector<std::string> names;
     for (const Field& field : surface.point_fields) names.push_back(field.name);
     if (const auto match = match_field_name(command.color_by, names)) {
-        const Result<PointField> found = find_field(vertices, command.color_by, {.threads = command.common.threads});
+        const Result<PointField> found = find_field(vertices, command.color_by, {}, console.run());
         if (!found) return found.error();
         return with_scale({command.color_by, found->values, Association::point, {}, false}, command, console);
     }

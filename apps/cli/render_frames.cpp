@@ -57,7 +57,7 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {
-        Result<Animation> animation = Animation::begin(out, pictures_per_second);
+        Result<Animation> animation = Animation::create(out, pictures_per_second);
         if (!animation) return animation.error();
         files.animation_ = *std::move(animation);
         return files;

@@ -90,7 +90,7 @@ Result<void> look_around(const RenderCommand& command, const Grid& grid, const R
         input.boundary = *std::move(boundary);
         input.bounds = bounds_of(*input.boundary);
     } else {
-        const Result<GridReport> report = survey(grid, {.faces = false, .threads = run.threads}, run.progress);
+        const Result<GridReport> report = survey(grid, {.faces = false}, run);
         if (!report) return report.error();
         input.bounds.add(report->lower);
         input.bounds.add(report->upper);
@@ -102,8 +102,8 @@ Result<void> look_around(const RenderCommand& command, const Grid& grid, const R
 Result<RenderInput> take_grid(const RenderCommand& command, const Device& device, Console& console) {
     RenderInput input;
     const Stopwatch reading;
-    const Run run{command.common.threads, console.progress()};
-    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    const Run& run = console.run();
+    const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
     input.format = source->info().format;
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
@@ -111,7 +111,7 @@ Result<RenderInput> take_grid(const RenderCommand& command, const Device& device
     input.time = time_of(source->info(), steps->front());
     Grid grid;
     const Result<PointField> field =
-        read_field(*source, steps->front(), command.field, command.color_by, run.threads, console, grid);
+        read_field(*source, steps->front(), command.field, command.color_by, console, grid);
     if (!field) return field.error();
     input.read_seconds = reading.seconds();
     input.cells = grid.cells.count();
@@ -138,7 +138,7 @@ Result<RenderInput> read_render_input(const RenderCommand& command, const Device
     const FileKinds kinds = kinds_of(command.grid.file);
     if (!kinds.surface || !command.grid.format.empty()) return take_grid(command, device, console);
     const Stopwatch reading;
-    Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.progress());
+    Result<SurfaceFile> file = read_surface(command.grid.file, {}, console.run());
     if (file) return take_surface(command, *std::move(file), reading.seconds(), console);
     // A name such as grid.vtk can be either.
     if (kinds.grid && file.error().code == ErrorCode::invalid_data) return take_grid(command, device, console);

@@ -127,8 +127,8 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     command.add_choice("--method", render.method, methods,
                        "How: auto, direct and clusters extract surfaces, as isotet extract does; the others are earlier "
                        "methods that draw tets and make no surface, to be compared with; without it auto");
-    std::vector<std::pair<std::string, std::optional<Filter>>> indexes;
-    for (const Filter index : all_filters) indexes.emplace_back(name_of(index), index);
+    std::vector<std::pair<std::string, std::optional<SearchIndex>>> indexes;
+    for (const SearchIndex index : all_search_indexes) indexes.emplace_back(name_of(index), index);
     command.add_choice("--index", render.index, indexes,
                        "Search index that finds the active tets for a method that draws tets, none: it draws all; without "
                        "it cluster_ranges");

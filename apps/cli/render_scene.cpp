@@ -108,9 +108,9 @@ Result<void> RenderScene::show_extracted(const std::vector<double>& isovalues) {
     }
     if (on_device_ || !input_.source.grid.points.empty()) { // surfaces must carry the field that colours
         on_device_ = false;
-        if (auto set = contour.set(std::exchange(input_.source, {}), run()); !set) return set.error();
+        if (auto set = contour.set(std::exchange(input_.source, {}), console_.run()); !set) return set.error();
     }
-    Result<ContourResult> result = contour.extract(isovalues, run());
+    Result<ContourResult> result = contour.extract(isovalues, console_.run());
     if (!result) return result.error();
     console_.notes(result->notes);
     method_ = result->method;
@@ -131,7 +131,7 @@ Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues
         if (!colors) return colors.error();
         grid_colors_ = *std::move(colors);
     }
-    Result<std::vector<DeviceSurface>> surfaces = input_.contour->extract_on_device(isovalues, run());
+    Result<std::vector<DeviceSurface>> surfaces = input_.contour->extract_on_device(isovalues, console_.run());
     if (!surfaces) return surfaces.error();
     surfaces_ = *std::move(surfaces);
     on_device_ = true;
@@ -143,7 +143,7 @@ Result<void> RenderScene::extract_on_device(const std::vector<double>& isovalues
         DrawnSurface& drawn = scene_.surfaces.emplace_back();
         drawn.surface = &surface;
         if (grid_colors_) drawn.colors = &*grid_colors_;
-        counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
+        counts_.push_back({.isovalue = {}, .vertices = surface.vertex_count(), .triangles = surface.triangle_count()});
     }
     return {};
 }
@@ -153,7 +153,7 @@ Result<void> RenderScene::add_mesh(const Surface& surface) {
     if (!mesh) return mesh.error();
     DrawnSurface& drawn = scene_.surfaces.emplace_back();
     drawn.mesh = &meshes_.emplace_back(*std::move(mesh));
-    counts_.push_back({.isovalue = {}, .vertices = surface.vertices(), .triangles = surface.triangle_count()});
+    counts_.push_back({.isovalue = {}, .vertices = surface.vertex_count(), .triangles = surface.triangle_count()});
     return input_.colors ? add_colors(drawn, surface) : Result<void>();
 }
 

@@ -65,7 +65,6 @@ private:
     Result<void> add_mesh(const Surface& surface);
     Result<void> add_colors(DrawnSurface& drawn, const Surface& surface);
     bool is_empty(std::size_t surface) const;
-    Run run() const { return {command_.common.threads, console_.progress()}; }
     void dress();
 
     const RenderCommand& command_;

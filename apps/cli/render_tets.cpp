@@ -41,12 +41,12 @@ Result<RenderTets> RenderTets::load(const RenderCommand& command, const PackedGr
     options.gradients = method == DrawMethod::textures || method == DrawMethod::mesh;
     options.picture_bytes = picture_bytes(command.picture, packed.report().tets);
     Result<TetStore> store =
-        TetStore::upload(device, packed, method, options, command.common.threads, console.progress());
+        TetStore::upload(device, packed, method, options, console.run());
     if (!store) return store.error();
     RenderTets tets(*std::move(store));
-    const Filter index = command.index.value_or(default_index);
-    if (index == Filter::none) return tets;
-    Result<TetFilter> built = TetFilter::build(packed, index, command.common.threads, console.progress());
+    const SearchIndex index = command.index.value_or(default_index);
+    if (index == SearchIndex::none) return tets;
+    Result<TetIndex> built = TetIndex::create(packed, index, console.run());
     if (!built) return built.error();
     tets.index_ = *std::move(built);
     return tets;
@@ -59,7 +59,7 @@ Result<void> RenderTets::show(const std::vector<double>& isovalues) {
         if (index_) {
             const auto found = index_->find(isovalue);
             if (!found) return found.error();
-            surface = store_.at(isovalue, **found);
+            surface = store_.at(isovalue, *found);
         } else {
             surface = store_.at(isovalue);
         }

@@ -34,7 +34,7 @@ private:
     explicit RenderTets(TetStore store) : store_(std::move(store)) {}
 
     TetStore store_;
-    std::optional<TetFilter> index_; ///< nothing: all tets
+    std::optional<TetIndex> index_; ///< nothing: all tets
     std::vector<TetSurface> surfaces_;
 };
 

@@ -43,7 +43,7 @@ bool stdout_was_closed() noexcept { return stdout_closed_at_start; }
 
 Result<void> write_to_stdout(std::string_view text) {
     if (const int error = write_all(STDOUT_FILENO, text)) {
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::cannot_write,
                      fmt::format("standard output cannot be written: {}", std::generic_category().message(error))};
     }
     return {};

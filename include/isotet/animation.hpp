@@ -17,7 +17,7 @@ public:
     /// `path`                 ends in .webp
     /// `pictures_per_second`  above 0, at most 100
     /// Errors   invalid_argument
-    static Result<Animation> begin(const std::string& path, double pictures_per_second);
+    static Result<Animation> create(const std::string& path, double pictures_per_second);
 
     Animation(Animation&&) noexcept;
     Animation& operator=(Animation&&) noexcept;
@@ -33,7 +33,7 @@ public:
     /// Writes the file, beside and renamed as all files. Returns its bytes. Nothing can be added afterwards.
     ///
     /// Guarantees   the same bytes for the same pictures (and version of libwebp)
-    /// Errors       invalid_argument when there is no picture; file, machine as write_picture()
+    /// Errors       invalid_argument when there is no picture; file, cannot_write as write_picture()
     Result<std::uint64_t> finish();
 
 private:

@@ -21,9 +21,7 @@ std::size_t size_of(ScalarType type) noexcept;
 /// "float32", "int64" and so on.
 std::string_view name_of(ScalarType type) noexcept;
 
-inline bool is_floating(ScalarType type) noexcept {
-    return type == ScalarType::float32 || type == ScalarType::float64;
-}
+inline bool is_floating(ScalarType type) noexcept { return type == ScalarType::float32 || type == ScalarType::float64; }
 
 /// The ScalarType of a C++ type; `long` and `long long` are both int64 where they have 8 bytes.
 template <class T>
@@ -51,18 +49,28 @@ public:
           std::shared_ptr<const void> owner)
         : data_(data), tuples_(tuples), components_(components), owner_(std::move(owner)), type_(type) {}
 
-    /// Takes a vector over, without a copy. Its size must be a multiple of `components`.
+    /// Takes a vector over, without a copy. Where its size is no multiple of `components`, the array has one component:
+    /// no value is lost, and whoever expects another shape refuses it.
     template <class T>
     static Array own(std::vector<T> values, std::size_t components = 1) {
         auto owner = std::make_shared<const std::vector<T>>(std::move(values));
-        return Array(scalar_type_of<T>(), owner->data(), owner->size() / components, components, owner);
+        const std::size_t width = fitting(owner->size(), components);
+        return Array(scalar_type_of<T>(), owner->data(), owner->size() / width, width, owner);
     }
 
-    /// Borrows the caller's memory, which must outlive every copy of the Array. Size a multiple of `components`.
+    /// Borrows the caller's memory, which must outlive every copy of the Array; a temporary vector is refused when
+    /// compiling. Sizes as own().
     template <class T>
     static Array borrow(std::span<const T> values, std::size_t components = 1) {
-        return Array(scalar_type_of<T>(), values.data(), values.size() / components, components, nullptr);
+        const std::size_t width = fitting(values.size(), components);
+        return Array(scalar_type_of<T>(), values.data(), values.size() / width, width, nullptr);
     }
+    template <class T>
+    static Array borrow(const std::vector<T>& values, std::size_t components = 1) {
+        return borrow(std::span<const T>(values), components);
+    }
+    template <class T>
+    static Array borrow(const std::vector<T>&&, std::size_t components = 1) = delete;
 
     ScalarType type() const noexcept { return type_; }
     const void* data() const noexcept { return data_; }
@@ -104,6 +112,10 @@ public:
     }
 
 private:
+    static std::size_t fitting(std::size_t size, std::size_t components) noexcept {
+        return components > 0 && size % components == 0 ? components : 1;
+    }
+
     const void* data_ = nullptr;
     std::size_t tuples_ = 0;
     std::size_t components_ = 1;

@@ -16,7 +16,7 @@ namespace isotet {
 /// Errors       out_of_memory; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       faces cancel within each cluster first; those left over are sorted
-Result<Surface> boundary_of(const PackedGrid& packed, const Progress& progress = {});
+Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
 /// The boundary of a grid that is not packed: all faces that its tets, repeated ones aside, do not use equally often in
 /// both directions. Triangles face outwards; a face that is used more than once too often stands there once. Positions

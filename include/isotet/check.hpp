@@ -16,7 +16,7 @@ namespace isotet {
 
 /// One place where something was found: a sentence, and where.
 struct Finding {
-    std::string what;             ///< "edge 17-42 is used 1 time forward, 0 backward"
+    std::string what; ///< "edge 17-42 is used 1 time forward, 0 backward"
     std::array<double, 3> where{};
 };
 
@@ -24,38 +24,38 @@ struct Finding {
 /// are counted, and are no part of the surface for all other numbers.
 struct SurfaceReport {
     std::uint64_t vertices = 0, triangles = 0;
-    std::uint64_t boundary_edges = 0;          ///< used by one triangle
-    std::uint64_t inconsistent_edges = 0;      ///< used by more, unequally often in the two directions
-    std::uint64_t blamed_edges = 0;            ///< of both, those where the rule asked for does not allow it
-    std::uint64_t non_manifold_edges = 0;      ///< used by more than two triangles
-    std::uint64_t equal_corner_triangles = 0;  ///< two equal corners
-    std::uint64_t zero_area_triangles = 0;     ///< three different corners, area exactly zero
-    std::uint64_t duplicate_triangles = 0;     ///< same corners, same direction as an earlier one
-    std::uint64_t blamed_duplicates = 0;       ///< those that the grid does not explain
-    std::uint64_t double_sheets = 0;           ///< pairs of triangles on the same corners in opposite directions
-    std::uint64_t touching_vertices = 0;       ///< vertices whose triangles are not one fan
-    std::uint64_t coincident_vertices = 0;     ///< vertices at the position of an earlier one
+    std::uint64_t boundary_edges = 0;         ///< used by one triangle
+    std::uint64_t inconsistent_edges = 0;     ///< used by more, unequally often in the two directions
+    std::uint64_t blamed_edges = 0;           ///< of both, those where the rule asked for does not allow it
+    std::uint64_t non_manifold_edges = 0;     ///< used by more than two triangles
+    std::uint64_t equal_corner_triangles = 0; ///< two equal corners
+    std::uint64_t zero_area_triangles = 0;    ///< three different corners, area exactly zero
+    std::uint64_t duplicate_triangles = 0;    ///< same corners, same direction as an earlier one
+    std::uint64_t blamed_duplicates = 0;      ///< those that the grid does not explain
+    std::uint64_t double_sheets = 0;          ///< pairs of triangles on the same corners in opposite directions
+    std::uint64_t touching_vertices = 0;      ///< vertices whose triangles are not one fan
+    std::uint64_t coincident_vertices = 0;    ///< vertices at the position of an earlier one
     std::uint64_t unused_vertices = 0;
-    std::uint64_t collapsed_by_welding = 0;    ///< triangles that welding by coordinates removed (formats without
-                                               ///< numbers)
+    std::uint64_t collapsed_by_welding = 0; ///< triangles that welding by coordinates removed (formats without
+                                            ///< numbers)
     std::uint64_t components = 0;
-    std::int64_t euler = 0;                    ///< V - E + F, over used vertices
-    std::vector<std::int64_t> genus;           ///< one for each closed, manifold, oriented component
+    std::int64_t euler = 0;          ///< V - E + F, over used vertices
+    std::vector<std::int64_t> genus; ///< one for each closed, manifold, oriented component
     double area = 0;
-    double volume = 0;                         ///< enclosed, positive with normals outward; meaningful if closed
-    bool closed = false;                       ///< no boundary edge and no inconsistent edge
-    bool sound = false;                        ///< nothing is blamed: exit 0 of `isotet check`
-    bool clean = false;                        ///< what `--strict` finds is absent too
-    std::vector<Finding> findings;             ///< the first few of each kind
+    double volume = 0;             ///< enclosed, positive with normals outward; meaningful if closed
+    bool closed = false;           ///< no boundary edge and no inconsistent edge
+    bool sound = false;            ///< nothing is blamed: exit 0 of `isotet check`
+    bool clean = false;            ///< what `--strict` finds is absent too
+    std::vector<Finding> findings; ///< the first few of each kind
 };
 
 struct CheckOptions {
-    bool closed = false;       ///< blame every edge used unequally often in the two directions
+    bool closed = false;        ///< blame every edge used unequally often in the two directions
     const Grid* grid = nullptr; ///< blame such edges unless their grid points lie in one boundary face of the valid
                                 ///< tets; needs surface.edge_ends
     const PointField* field = nullptr; ///< with `grid`: tets with a corner of no data are not valid
-    bool weld = false;         ///< weld by exact coordinates first (STL)
-    int most_findings = 5;     ///< of each kind
+    bool weld = false;                 ///< weld by exact coordinates first (STL)
+    int most_findings = 5;             ///< of each kind
 };
 
 /// Measures a surface and looks for what should not be there. An empty surface is closed and clean.
@@ -68,6 +68,6 @@ struct CheckOptions {
 /// Errors   invalid_data when a triangle has a vertex out of range or a position is not finite; invalid_argument when
 ///          `grid` is given but the surface has no edge ends; cancelled
 /// Cost     O(V log V + F log F)
-Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options = {}, const Progress& progress = {});
+Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options = {}, const Run& run = {});
 
 } // namespace isotet

@@ -42,9 +42,9 @@ struct ContourOptions {
     /// How many surfaces will be asked for, over all fields and time steps. 0: not known; then those that have been
     /// asked for are counted, and the grid is packed when the rule says so.
     std::uint64_t surfaces = 0;
-    Engine engine = Engine::cpu;
+    bool by_reference = false; ///< the slow reference extracts (reference.hpp), to compare with; not with a device
     std::optional<ContourDevice> device = {};
-    Precision precision = Precision::single;
+    Precision precision = Precision::float32;
     Ties ties = Ties::merge;
     Normals normals = Normals::none;
     bool edge_ends = false;
@@ -53,10 +53,10 @@ struct ContourOptions {
 
 /// What set() had to do.
 enum class ContourUpdate : std::uint8_t {
-    nothing,      ///< grid and field are the ones from before
-    field,        ///< the same cells and points: only values were stored
-    points,       ///< the same cells: points moved, and values were stored
-    grid,         ///< another grid: what was packed is gone
+    nothing, ///< grid and field are the ones from before
+    field,   ///< the same cells and points: only values were stored
+    points,  ///< the same cells: points moved, and values were stored
+    grid,    ///< another grid: what was packed is gone
 };
 
 /// The surfaces of one call, and how they came about.

@@ -19,38 +19,38 @@ namespace vulkan {
 class Context;
 }
 
-enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_, software, other };
+enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_gpu, software, other };
 
 /// "discrete GPU", "integrated GPU", "virtual GPU", "software", "other".
 std::string_view name_of(DeviceKind kind) noexcept;
 
 /// A Vulkan device, as its driver describes it.
 struct DeviceInfo {
-    std::size_t index = 0;             ///< its place in list_devices(), which a choice may name
-    std::string name;                  ///< "NVIDIA GeForce RTX 4070"
+    std::size_t index = 0; ///< its place in list_devices(), which a choice may name
+    std::string name;      ///< "NVIDIA GeForce RTX 4070"
     DeviceKind kind = DeviceKind::other;
-    std::string driver;                ///< name and version: "NVIDIA 550.54.14"
-    std::string api;                   ///< Vulkan version: "1.3.277"
-    std::uint64_t memory = 0;          ///< bytes of the device's own memory (of the machine's, where they are one)
-    std::uint64_t memory_free = 0;     ///< of these, what this process can still take; all of `memory` where the driver
-                                       ///< does not tell
-    bool memory_free_known = false;    ///< the driver tells (VK_EXT_memory_budget)
-    bool unified_memory = false;       ///< the processor reads and writes the device's memory directly
-    bool transfer_queue = false;       ///< copies to and from the device have a queue of their own
-    bool timestamps = false;           ///< times of passes can be measured
-    std::uint64_t allocation_limit = 0; ///< bytes of the largest buffer
+    std::string driver;             ///< name and version: "NVIDIA 550.54.14"
+    std::string api;                ///< Vulkan version: "1.3.277"
+    std::uint64_t memory = 0;       ///< bytes of the device's own memory (of the machine's, where they are one)
+    std::uint64_t memory_free = 0;  ///< of these, what this process can still take; all of `memory` where the driver
+                                    ///< does not tell
+    bool memory_free_known = false; ///< the driver tells (VK_EXT_memory_budget)
+    bool unified_memory = false;    ///< the processor reads and writes the device's memory directly
+    bool transfer_queue = false;    ///< copies to and from the device have a queue of their own
+    bool timestamps = false;        ///< times of passes can be measured
+    std::uint64_t allocation_limit = 0;           ///< bytes of the largest buffer
     std::array<std::uint32_t, 3> workgroups = {}; ///< most workgroups of one dispatch, an axis
-    std::uint32_t workgroup_size = 0;  ///< most invocations of a workgroup
-    std::uint32_t shared_memory = 0;   ///< bytes a workgroup
+    std::uint32_t workgroup_size = 0;             ///< most invocations of a workgroup
+    std::uint32_t shared_memory = 0;              ///< bytes a workgroup
     std::uint32_t subgroup_size = 0;
-    std::string unusable;              ///< why isotet cannot use it, a sentence; empty: it can
+    std::string unusable; ///< why isotet cannot use it, a sentence; empty: it can
 };
 
 /// What there is on this machine.
 struct DeviceList {
-    std::vector<DeviceInfo> devices;  ///< in the driver's order, unusable ones too
-    std::optional<std::size_t> best;  ///< the one that Device::open() takes without a choice, if there is one
-    std::string unavailable;          ///< why there is no Vulkan at all, a sentence; empty: there is
+    std::vector<DeviceInfo> devices; ///< in the driver's order, unusable ones too
+    std::optional<std::size_t> best; ///< the one that Device::open() takes without a choice, if there is one
+    std::string unavailable;         ///< why there is no Vulkan at all, a sentence; empty: there is
 };
 
 /// Looks for Vulkan devices. Opens the Vulkan loader (libvulkan.so.1) at run time: without it, or without a driver,
@@ -78,12 +78,15 @@ public:
     /// Opens a device and tests its arithmetic on the device itself (docs/inside/gpu.md).
     ///
     /// Cost      100 ms to a second, mostly the driver's; compiled kernels are kept in XDG_CACHE_HOME/isotet
-    /// Errors    invalid_argument when no device, or more than one, fits the choice; machine when there is no Vulkan,
+    /// Errors    invalid_argument when no device, or more than one, fits the choice; no_device when there is no Vulkan,
     ///           no GPU, or when the device cannot be used, with the reason
     static Result<Device> open(const DeviceOptions& options = {});
 
     /// A device that was opened with settings of its own, by tests.
     explicit Device(std::shared_ptr<vulkan::Context> context) : context_(std::move(context)) {}
+    Device(const Device&) = default; // no move: a device that was moved from stays what it was
+    Device& operator=(const Device&) = default;
+    ~Device() = default;
 
     const DeviceInfo& info() const noexcept;
 

@@ -49,14 +49,14 @@ struct DevicePass {
 
 /// What a call cost.
 struct DeviceWork {
-    std::vector<DevicePass> passes;    ///< in order; empty where the device has no timestamps
-    double device_seconds = 0;         ///< from the beginning of the first pass to the end of the last, waits between
-                                       ///< aside
-    double waited_seconds = 0;         ///< for the device, as seen from here
-    std::uint64_t uploaded_bytes = 0;  ///< over the bus
+    std::vector<DevicePass> passes;   ///< in order; empty where the device has no timestamps
+    double device_seconds = 0;        ///< from the beginning of the first pass to the end of the last, waits between
+                                      ///< aside
+    double waited_seconds = 0;        ///< for the device, as seen from here
+    std::uint64_t uploaded_bytes = 0; ///< over the bus
     std::uint64_t downloaded_bytes = 0;
-    std::uint64_t page_loads = 0;      ///< pages that had to be uploaded
-    std::uint32_t submissions = 0;     ///< one, unless arrays had to grow or pages to come
+    std::uint64_t page_loads = 0;  ///< pages that had to be uploaded
+    std::uint32_t submissions = 0; ///< one, unless arrays had to grow or pages to come
 };
 
 /// A surface in a device's memory, ready to be drawn. Moving is cheap; it keeps the device open.
@@ -71,7 +71,7 @@ public:
 
     double isovalue() const noexcept;
     std::array<double, 3> origin() const noexcept; ///< positions are relative to it
-    std::uint64_t vertices() const noexcept;
+    std::uint64_t vertex_count() const noexcept;
     std::uint64_t triangle_count() const noexcept;
     std::uint64_t device_bytes() const noexcept; ///< taken, with the room that is kept for the next surface
 
@@ -106,7 +106,7 @@ public:
     /// `packed`   single precision
     /// Cost       about 11 bytes a tet over the bus
     /// Errors     invalid_argument when the grid was packed in double precision, or has 2^32 points or more;
-    ///            out_of_memory, before anything is uploaded, when needs().least() is more than is free; machine;
+    ///            out_of_memory, before anything is uploaded, when needs().least() is more than is free; device_failed;
     ///            cancelled
     static Result<DeviceGrid> upload(const Device& device, const PackedGrid& packed,
                                      const DeviceGridOptions& options = {}, const Run& run = {});
@@ -124,8 +124,8 @@ public:
     /// Guarantees   packed() is then byte for byte what PackedGrid::with_field() gives
     /// Cost         a pass over the values and 4 bytes a point over the bus, 0.1 bytes a tet back; gradients, and
     ///              ranges of pages that are not on the device, are worked out on the processor
-    /// Errors       as PackedGrid::with_field(): nothing has changed then; of the device: out_of_memory, machine. The
-    ///              grid must be uploaded again then; packed() is what it was
+    /// Errors       as PackedGrid::with_field(): nothing has changed then; of the device: out_of_memory,
+    ///              device_failed. The grid must be uploaded again then; packed() is what it was
     Result<void> set_field(const PointField& field, const Run& run = {});
 
     /// Replaces the coordinates (a mesh that moves).
@@ -138,7 +138,7 @@ public:
     std::uint64_t device_bytes() const noexcept; ///< resident arrays and the pages that are there
     bool complete() const noexcept;              ///< all pages are there
 
-    /// Extracts the surface of an isovalue; it stays on the device. `options` as for extract(), `engine` aside.
+    /// Extracts the surface of an isovalue; it stays on the device. `options` as for extract().
     ///
     /// Point fields are uploaded once, 4 bytes a point and component, and stay while their arrays live (borrowed ones
     /// are uploaded each time); where there is no room for them, download() interpolates instead.
@@ -146,21 +146,21 @@ public:
     /// Cost     on the device O(C + V + F) in four dependent steps; over the bus 200 bytes, and new fields. Where pages
     ///          must be loaded: these, up to twice
     /// Errors   as extract(); invalid_argument when the surface has 2^32 vertices or triangles or more; out_of_memory
-    ///          of the device; machine
-    Result<DeviceSurface> extract(double isovalue, const ExtractOptions& options = {}, const Progress& progress = {});
+    ///          of the device; device_failed
+    Result<DeviceSurface> extract(double isovalue, const ExtractOptions& options = {}, const Run& run = {});
 
     /// The same, into a surface that was extracted before: its memory is used again where it is large enough.
     Result<void> extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options = {},
-                         const Progress& progress = {});
+                         const Run& run = {});
 
     /// The surfaces of several isovalues, in their order, in one submission where everything fits.
     Result<std::vector<DeviceSurface>> extract(std::span<const double> isovalues, const ExtractOptions& options = {},
-                                               const Progress& progress = {});
+                                               const Run& run = {});
 
     /// A surface of this grid, on the processor, with all that was asked for when it was extracted.
     ///
     /// Cost     the arrays over the bus; cell fields are copied here
-    Result<Extraction> download(const DeviceSurface& surface, const Progress& progress = {});
+    Result<Extraction> download(const DeviceSurface& surface, const Run& run = {});
 
     /// What the last call of a function above cost.
     const DeviceWork& work() const noexcept;
@@ -169,7 +169,7 @@ private:
     struct Data;
     explicit DeviceGrid(std::unique_ptr<Data> data);
     Result<void> extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
-                              const ExtractOptions& options, const Progress& progress);
+                              const ExtractOptions& options, const Run& run);
     std::unique_ptr<Data> data_;
 };
 

@@ -79,7 +79,7 @@ public:
     ///
     /// Guarantees   else the triangles of extract(), corner by corner, whatever the method
     /// Cost         48 bytes a tet over the bus
-    /// Errors       out_of_memory; machine
+    /// Errors       out_of_memory; device_failed
     Result<std::vector<std::array<std::array<double, 3>, 3>>> triangles() const;
 
 private:
@@ -89,7 +89,7 @@ private:
     std::unique_ptr<render::ChosenTets> tets_;
 };
 
-/// All tets of a packed grid in a device's memory, as a method wants them. They have the numbers that TetFilter has.
+/// All tets of a packed grid in a device's memory, as a method wants them. They have the numbers that TetIndex has.
 ///
 /// It lies in pages of 65,536 tets. Pages that find no room in the device's memory stay in the machine's, and cross the
 /// bus for every picture: slower, the same picture.
@@ -103,10 +103,10 @@ public:
     /// Errors   invalid_argument for a grid packed in double, for gradients with a method that keeps none, and for
     ///          gradients that the grid was not packed with; invalid_data with 2^32 - 1 tets or more; out_of_memory
     ///          when the device has no room for one page (textures, mesh: for all points and one page), or the machine
-    ///          none for the rest; machine, also when the device has no mesh shaders but they are asked for; cancelled
+    ///          none for the rest; no_device without mesh shaders where they are asked for; device_failed; cancelled
     /// Cost     the store over the bus
     static Result<TetStore> upload(const Device& device, const PackedGrid& packed, DrawMethod method,
-                                   const TetStoreOptions& options = {}, int threads = 0, const Progress& progress = {});
+                                   const TetStoreOptions& options = {}, const Run& run = {});
 
     TetStore(TetStore&&) noexcept;
     TetStore& operator=(TetStore&&) noexcept;
@@ -118,11 +118,11 @@ public:
     /// Errors   invalid_argument when the isovalue is not finite
     Result<TetSurface> at(double isovalue);
 
-    /// These tets only, as TetFilter finds them.
+    /// These tets only, as TetIndex finds them.
     ///
     /// Cost     4 bytes a tet over the bus
     /// Errors   invalid_argument when the isovalue is not finite, or a tet is none of the grid's; out_of_memory;
-    ///          machine
+    ///          device_failed
     Result<TetSurface> at(double isovalue, std::span<const std::uint32_t> tets);
 
 private:

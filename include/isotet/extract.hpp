@@ -15,15 +15,12 @@
 
 namespace isotet {
 
-enum class Engine : std::uint8_t { cpu, reference };
-
 enum class Ties : std::uint8_t {
     merge, ///< default mode: vertices on edges that meet in a tied point are one vertex; no zero-area triangles at ties
     keep,  ///< kept mode (`keep_degenerate`): every crossed edge gives a vertex, every cut tet one or two triangles
 };
 
 struct ExtractOptions {
-    Engine engine = Engine::cpu;
     Ties ties = Ties::merge;
     Normals normals = Normals::none; ///< gradient needs PackOptions::gradients
     bool edge_ends = false;          ///< edge_ends and edge_weights
@@ -31,22 +28,21 @@ struct ExtractOptions {
     std::vector<Field> point_fields; ///< carried onto the surface: one tuple a point of the user's grid, any components
     std::vector<Field> cell_fields;  ///< copied to the triangles: one tuple a user's cell; needs
                                      ///< PackOptions::source_cells
-    int threads = 0;                 ///< 0: all
 };
 
 struct ExtractReport {
     std::uint64_t selected_clusters = 0;
-    std::uint64_t tied_points = 0;            ///< points whose value, as stored, equals the isovalue, as stored
-    std::optional<std::uint64_t> false_ties;  ///< of these, made equal only by rounding: none where values are stored
-                                              ///< unchanged; nothing when the input is no longer at hand
+    std::uint64_t tied_points = 0;           ///< points whose value, as stored, equals the isovalue, as stored
+    std::optional<std::uint64_t> false_ties; ///< of these, made equal only by rounding: none where values are stored
+                                             ///< unchanged; nothing when the input is no longer at hand
     bool near_tie = false; ///< no point is tied, but points hold the value of the field's type nearest to the isovalue
                            ///< (0.7 on float32)
-    double isovalue_stored = 0;               ///< the isovalue of the surface, in the unit of the field: rounded as
-                                              ///< values are; not at all where these are stored unchanged
-    std::uint64_t surface_bytes = 0;          ///< all arrays of the surface
-    std::uint64_t transient_bytes = 0;        ///< beyond the surfaces themselves, at the peak of the call
-    std::uint64_t predicted_bytes = 0;        ///< what the call was expected to need at most, surfaces included, before
-                                              ///< it began
+    double isovalue_stored = 0;        ///< the isovalue of the surface, in the unit of the field: rounded as
+                                       ///< values are; not at all where these are stored unchanged
+    std::uint64_t surface_bytes = 0;   ///< all arrays of the surface
+    std::uint64_t transient_bytes = 0; ///< beyond the surfaces themselves, at the peak of the call
+    std::uint64_t predicted_bytes = 0; ///< what the call was expected to need at most, surfaces included, before
+                                       ///< it began
 };
 
 struct Extraction {
@@ -71,7 +67,7 @@ struct Extraction {
 /// Threads      safe from many threads on one packed grid
 /// Method       marching tetrahedra over clusters; docs/inside/clusters.md
 Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options = {},
-                           const Progress& progress = {});
+                           const Run& run = {});
 
 /// Extracts the surfaces of several isovalues in one pass: the ranges of all clusters are looked at once, and a cluster
 /// that several isovalues cut is read once. The more clusters they have in common, the more this saves.
@@ -83,7 +79,7 @@ Result<Extraction> extract(const PackedGrid& packed, double isovalue, const Extr
 ///              limits as above, a cluster counted once for every isovalue that selects it
 /// Errors       as above; all or nothing
 Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
-                                        const ExtractOptions& options = {}, const Progress& progress = {});
+                                        const ExtractOptions& options = {}, const Run& run = {});
 
 /// The nearest value that the type of the field can hold: 0.7 becomes 0.699999988 on a float32 field, 3.2 becomes 3 on
 /// integers.

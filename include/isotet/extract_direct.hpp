@@ -14,8 +14,8 @@
 namespace isotet {
 
 struct DirectOptions {
-    ExtractOptions extract; ///< whatever it asks for can be had: nothing need have been kept for it
-    Precision precision = Precision::single; ///< of positions, values and weights
+    ExtractOptions extract;                   ///< whatever it asks for can be had: nothing need have been kept for it
+    Precision precision = Precision::float32; ///< of positions, values and weights
 };
 
 /// Surfaces from arrays, and what was seen on the way.
@@ -47,6 +47,6 @@ struct DirectExtraction {
 /// Threads      safe from many threads on one grid
 /// Method       marching tetrahedra over all tets, welded by sorted edges; docs/inside/direct.md
 Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
-                                   const DirectOptions& options = {}, const Progress& progress = {});
+                                        const DirectOptions& options = {}, const Run& run = {});
 
 } // namespace isotet

@@ -15,6 +15,9 @@
 
 namespace isotet {
 
+/// What the tuples of a field belong to.
+enum class Association : std::uint8_t { point, cell };
+
 /// Cell types, with VTK's numbers and VTK's order of corners. Any other number is a cell that isotet leaves out.
 enum class CellType : std::uint8_t { tetrahedron = 10, voxel = 11, hexahedron = 12, wedge = 13, pyramid = 14 };
 
@@ -56,23 +59,22 @@ struct GridReport {
                                                        ///< polyhedral)
     std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones
                                                        ///< counted
-    std::size_t collapsed_tets = 0;    ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
-    std::size_t negative_tets = 0;     ///< tets of negative volume in the order of the file, repeated ones counted
-    std::size_t inverted_tets = 0;     ///< tets whose sign is not that of most, repeated ones counted
-    std::size_t flat_tets = 0;         ///< tets of volume exactly zero, repeated ones counted
-    std::size_t unused_points = 0;     ///< points that no tet uses
+    std::size_t collapsed_tets = 0;         ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
+    std::size_t negative_tets = 0;          ///< tets of negative volume in the order of the file, repeated ones counted
+    std::size_t inverted_tets = 0;          ///< tets whose sign is not that of most, repeated ones counted
+    std::size_t flat_tets = 0;              ///< tets of volume exactly zero, repeated ones counted
+    std::size_t unused_points = 0;          ///< points that no tet uses
     std::array<double, 3> lower{}, upper{}; ///< bounds of the used points
 
     // Counted only with SurveyOptions::faces.
-    std::size_t repeated_tets = 0;     ///< tets with the same four corners as an earlier one; packing keeps the first
-    std::size_t duplicate_points = 0;  ///< used points with the coordinates of a used point of a lower number
-    std::size_t boundary_faces = 0;    ///< faces that the tets do not use equally often in both directions, repeated
-                                       ///< tets aside
+    std::size_t repeated_tets = 0;    ///< tets with the same four corners as an earlier one; packing keeps the first
+    std::size_t duplicate_points = 0; ///< used points with the coordinates of a used point of a lower number
+    std::size_t boundary_faces = 0;   ///< faces that the tets do not use equally often in both directions, repeated
+                                      ///< tets aside
 };
 
 struct SurveyOptions {
     bool faces = true; ///< count repeated tets, duplicate points and boundary faces, too
-    int threads = 0;   ///< 0: all
 };
 
 /// Checks a grid and counts what is in it.
@@ -85,7 +87,13 @@ struct SurveyOptions {
 ///              offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
 ///              nothing left that can be contoured; out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
-Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Progress& progress = {});
+Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Run& run = {});
+
+/// Tets, and where they come from.
+struct TetList {
+    std::vector<std::array<std::uint64_t, 4>> tets; ///< point numbers
+    std::vector<std::uint64_t> cells;               ///< the cell each tet comes from
+};
 
 /// The tets that isotet makes of a grid, in the user's order: each cell's tets one after another, collapsed ones
 /// dropped, corners in the order of the file (tetrahedra) or of the splitting; orientation is not changed.
@@ -95,11 +103,14 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, c
 ///
 /// Guarantees   the same tets for any thread count
 /// Errors       as survey()
-struct TetList {
-    std::vector<std::array<std::uint64_t, 4>> tets; ///< point numbers
-    std::vector<std::uint64_t> cells;               ///< the cell each tet comes from
+Result<TetList> split(const Grid& grid, const Run& run = {});
+
+/// A grid after welding.
+struct MergedPoints {
+    Grid grid;
+    std::size_t merged = 0;          ///< points no longer used
+    std::size_t collapsed_cells = 0; ///< contoured cells of which two corners became the same point
 };
-Result<TetList> split(const Grid& grid, const Progress& progress = {});
 
 /// Welds points closer than `tolerance` (0: exactly equal coordinates; -0 equals +0): every cell then uses the
 /// lowest-numbered point of each chain of close points. Points and point fields keep their numbers and lengths.
@@ -107,12 +118,7 @@ Result<TetList> split(const Grid& grid, const Progress& progress = {});
 /// Errors   invalid_argument when the tolerance is negative or not finite, or so large that every contoured cell
 ///          collapses; invalid_data as survey(); out_of_memory
 /// Cost     O(P log P), 24 bytes a point, and a new connectivity
-struct MergedPoints {
-    Grid grid;
-    std::size_t merged = 0;          ///< points no longer used
-    std::size_t collapsed_cells = 0; ///< contoured cells of which two corners became the same point
-};
-Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Progress& progress = {});
+Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Run& run = {});
 
 /// A field to contour: one scalar per point of the grid, and how it was found.
 struct PointField {
@@ -122,28 +128,32 @@ struct PointField {
     std::string note;      ///< empty, or a sentence for the user (a name that is both a point and a cell field, say)
 };
 
+/// What a name means that is both a point and a cell field.
+struct FindFieldOptions {
+    Association prefer = Association::point;
+};
+
 /// Finds the scalar field called `name` on a grid.
 ///
 /// The name is first taken whole; only if no field has it is the part after the last colon a component: `x`, `y`, `z`,
-/// `mag`, or a number from 0. A name that is both a point and a cell field means the point field, with a note. If no
+/// `mag`, or a number from 0. A name that is both a point and a cell field means the preferred one, with a note. If no
 /// field is meant, `x`, `y`, `z` are the coordinates. An empty name means the only field there is.
 /// A cell field is averaged to the points, weighted by the volumes of the cells around each; cells where it is NaN are
 /// left out; a point without a cell left is NaN.
 ///
 /// Errors   invalid_argument when there is no such field (what there is, nearest first), when it is ambiguous or has
 ///          several components, or when a field's length is not that of the grid
-struct FindFieldOptions {
-    enum class Prefer { point, cell } prefer = Prefer::point;
-    int threads = 0;
-};
-Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {});
+Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {},
+                              const Run& run = {});
 
-/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
-/// needed.
+/// A field's name and the component that is meant.
 struct FieldName {
     std::string field;
     std::optional<std::string> component;
 };
+
+/// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
+/// needed.
 std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
 
 /// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.

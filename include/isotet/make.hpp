@@ -12,6 +12,14 @@
 
 namespace isotet {
 
+/// Which grid make_grid() makes; make_grid() says what each member means.
+struct MakeOptions {
+    std::string shape = "kuhn";
+    std::uint64_t side = 32;
+    std::vector<std::string> fields = {"sphere", "gyroid"};
+    std::uint64_t seed = 1;
+};
+
 /// Test grids of any size with analytic fields of known surface, on the cube [-1, 1]^3 (float32 points).
 ///
 /// All cells are upright in VTK's order of corners, and neighbours agree on the faces between them.
@@ -39,14 +47,7 @@ namespace isotet {
 /// Errors       invalid_argument for an unknown shape or field (what there is, nearest first), a field asked for twice,
 ///              or a side out of range; out_of_memory; cancelled
 /// Cost         memory of the grid itself: 12 bytes a point, 4 a point and field, 4 a corner (8 above 2^31 points)
-struct MakeOptions {
-    std::string shape = "kuhn";
-    std::uint64_t side = 32;
-    std::vector<std::string> fields = {"sphere", "gyroid"};
-    std::uint64_t seed = 1;
-    int threads = 0;
-};
-Result<Grid> make_grid(const MakeOptions& options, const Progress& progress = {});
+Result<Grid> make_grid(const MakeOptions& options, const Run& run = {});
 
 std::vector<std::string> make_shapes();
 std::vector<std::string> make_fields();

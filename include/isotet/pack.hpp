@@ -17,21 +17,20 @@ namespace core {
 struct Packed;
 }
 
-enum class Precision : std::uint8_t { single, double_ };
+enum class Precision : std::uint8_t { float32, float64 };
 
 struct PackOptions {
-    Precision precision = Precision::single;
+    Precision precision = Precision::float32;
     bool source_cells = false; ///< keep the user's cell number of every packed tet (4 bytes a tet)
     bool gradients = false;    ///< keep a gradient direction at every point (4 bytes a point), for gradient normals
-    int threads = 0;           ///< 0: all
 };
 
 /// What packing found and what it costs.
 struct PackReport {
-    std::uint64_t points = 0;          ///< points that tets use
-    std::uint64_t tets = 0;            ///< stored tets: collapsed and repeated ones dropped
+    std::uint64_t points = 0; ///< points that tets use
+    std::uint64_t tets = 0;   ///< stored tets: collapsed and repeated ones dropped
     std::uint64_t clusters = 0;
-    std::uint64_t cells_left_out = 0;  ///< cells of types that are not contoured
+    std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
     std::uint64_t collapsed_tets = 0, repeated_tets = 0, negative_tets = 0, inverted_tets = 0, flat_tets = 0;
     std::uint64_t flushed_coordinates = 0; ///< non-zero coordinates below 2^-70, stored as 0
     std::uint64_t coarse_clusters = 0; ///< clusters where rounding to float32 moves a point by over a thousandth of the
@@ -44,14 +43,14 @@ struct PackReport {
 /// How a field's values are stored; see docs/inside/precision.md.
 struct FieldReport {
     std::string name;
-    double lower = 0, upper = 0;       ///< smallest and largest finite value at the points that tets use, as the user
-                                       ///< gave them; lower > upper: there is none
-    std::uint64_t no_data = 0;         ///< points with NaN
+    double lower = 0, upper = 0; ///< smallest and largest finite value at the points that tets use, as the user
+                                 ///< gave them; lower > upper: there is none
+    std::uint64_t no_data = 0;   ///< points with NaN
     std::uint64_t infinite = 0;
-    std::uint64_t flushed = 0;         ///< non-zero values that are stored as 0
-    double offset = 0;                 ///< stored = (value - offset) * scale, rounded
-    double scale = 1;                  ///< a power of two
-    bool unchanged = false;            ///< no rounding: float32 or integers below 2^24 (2^53 in double packing)
+    std::uint64_t flushed = 0; ///< non-zero values that are stored as 0
+    double offset = 0;         ///< stored = (value - offset) * scale, rounded
+    double scale = 1;          ///< a power of two
+    bool unchanged = false;    ///< no rounding: float32 or integers below 2^24 (2^53 in double packing)
 };
 
 /// The grid in clusters: what every engine works on. A handle: copying shares everything, and what it refers to never
@@ -72,8 +71,8 @@ public:
     const PackReport& report() const noexcept;
     const FieldReport& field() const noexcept;
     Precision precision() const noexcept;
-    std::uint64_t user_points() const noexcept; ///< points of the user's grid, unused ones too
-    std::uint64_t user_cells() const noexcept;
+    std::uint64_t user_point_count() const noexcept; ///< points of the user's grid, unused ones too
+    std::uint64_t user_cell_count() const noexcept;
 
     /// The packed arrays, for engines; src/core/packed.hpp draws them.
     const core::Packed& data() const noexcept { return *data_; }
@@ -109,6 +108,6 @@ private:
 /// Threads      safe from many threads
 /// Method       docs/inside/packing.md
 Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options = {},
-                        const Progress& progress = {});
+                        const Run& run = {});
 
 } // namespace isotet

@@ -39,7 +39,7 @@ struct Picture {
 /// files.
 ///
 /// Guarantees   the same bytes for the same picture (and version of libpng and zlib)
-/// Errors       invalid_argument when the ending is not .png, or the picture has no pixels; file, machine as
+/// Errors       invalid_argument when the ending is not .png, or the picture has no pixels; file, cannot_write as
 ///              write_surface()
 Result<std::uint64_t> write_picture(const Picture& picture, const std::string& path);
 

@@ -44,12 +44,14 @@ public:
     /// Cost     a few milliseconds
     /// Errors   invalid_argument when the field does not fit the grid; invalid_data when the arrays of the grid do not
     ///          fit together; out_of_memory
-    static Result<FieldSample> take(const Grid& grid, const PointField& field);
+    static Result<FieldSample> create(const Grid& grid, const PointField& field);
 
     std::uint64_t points() const noexcept { return points_; } ///< of the grid
-    std::uint64_t tets() const noexcept { return tets_; }     ///< of the grid, estimated where cells are not tets;
-                                                              ///< exact where they are
-    double lower() const noexcept { return lower_; }          ///< of the values seen; lower > upper: none is finite
+    std::uint64_t tets() const noexcept {
+        return tets_;
+    }                                                ///< of the grid, estimated where cells are not tets;
+                                                     ///< exact where they are
+    double lower() const noexcept { return lower_; } ///< of the values seen; lower > upper: none is finite
     double upper() const noexcept { return upper_; }
 
     /// Triangles of an isovalue's surface, estimated. Of a surface that cuts few cells the estimate is rough: from t
@@ -69,11 +71,11 @@ private:
 /// What is to be made of one grid.
 struct Workload {
     std::uint64_t points = 0, tets = 0;
-    double surfaces = 1;            ///< isovalues times fields
-    bool gradients = false;         ///< gradient normals are asked for
-    bool find_range = false;        ///< isovalues follow the range of the field, which direct extraction looks for first
-    double triangles = 0;           ///< of a surface, on the average
-    double triangles_together = 0;  ///< of the surfaces that are in memory at the same time, at most
+    double surfaces = 1;           ///< isovalues times fields
+    bool gradients = false;        ///< gradient normals are asked for
+    bool find_range = false;       ///< isovalues follow the range of the field, which direct extraction looks for first
+    double triangles = 0;          ///< of a surface, on the average
+    double triangles_together = 0; ///< of the surfaces that are in memory at the same time, at most
 };
 
 /// What a method is expected to take, without reading and writing files.

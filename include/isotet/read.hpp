@@ -20,11 +20,9 @@ struct Format {
     std::string title;                   ///< "VTK XML unstructured grid"
     std::vector<std::string> extensions; ///< ".vtu"; lower case
     bool reads_grid = false, writes_grid = false, reads_surface = false, writes_surface = false;
-    bool needs_vtk = false;              ///< read by VTK's reader, in a child process
+    bool needs_vtk = false; ///< read by VTK's reader, in a child process
 };
 std::vector<Format> formats();
-
-enum class Association : std::uint8_t { point, cell };
 
 /// A field as a file announces it, before its values are read.
 struct FieldInfo {
@@ -42,29 +40,29 @@ struct FileInfo {
 };
 
 struct ReadOptions {
-    std::string format;                            ///< empty: by content, then by name
+    std::string format;                                                ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
-    std::optional<std::size_t> step;               ///< index into FileInfo::times; nothing: the first
-    bool merge_pieces_by_coordinates = false;      ///< pieces without global ids: join points with exactly equal
-                                                   ///< coordinates
-    bool allow_outside = false;                    ///< index files may name files outside their own folder
-    std::string displace;                          ///< a point vector field to add to the coordinates
-    std::string reader_program;                    ///< the program that runs VTK's readers ("isotet"); empty: this one
-                                                   ///< if it calls run_as_reader(), else the one beside the library or
-                                                   ///< this program, in PATH, or where isotet was to be installed
-    std::uint64_t memory_limit = 0;                ///< bytes of address space of a reader process; 0: by free memory
+    std::optional<std::size_t> step;          ///< index into FileInfo::times; nothing: the first
+    bool merge_pieces_by_coordinates = false; ///< pieces without global ids: join points with exactly equal
+                                              ///< coordinates
+    bool allow_outside = false;               ///< index files may name files outside their own folder
+    std::string displace;                     ///< a point vector field to add to the coordinates
+    std::string reader_program;               ///< the program that runs VTK's readers ("isotet"); empty: this one
+                                              ///< if it calls run_as_reader(), else the one beside the library or
+                                              ///< this program, in PATH, or where isotet was to be installed
+    std::uint64_t memory_limit = 0;           ///< bytes of address space of a reader process; 0: by free memory
     std::chrono::seconds time_limit{3600};
 };
 
 struct ReadResult {
     Grid grid;
     FileInfo info;
-    std::size_t step = 0;               ///< the step that was read
-    std::vector<std::string> notes;     ///< sentences for the user: ghost cells left out, blocks joined and so on
+    std::size_t step = 0;           ///< the step that was read
+    std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on
 };
 
 /// Tells what a file holds without reading more of it than the format makes necessary.
-Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {}, const Progress& progress = {});
+Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
 /// Reads a grid. Fields have the names of the file; coordinates are those of the file.
 ///
@@ -73,17 +71,22 @@ Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {
 /// too.
 ///
 /// Errors   file: not there, not readable, format not recognized; invalid_data: broken content; invalid_argument: an
-///          unknown field, step or format; out_of_memory; machine; cancelled
-Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Progress& progress = {});
+///          unknown field, step or format; out_of_memory; system; cancelled
+Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
-/// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared
-/// vertices: weld it.
+struct ReadSurfaceOptions {
+    std::string format; ///< empty: by content, then by name
+};
+
+/// A surface from a file.
 struct SurfaceFile {
     Surface surface;
     std::string format;
 };
-Result<SurfaceFile> read_surface(const std::string& path, const std::string& format = {},
-                                 const Progress& progress = {});
+
+/// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared
+/// vertices: weld it.
+Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options = {}, const Run& run = {});
 
 /// What a program that serves as reader_program must call first in main(): does the reading and returns the exit status
 /// when it was started as a reader process, nothing otherwise.

@@ -58,14 +58,14 @@ public:
     /// Cost     12 to 24 bytes a vertex and 12 a triangle over the bus
     /// Errors   invalid_argument when the surface has 2^32 vertices or triangles or more, or arrays that do not fit
     ///          together; invalid_data when a triangle has a vertex that is not there, or a vertex is not finite;
-    ///          out_of_memory; machine
+    ///          out_of_memory; device_failed
     static Result<DeviceMesh> upload(const Device& device, const Surface& surface);
 
     DeviceMesh(DeviceMesh&&) noexcept;
     DeviceMesh& operator=(DeviceMesh&&) noexcept;
     ~DeviceMesh();
 
-    std::uint64_t vertices() const noexcept;
+    std::uint64_t vertex_count() const noexcept;
     std::uint64_t triangle_count() const noexcept;
 
 private:
@@ -78,7 +78,8 @@ private:
 class DeviceColors {
 public:
     /// For a mesh: a scalar a vertex, or a triangle.
-    /// Errors   invalid_argument when `values` has several components, or the scale is wrong; out_of_memory; machine
+    /// Errors   invalid_argument when `values` has several components, or the scale is wrong; out_of_memory;
+    ///          device_failed
     static Result<DeviceColors> of_mesh(const Device& device, const Array& values, Association association,
                                         const ColorScale& scale);
 
@@ -104,12 +105,12 @@ private:
 /// Something with triangles that is drawn: an uploaded mesh, a surface where the Vulkan engine left it, or tets that
 /// give their triangles while they are drawn (draw_tets.hpp).
 struct DrawnSurface {
-    const DeviceMesh* mesh = nullptr;       ///< one of `mesh`, `surface` and `tets`; borrowed
+    const DeviceMesh* mesh = nullptr; ///< one of `mesh`, `surface` and `tets`; borrowed
     const DeviceSurface* surface = nullptr;
-    const DeviceColors* colors = nullptr;   ///< borrowed; null: `color` everywhere. Tets have none
-    Color color{0.70F, 0.75F, 0.80F, 1};    ///< its opacity does not count
-    double opacity = 1;                     ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
-                                            ///< drawn
+    const DeviceColors* colors = nullptr; ///< borrowed; null: `color` everywhere. Tets have none
+    Color color{0.70F, 0.75F, 0.80F, 1};  ///< its opacity does not count
+    double opacity = 1;                   ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
+                                          ///< drawn
     const TetSurface* tets = nullptr;
 };
 
@@ -152,8 +153,8 @@ struct PictureOptions {
 class Renderer {
 public:
     /// Cost     pipelines are built when they are first needed, 5 to 500 ms each
-    /// Errors   machine when the device cannot draw, with the reason
-    static Result<Renderer> make(const Device& device);
+    /// Errors   no_device when the device cannot draw, with the reason
+    static Result<Renderer> create(const Device& device);
 
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
@@ -164,8 +165,8 @@ public:
     /// Cost     O(triangles) a part of the picture (parts have 16 million samples); device memory 28 bytes a sample of
     ///          a part and 16 a translucent fragment
     /// Errors   invalid_argument when a size, a camera or an opacity is out of range, or colours do not fit their
-    ///          surface; out_of_memory of the device, with the amount needed; machine; cancelled
-    Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Progress& progress = {});
+    ///          surface; out_of_memory of the device, with the amount needed; device_failed; cancelled
+    Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run = {});
 
     /// What the last call of draw() cost.
     const DeviceWork& work() const noexcept;

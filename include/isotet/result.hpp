@@ -14,10 +14,18 @@ enum class ErrorCode {
     invalid_data,     ///< the data: a grid, a field or the content of a file breaks a rule
     file,             ///< the data: a file cannot be found, opened or recognized
     out_of_memory,    ///< the machine: would need more memory than is free (found out before it is taken)
-    machine,          ///< the machine: disk full, device lost, a child process that cannot start
+    cannot_write,     ///< the machine: disk full, no permission, output closed
+    no_device,        ///< the machine: no Vulkan, no driver, or no device that can do what is asked
+    device_failed,    ///< the machine: a device was lost, or its driver failed; open the device again
+    system,           ///< the machine: the system refuses: a child process, a memory file, too many open files
     cancelled,        ///< the user: the operation was cancelled through Progress::cancel
     internal,         ///< isotet itself: please report it
 };
+
+/// Whether the CPU could stand in: the device is at fault.
+constexpr bool is_of_device(ErrorCode code) noexcept {
+    return code == ErrorCode::no_device || code == ErrorCode::device_failed;
+}
 
 /// An error as a value: a code and one sentence, *what, value seen, rule*, such as
 /// "tets[81204] has point 90112, but the grid has 90000 points".
@@ -59,7 +67,7 @@ public:
     /// The value; throws Exception if there is none.
     T& value() & { return check(), **this; }
     const T& value() const& { return check(), **this; }
-    T&& value() && { return check(), *std::move(*this); }
+    T value() && { return check(), *std::move(*this); }
 
 private:
     void check() const {

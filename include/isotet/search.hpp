@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -21,58 +22,58 @@ namespace isotet {
 /// `seed_set`        a set of seeds, and propagation across faces (Bajaj and others 1996, van Kreveld and others 1997)
 /// `span_space`      a k-d tree over the tets' ranges as points of the plane (Livnat and others 1996)
 /// `cluster_ranges`  ranges of clusters and of groups of 32 tets, as isotet's engines use them
-enum class Filter : std::uint8_t { none, interval_tree, octree, seed_set, span_space, cluster_ranges };
+enum class SearchIndex : std::uint8_t { none, interval_tree, octree, seed_set, span_space, cluster_ranges };
 
-inline constexpr std::array all_filters{Filter::none,     Filter::interval_tree, Filter::octree,
-                                        Filter::seed_set, Filter::span_space,    Filter::cluster_ranges};
+inline constexpr std::array all_search_indexes{SearchIndex::none,       SearchIndex::interval_tree,
+                                               SearchIndex::octree,     SearchIndex::seed_set,
+                                               SearchIndex::span_space, SearchIndex::cluster_ranges};
 
 /// The name as written here.
-std::string_view name_of(Filter filter) noexcept;
+std::string_view name_of(SearchIndex index) noexcept;
 
-struct TetFilterReport {
-    std::uint64_t tets = 0;         ///< of the packed grid
-    std::uint64_t table_bytes = 0;  ///< of the tables that all filters look through: 16 a tet, 16 a point
-    std::uint64_t filter_bytes = 0; ///< of the filter itself
-    double table_seconds = 0, filter_seconds = 0; ///< for making them
+struct TetIndexReport {
+    std::uint64_t tets = 0;                      ///< of the packed grid
+    std::uint64_t table_bytes = 0;               ///< of the tables that all indexes look through: 16 a tet, 16 a point
+    std::uint64_t index_bytes = 0;               ///< of the index itself
+    double table_seconds = 0, index_seconds = 0; ///< for making them
 };
 
 namespace search {
-class FilteredTets;
+class IndexedTets;
 }
 
-/// A filter over the tets of a packed grid. Tets have the numbers 0, 1, 2, ... in which they are packed.
+/// An index over the tets of a packed grid. Tets have the numbers 0, 1, 2, ... in which they are packed.
 ///
 /// The packed grid is not needed any more. It holds the values of the field at the time: another field needs another
-/// filter.
+/// index.
 ///
 /// Threads   const functions are safe from many threads; find() needs the object alone
-class TetFilter {
+class TetIndex {
 public:
     /// Errors   invalid_argument for a grid packed in double; invalid_data with 2^32 - 1 tets or more; out_of_memory;
     ///          cancelled
     /// Cost     O(n log n), parallel where the structure allows; the report tells the memory
-    static Result<TetFilter> build(const PackedGrid& grid, Filter filter, int threads = 0,
-                                   const Progress& progress = {});
+    static Result<TetIndex> create(const PackedGrid& grid, SearchIndex index, const Run& run = {});
 
-    TetFilter(TetFilter&&) noexcept;
-    TetFilter& operator=(TetFilter&&) noexcept;
-    ~TetFilter();
+    TetIndex(TetIndex&&) noexcept;
+    TetIndex& operator=(TetIndex&&) noexcept;
+    ~TetIndex();
 
-    const TetFilterReport& report() const noexcept;
+    const TetIndexReport& report() const noexcept;
 
     /// The tets that may be cut: at least every tet that extract() takes triangles from, each once. `interval_tree`,
     /// `seed_set` and `span_space` find no others.
     ///
-    /// Guarantees   the same order every time; valid until the next call
+    /// Guarantees   the same order every time; the numbers stay where they are until the next call
     /// Errors       invalid_argument when the isovalue is not finite
-    Result<const std::vector<std::uint32_t>*> find(double isovalue);
+    Result<std::span<const std::uint32_t>> find(double isovalue);
 
     /// Whether the isovalue cuts a tet: it has data at its corners, one of them is below, and one is not.
     bool is_cut(std::uint32_t tet, double isovalue) const;
 
 private:
-    explicit TetFilter(std::unique_ptr<search::FilteredTets> tets);
-    std::unique_ptr<search::FilteredTets> tets_;
+    explicit TetIndex(std::unique_ptr<search::IndexedTets> tets);
+    std::unique_ptr<search::IndexedTets> tets_;
 };
 
 } // namespace isotet

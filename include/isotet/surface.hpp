@@ -35,7 +35,7 @@ struct Surface {
                                      ///< single, else float64
     std::vector<Field> cell_fields;  ///< F tuples each, in the grid's own type
 
-    std::size_t vertices() const noexcept { return positions.tuples(); }
+    std::size_t vertex_count() const noexcept { return positions.tuples(); }
     std::size_t triangle_count() const noexcept { return triangles.tuples(); }
 };
 

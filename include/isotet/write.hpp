@@ -18,8 +18,12 @@ struct WriteReport {
                                     ///< left out"
 };
 
+struct WriteOptions {
+    std::string format; ///< "vtp", "ply" and so on; empty: from the ending of the path
+};
+
 /// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless
-/// given.
+/// the options name one.
 ///
 /// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the
 /// old file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file
@@ -27,12 +31,12 @@ struct WriteReport {
 ///
 /// Errors   invalid_argument: unknown format, arrays that do not fit together, `path` is a folder or not a plain file;
 ///          invalid_data: a triangle with a vertex that is not there; file: the folder of `path` is not there;
-///          machine: disk full, not writable; out_of_memory; cancelled
-Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format = {},
-                                  const Progress& progress = {});
+///          cannot_write: disk full, not writable; out_of_memory; cancelled
+Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const WriteOptions& options = {},
+                                  const Run& run = {});
 
 /// Writes a grid: vtu (raw appended), vtk (legacy binary); the same guarantees.
-Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const std::string& format = {},
-                               const Progress& progress = {});
+Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const WriteOptions& options = {},
+                               const Run& run = {});
 
 } // namespace isotet

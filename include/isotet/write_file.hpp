@@ -13,9 +13,9 @@ namespace isotet {
 
 /// Writes a text as a file, with the guarantees of write_surface(): written beside `path`, flushed, renamed.
 ///
-/// Errors   invalid_argument: `path` is a folder or not a plain file; file: its folder is not there; machine: disk
-///          full, not writable; cancelled. The old file is then as before
-Result<void> write_text(std::string_view text, const std::string& path, const Progress& progress = {});
+/// Errors   invalid_argument: `path` is a folder or not a plain file; file: its folder is not there; cannot_write:
+///          disk full, not writable; cancelled. The old file is then as before
+Result<void> write_text(std::string_view text, const std::string& path, const Run& run = {});
 
 /// Whether a file could be written: creates one beside `path` and removes it again. To be called before long work.
 /// Errors   as write_text()
@@ -33,6 +33,6 @@ struct CollectionEntry {
 ///
 /// Errors   as write_text()
 Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
-                              const Progress& progress = {});
+                              const Run& run = {});
 
 } // namespace isotet

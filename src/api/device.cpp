@@ -19,7 +19,7 @@ Result<DeviceList> list_devices() {
             list.devices = std::move(found->infos);
             return list;
         }
-        if (found.error().code != ErrorCode::machine) return found.error();
+        if (found.error().code != ErrorCode::no_device) return found.error();
         list.unavailable = found.error().message;
         return list;
     });

@@ -12,8 +12,9 @@
 #include "api/fits.hpp"
 #include "api/ties.hpp"
 #include "core/field_storage.hpp"
+#include "core/carry_out.hpp"
+#include "core/errors.hpp"
 #include "core/guard.hpp"
-#include "core/parallel.hpp"
 #include "core/rising_progress.hpp"
 #include "core/set_field.hpp"
 #include "core/storage.hpp"
@@ -22,7 +23,7 @@
 namespace isotet {
 
 struct DeviceSurface::Data {
-    std::shared_ptr<vulkan::Context> context; ///< before the buffers, so that it goes after them
+    std::shared_ptr<vulkan::Context> context;   ///< before the buffers, so that it goes after them
     std::shared_ptr<const core::Packed> packed; ///< the grid as it was when this was extracted
     vulkan::SurfaceBuffers buffers;
     double isovalue = 0;
@@ -51,8 +52,10 @@ DeviceSurface& DeviceSurface::operator=(DeviceSurface&&) noexcept = default;
 DeviceSurface::~DeviceSurface() = default;
 
 double DeviceSurface::isovalue() const noexcept { return data_ ? data_->isovalue : 0; }
-std::array<double, 3> DeviceSurface::origin() const noexcept { return data_ ? data_->packed->origin : std::array<double, 3>{}; }
-std::uint64_t DeviceSurface::vertices() const noexcept { return data_ ? data_->buffers.vertices() : 0; }
+std::array<double, 3> DeviceSurface::origin() const noexcept {
+    return data_ ? data_->packed->origin : std::array<double, 3>{};
+}
+std::uint64_t DeviceSurface::vertex_count() const noexcept { return data_ ? data_->buffers.vertex_count() : 0; }
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return data_ ? data_->buffers.triangle_count() : 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return data_ ? data_->buffers.bytes() : 0; }
 const vulkan::SurfaceBuffers* DeviceSurface::buffers() const noexcept { return data_ ? &data_->buffers : nullptr; }
@@ -104,7 +107,10 @@ DeviceWork work_of(vulkan::WorkDone&& done) {
 
 } // namespace
 
-const PackedGrid& DeviceGrid::packed() const noexcept { return data_->packed; }
+const PackedGrid& DeviceGrid::packed() const noexcept {
+    static const PackedGrid none;
+    return data_ ? data_->packed : none;
+}
 
 DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOptions& options) {
     if (!packed.data().single()) return {};
@@ -114,15 +120,11 @@ DeviceGridNeeds DeviceGrid::needs(const PackedGrid& packed, const DeviceGridOpti
 
 Result<DeviceGrid> DeviceGrid::upload(const Device& device, const PackedGrid& packed, const DeviceGridOptions& options,
                                       const Run& run) {
-    return core::guarded("uploading the packed grid", [&]() -> Result<DeviceGrid> {
+    return core::carry_out("uploading the packed grid", run, [&](const Progress& progress) -> Result<DeviceGrid> {
         vulkan::GridOptions grid_options;
         grid_options.page_bytes = options.page_bytes;
         grid_options.reserve = options.surface_bytes.value_or(device.memory_free() / 8);
-        Result<std::unique_ptr<vulkan::GridOnDevice>> grid = Error{};
-        const Progress rises = core::rising(run.progress);
-        core::with_threads(run.threads, [&] {
-            grid = vulkan::GridOnDevice::upload(device.context(), packed.shared_data(), grid_options, rises);
-        });
+        auto grid = vulkan::GridOnDevice::upload(device.context(), packed.shared_data(), grid_options, progress);
         if (!grid) return std::move(grid).error();
         return DeviceGrid(std::make_unique<Data>(Data{packed, *std::move(grid), {}}));
     });
@@ -151,26 +153,23 @@ Result<Extraction> DeviceSurface::Data::download() const {
 }
 
 Result<void> DeviceGrid::set_field(const PointField& field, const Run& run) {
-    return core::guarded("setting the field on the device", [&]() -> Result<void> {
-        if (auto ok = core::check_field(field, data_->packed.user_points()); !ok) return ok;
+    return core::carry_out("setting the field on the device", run, [&](const Progress& progress) -> Result<void> {
+        if (!data_) return moved_from("the grid on the device");
+        if (auto ok = core::check_field(field, data_->packed.user_point_count()); !ok) return ok;
         const auto next = std::make_shared<core::Packed>(data_->packed.data());
-        const Progress rises = core::rising(run.progress);
-        Result<void> result;
-        core::with_threads(run.threads, [&] {
-            result = core::store_values<float>(field, *next, rises);
-            if (result && !next->gradients.empty()) core::store_gradients(*next);
-            if (!result) return;
-            auto done = data_->grid->set_field(next, rises);
-            if (done) data_->work = work_of(*std::move(done));
-            else result = done.error();
-        });
-        if (result) data_->packed = PackedGrid(next);
-        return result;
+        if (auto stored = core::store_values<float>(field, *next, progress); !stored) return stored;
+        if (!next->gradients.empty()) core::store_gradients(*next);
+        auto done = data_->grid->set_field(next, progress);
+        if (!done) return done.error();
+        data_->work = work_of(*std::move(done));
+        data_->packed = PackedGrid(next);
+        return {};
     });
 }
 
 Result<void> DeviceGrid::set_points(const Array& points, const Run& run) {
     return core::guarded("setting the points on the device", [&]() -> Result<void> {
+        if (!data_) return moved_from("the grid on the device");
         const Result<PackedGrid> next = data_->packed.with_points(points, run);
         if (!next) return next.error();
         auto done = data_->grid->set_points(next->shared_data(), core::rising(run.progress));
@@ -181,26 +180,30 @@ Result<void> DeviceGrid::set_points(const Array& points, const Run& run) {
     });
 }
 
-std::uint64_t DeviceGrid::device_bytes() const noexcept { return data_->grid->device_bytes(); }
-bool DeviceGrid::complete() const noexcept { return data_->grid->complete(); }
-const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }
+std::uint64_t DeviceGrid::device_bytes() const noexcept { return data_ ? data_->grid->device_bytes() : 0; }
+bool DeviceGrid::complete() const noexcept { return data_ && data_->grid->complete(); }
+
+const DeviceWork& DeviceGrid::work() const noexcept {
+    static const DeviceWork none;
+    return data_ ? data_->work : none;
+}
 
 Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double> isovalues, const ExtractOptions& options,
-                                                       const Progress& progress) {
+                                                       const Run& run) {
     std::vector<DeviceSurface> surfaces(isovalues.size());
-    if (auto ok = extract_into(isovalues, surfaces, options, progress); !ok) return ok.error();
+    if (auto ok = extract_into(isovalues, surfaces, options, run); !ok) return ok.error();
     return surfaces;
 }
 
-Result<DeviceSurface> DeviceGrid::extract(double isovalue, const ExtractOptions& options, const Progress& progress) {
+Result<DeviceSurface> DeviceGrid::extract(double isovalue, const ExtractOptions& options, const Run& run) {
     DeviceSurface surface;
-    if (auto ok = extract(isovalue, surface, options, progress); !ok) return ok.error();
+    if (auto ok = extract(isovalue, surface, options, run); !ok) return ok.error();
     return surface;
 }
 
 Result<void> DeviceGrid::extract(double isovalue, DeviceSurface& surface, const ExtractOptions& options,
-                                 const Progress& progress) {
-    return extract_into(std::span(&isovalue, 1), std::span(&surface, 1), options, progress);
+                                 const Run& run) {
+    return extract_into(std::span(&isovalue, 1), std::span(&surface, 1), options, run);
 }
 
 /// `fields`   of the options, on the device; empty: they are interpolated after the download
@@ -228,37 +231,37 @@ Result<void> DeviceGrid::Data::extract(std::span<const double> isovalues, std::s
 }
 
 Result<void> DeviceGrid::extract_into(std::span<const double> isovalues, std::span<DeviceSurface> surfaces,
-                                      const ExtractOptions& options, const Progress& progress) {
-    return core::guarded("extraction", [&]() -> Result<void> {
+                                      const ExtractOptions& options, const Run& run) {
+    return core::carry_out("extraction", run, [&](const Progress& progress) -> Result<void> {
+        if (!data_) return moved_from("the grid on the device");
         vulkan::GridOnDevice& grid = *data_->grid;
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok;
         if (auto ok = api::check_fit(options, data_->packed.data()); !ok) return ok;
         const std::uint64_t up = grid.context().staging().uploaded();
         auto fields = carry(grid, options);
         if (!fields) return fields.error();
-        const Progress rises = core::rising(progress);
-        auto done = data_->extract(isovalues, surfaces, options, *fields, rises);
+        auto done = data_->extract(isovalues, surfaces, options, *fields, progress);
         if (!done && done.error().code == ErrorCode::out_of_memory && !fields->empty()) {
             // Fields can be interpolated elsewhere, surfaces cannot.
             fields->clear();
             grid.fields().clear();
-            done = data_->extract(isovalues, surfaces, options, {}, rises);
+            done = data_->extract(isovalues, surfaces, options, {}, progress);
         }
         if (!done) return done;
         data_->work.uploaded_bytes = grid.context().staging().uploaded() - up;
-        rises("extract", 1);
+        progress("extract", 1);
         return {};
     });
 }
 
-Result<Extraction> DeviceGrid::download(const DeviceSurface& surface, const Progress& progress) {
-    return core::guarded("downloading the surface", [&]() -> Result<Extraction> {
+Result<Extraction> DeviceGrid::download(const DeviceSurface& surface, const Run& run) {
+    return core::carry_out("downloading the surface", run, [&](const Progress& progress) -> Result<Extraction> {
+        if (!data_) return moved_from("the grid on the device");
         if (!surface.data_) return Error{ErrorCode::invalid_argument, "the surface to download was never extracted"};
         const DeviceSurface::Data& data = *surface.data_;
         vulkan::Staging& staging = data.context->staging();
         const std::uint64_t down = staging.downloaded();
-        Result<Extraction> result = Error{};
-        core::with_threads(data.options.threads, [&] { result = data.download(); });
+        Result<Extraction> result = data.download();
         data_->work = {};
         data_->work.downloaded_bytes = staging.downloaded() - down;
         progress("download", 1);

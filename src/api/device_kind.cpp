@@ -7,7 +7,7 @@ std::string_view name_of(DeviceKind kind) noexcept {
     switch (kind) {
     case DeviceKind::discrete: return "discrete GPU";
     case DeviceKind::integrated: return "integrated GPU";
-    case DeviceKind::virtual_: return "virtual GPU";
+    case DeviceKind::virtual_gpu: return "virtual GPU";
     case DeviceKind::software: return "software";
     case DeviceKind::other: break;
     }

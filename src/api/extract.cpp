@@ -1,13 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/extract.hpp>
+#include <isotet/reference.hpp>
 
 #include "api/finish.hpp"
 #include "api/fits.hpp"
 #include "api/ties.hpp"
+#include "core/carry_out.hpp"
 #include "core/field_storage.hpp"
-#include "core/guard.hpp"
 #include "core/packed.hpp"
-#include "core/parallel.hpp"
 #include "core/storage.hpp"
 #include "cpu/extract.hpp"
 #include "reference/extract.hpp"
@@ -18,12 +18,11 @@ namespace {
 
 template <class Real>
 Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span<const double> isovalues,
-                                           const ExtractOptions& options, const Progress& progress) {
+                                           const ExtractOptions& options, bool reference, const Progress& progress) {
     ops::Request<Real> request;
     for (const double isovalue : isovalues)
         request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
     request.ties = options.ties;
-    const bool reference = options.engine == Engine::reference;
     std::vector<core::Storage> storages;
     for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
     if (!reference)
@@ -59,27 +58,32 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     return out;
 }
 
-} // namespace
-
 Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
-                                        const ExtractOptions& options, const Progress& progress) {
-    return core::guarded("extraction", [&]() -> Result<std::vector<Extraction>> {
+                                        const ExtractOptions& options, bool reference, const Run& run) {
+    return core::carry_out("extraction", run, [&](const Progress& progress) -> Result<std::vector<Extraction>> {
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         if (auto ok = api::check_fit(options, packed.data()); !ok) return ok.error();
-        Result<std::vector<Extraction>> result = Error{};
-        core::with_threads(options.threads, [&] {
-            result = packed.data().single() ? extract_as<float>(packed.data(), isovalues, options, progress)
-                                            : extract_as<double>(packed.data(), isovalues, options, progress);
-        });
-        return result;
+        return packed.data().single() ? extract_as<float>(packed.data(), isovalues, options, reference, progress)
+                                      : extract_as<double>(packed.data(), isovalues, options, reference, progress);
     });
 }
 
-Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options,
-                           const Progress& progress) {
-    auto all = extract(packed, std::span(&isovalue, 1), options, progress);
+} // namespace
+
+Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
+                                        const ExtractOptions& options, const Run& run) {
+    return extract(packed, isovalues, options, false, run);
+}
+
+Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options, const Run& run) {
+    auto all = extract(packed, std::span(&isovalue, 1), options, run);
     if (!all) return std::move(all).error();
     return std::move(all->front());
+}
+
+Result<std::vector<Extraction>> extract_by_reference(const PackedGrid& packed, std::span<const double> isovalues,
+                                                     const ExtractOptions& options, const Run& run) {
+    return extract(packed, isovalues, options, true, run);
 }
 
 } // namespace isotet

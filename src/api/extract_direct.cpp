@@ -1,14 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/extract_direct.hpp>
+#include <isotet/reference.hpp>
 
 #include <fmt/core.h>
 
 #include "api/finish.hpp"
+#include "core/carry_out.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
-#include "core/guard.hpp"
-#include "core/parallel.hpp"
-#include "core/rising_progress.hpp"
 #include "cpu/direct/direct.hpp"
 #include "reference/direct.hpp"
 
@@ -38,15 +37,15 @@ Result<void> check_fields(const Grid& grid, const PointField& field, const Extra
 
 template <class Real>
 Result<DirectExtraction> extract_as(const ops::DirectInput& input, std::span<const double> isovalues,
-                                 const ExtractOptions& options, const Progress& progress) {
+                                    const ExtractOptions& options, bool reference, const Progress& progress) {
     ops::DirectRequest request;
     request.isovalues = isovalues;
     request.ties = options.ties;
     request.ends = options.edge_ends || !options.point_fields.empty();
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
-    auto result = options.engine == Engine::reference ? reference::extract_direct<Real>(input, request, progress)
-                                                      : cpu::extract_direct<Real>(input, request, progress);
+    auto result = reference ? reference::extract_direct<Real>(input, request, progress)
+                            : cpu::extract_direct<Real>(input, request, progress);
     if (!result) return std::move(result).error();
     progress("extract", 0.8);
 
@@ -71,25 +70,31 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, std::span<con
     return out;
 }
 
-} // namespace
-
 Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
-                                   const DirectOptions& options, const Progress& progress) {
-    return core::guarded("extraction", [&]() -> Result<DirectExtraction> {
+                                        const DirectOptions& options, bool reference, const Run& run) {
+    return core::carry_out("extraction", run, [&](const Progress& progress) -> Result<DirectExtraction> {
         if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
         if (auto ok = check_fields(grid, field, options.extract); !ok) return ok.error();
         const ops::DirectInput input{grid, *cells, field, options.extract.point_fields};
-        const Progress rises = core::rising(progress);
-        Result<DirectExtraction> result = Error{};
-        core::with_threads(options.extract.threads, [&] {
-            result = options.precision == Precision::single
-                         ? extract_as<float>(input, isovalues, options.extract, rises)
-                         : extract_as<double>(input, isovalues, options.extract, rises);
-        });
-        return result;
+        return options.precision == Precision::float32
+                   ? extract_as<float>(input, isovalues, options.extract, reference, progress)
+                   : extract_as<double>(input, isovalues, options.extract, reference, progress);
     });
+}
+
+} // namespace
+
+Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
+                                        const DirectOptions& options, const Run& run) {
+    return extract_direct(grid, field, isovalues, options, false, run);
+}
+
+Result<DirectExtraction> extract_direct_by_reference(const Grid& grid, const PointField& field,
+                                                     std::span<const double> isovalues, const DirectOptions& options,
+                                                     const Run& run) {
+    return extract_direct(grid, field, isovalues, options, true, run);
 }
 
 } // namespace isotet

@@ -12,7 +12,7 @@ constexpr const char* built_without = "isotet was built without Vulkan (ISOTET_V
 
 Result<DeviceList> list_devices() { return DeviceList{{}, {}, built_without}; }
 
-Result<Device> Device::open(const DeviceOptions&) { return Error{ErrorCode::machine, built_without}; }
+Result<Device> Device::open(const DeviceOptions&) { return Error{ErrorCode::no_device, built_without}; }
 
 const DeviceInfo& Device::info() const noexcept {
     static const DeviceInfo none;

@@ -13,7 +13,7 @@ struct DeviceGrid::Data {
 
 namespace {
 
-Error built_without() { return {ErrorCode::machine, "isotet was built without Vulkan (ISOTET_VULKAN=OFF)"}; }
+Error built_without() { return {ErrorCode::no_device, "isotet was built without Vulkan (ISOTET_VULKAN=OFF)"}; }
 
 } // namespace
 
@@ -24,7 +24,7 @@ DeviceSurface::~DeviceSurface() = default;
 
 double DeviceSurface::isovalue() const noexcept { return 0; }
 std::array<double, 3> DeviceSurface::origin() const noexcept { return {}; }
-std::uint64_t DeviceSurface::vertices() const noexcept { return 0; }
+std::uint64_t DeviceSurface::vertex_count() const noexcept { return 0; }
 std::uint64_t DeviceSurface::triangle_count() const noexcept { return 0; }
 std::uint64_t DeviceSurface::device_bytes() const noexcept { return 0; }
 const vulkan::SurfaceBuffers* DeviceSurface::buffers() const noexcept { return nullptr; }
@@ -45,14 +45,11 @@ std::uint64_t DeviceGrid::device_bytes() const noexcept { return 0; }
 bool DeviceGrid::complete() const noexcept { return false; }
 const DeviceWork& DeviceGrid::work() const noexcept { return data_->work; }
 
-Result<DeviceSurface> DeviceGrid::extract(double, const ExtractOptions&, const Progress&) { return built_without(); }
-Result<void> DeviceGrid::extract(double, DeviceSurface&, const ExtractOptions&, const Progress&) {
+Result<DeviceSurface> DeviceGrid::extract(double, const ExtractOptions&, const Run&) { return built_without(); }
+Result<void> DeviceGrid::extract(double, DeviceSurface&, const ExtractOptions&, const Run&) { return built_without(); }
+Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double>, const ExtractOptions&, const Run&) {
     return built_without();
 }
-Result<std::vector<DeviceSurface>> DeviceGrid::extract(std::span<const double>, const ExtractOptions&,
-                                                       const Progress&) {
-    return built_without();
-}
-Result<Extraction> DeviceGrid::download(const DeviceSurface&, const Progress&) { return built_without(); }
+Result<Extraction> DeviceGrid::download(const DeviceSurface&, const Run&) { return built_without(); }
 
 } // namespace isotet

@@ -14,7 +14,7 @@
 #include "check/star_inspector.hpp"
 #include "check/stars.hpp"
 #include "check/weld.hpp"
-#include "core/guard.hpp"
+#include "core/carry_out.hpp"
 #include "core/parallel.hpp"
 #include "core/same_place.hpp"
 
@@ -43,10 +43,11 @@ public:
           most_(static_cast<std::size_t>(std::max(options.most_findings, 0))) {}
 
     Result<SurfaceReport> run() {
-        report_.vertices = mesh_.vertices();
+        report_.vertices = mesh_.vertex_count();
         report_.triangles = mesh_.triangles();
         progress_("check", 0.1);
-        const bool narrow = std::max(mesh_.vertices(), mesh_.triangles()) <= std::numeric_limits<std::uint32_t>::max();
+        const bool narrow =
+            std::max(mesh_.vertex_count(), mesh_.triangles()) <= std::numeric_limits<std::uint32_t>::max();
         if (narrow) inspect_stars<std::uint32_t>();
         else inspect_stars<std::uint64_t>();
         if (progress_.cancelled()) return cancelled();
@@ -89,11 +90,11 @@ private:
         progress_("check", 0.4);
         const bool keep_all = options_.grid && !options_.closed;
         std::vector<Share> shares(components.count(), Share{});
-        std::vector<Tally> tallies((mesh_.vertices() + grain - 1) / grain);
+        std::vector<Tally> tallies((mesh_.vertex_count() + grain - 1) / grain);
         core::parallel_each(tallies.size(), 1, [&](std::size_t block) {
             if (progress_.cancelled()) return;
             StarInspector inspector(mesh_, most_, keep_all);
-            const std::uint64_t end = std::min<std::uint64_t>(mesh_.vertices(), (block + 1) * grain);
+            const std::uint64_t end = std::min<std::uint64_t>(mesh_.vertex_count(), (block + 1) * grain);
             std::uint64_t component = 0;
             Share sum;
             const auto hand_over = [&] {
@@ -171,7 +172,7 @@ private:
     Result<void> blame_with_grid() {
         const core::IndexColumn ends(surface_.edge_ends);
         const std::uint64_t points = options_.grid->points.tuples();
-        for (std::uint64_t i = 0; i < 2 * mesh_.vertices(); ++i)
+        for (std::uint64_t i = 0; i < 2 * mesh_.vertex_count(); ++i)
             if (ends[i] >= points)
                 return Error{ErrorCode::invalid_data,
                              fmt::format("vertex {} lies on an edge of point {}, but the grid has {} points", i / 2,
@@ -223,7 +224,7 @@ private:
     }
 
     void find_coincident() {
-        if (progress_.cancelled() || options_.weld || mesh_.vertices() == 0) return;
+        if (progress_.cancelled() || options_.weld || mesh_.vertex_count() == 0) return;
         const std::vector<std::uint64_t> lowest = core::lowest_at_same_place(surface_.positions);
         for (std::uint64_t vertex = 0; vertex < lowest.size(); ++vertex)
             if (lowest[vertex] != vertex && report_.coincident_vertices++ < most_)
@@ -242,24 +243,25 @@ private:
 
 Result<void> check_edge_ends(const Array& ends, const Mesh& mesh) {
     const bool integral = !is_floating(ends.type()) && size_of(ends.type()) >= 4;
-    if (mesh.vertices() == 0 || (integral && ends.components() == 2 && ends.tuples() == mesh.vertices())) return {};
+    if (mesh.vertex_count() == 0 || (integral && ends.components() == 2 && ends.tuples() == mesh.vertex_count()))
+        return {};
     return Error{
         ErrorCode::invalid_argument,
         fmt::format("edge_ends has {} tuples of {} {}, but to check against a grid it must have one of 2 integers "
                     "for each of the {} vertices",
-                    ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertices())};
+                    ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertex_count())};
 }
 
 } // namespace
 
-Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options, const Progress& progress) {
-    return core::guarded("checking the surface", [&]() -> Result<SurfaceReport> {
+Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options, const Run& run) {
+    return core::carry_out("checking the surface", run, [&](const Progress& progress) -> Result<SurfaceReport> {
         const auto mesh = Mesh::open(surface);
         if (!mesh) return mesh.error();
         if (options.grid)
             if (auto fits = check_edge_ends(surface.edge_ends, *mesh); !fits) return fits.error();
         if (progress.cancelled()) return cancelled();
-        if (!options.weld || mesh->vertices() == 0) return Checker(surface, *mesh, options, progress).run();
+        if (!options.weld || mesh->vertex_count() == 0) return Checker(surface, *mesh, options, progress).run();
         const Welded welded = weld(surface, *mesh);
         const auto welded_mesh = Mesh::open(welded.surface);
         if (!welded_mesh) return welded_mesh.error();

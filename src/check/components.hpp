@@ -16,10 +16,10 @@ namespace isotet::checking {
 template <class Index>
 class Components {
 public:
-    explicit Components(const Mesh& mesh) : numbers_(mesh.vertices()) {
+    explicit Components(const Mesh& mesh) : numbers_(mesh.vertex_count()) {
         constexpr std::size_t grain = 1 << 14;
-        core::DisjointSets<Index> sets(mesh.vertices());
-        std::vector<std::uint8_t> used(mesh.vertices());
+        core::DisjointSets<Index> sets(mesh.vertex_count());
+        std::vector<std::uint8_t> used(mesh.vertex_count());
         core::parallel_each(mesh.triangles(), grain, [&](std::size_t triangle) {
             const Corners corners = mesh.corners(triangle);
             if (has_equal_corners(corners)) return;
@@ -27,7 +27,7 @@ public:
             sets.unite(static_cast<Index>(corners[0]), static_cast<Index>(corners[1]));
             sets.unite(static_cast<Index>(corners[0]), static_cast<Index>(corners[2]));
         });
-        core::parallel_each(mesh.vertices(), grain,
+        core::parallel_each(mesh.vertex_count(), grain,
                             [&](std::size_t v) { numbers_[v] = sets.root(static_cast<Index>(v)); });
         // A root comes before all others of its component, so it has its number when they ask for it.
         for (std::uint64_t v = 0; v < numbers_.size(); ++v) {

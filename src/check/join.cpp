@@ -65,7 +65,7 @@ Array join_triangles(const Parts& parts, std::size_t count) {
     for (const Surface* part : parts) {
         const core::IndexColumn column(part->triangles);
         for (std::size_t i = 0; i < part->triangles.size(); ++i) all.push_back(static_cast<Index>(first + column[i]));
-        first += part->vertices();
+        first += part->vertex_count();
     }
     return Array::own(std::move(all), 3);
 }
@@ -112,9 +112,9 @@ Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& is
     Parts parts;
     std::uint64_t vertices = 0, triangles = 0;
     for (const Surface& surface : surfaces) {
-        vertices += surface.vertices();
+        vertices += surface.vertex_count();
         triangles += surface.triangle_count();
-        if (surface.vertices() > 0 || surface.triangle_count() > 0) parts.push_back(&surface);
+        if (surface.vertex_count() > 0 || surface.triangle_count() > 0) parts.push_back(&surface);
     }
     if (parts.empty()) parts.push_back(&surfaces[0]);
     const Surface& first = *parts[0];
@@ -125,14 +125,14 @@ Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& is
                            ? join_triangles<std::uint32_t>(parts, triangles)
                            : join_triangles<std::uint64_t>(parts, triangles);
     if (std::ranges::all_of(parts, [&](const Surface* part) { return part->normals_kind == first.normals_kind; })) {
-        const auto count = first.normals_kind == Normals::face ? &Surface::triangle_count : &Surface::vertices;
+        const auto count = first.normals_kind == Normals::face ? &Surface::triangle_count : &Surface::vertex_count;
         joined.normals = concatenate_full(parts, &Surface::normals, count);
         joined.normals_kind = joined.normals.empty() ? Normals::none : first.normals_kind;
     }
-    joined.edge_ends = concatenate_full(parts, &Surface::edge_ends, &Surface::vertices);
-    joined.edge_weights = concatenate_full(parts, &Surface::edge_weights, &Surface::vertices);
+    joined.edge_ends = concatenate_full(parts, &Surface::edge_ends, &Surface::vertex_count);
+    joined.edge_weights = concatenate_full(parts, &Surface::edge_weights, &Surface::vertex_count);
     joined.source_cells = concatenate_full(parts, &Surface::source_cells, &Surface::triangle_count);
-    joined.point_fields = join_fields(parts, &Surface::point_fields, &Surface::vertices);
+    joined.point_fields = join_fields(parts, &Surface::point_fields, &Surface::vertex_count);
     joined.cell_fields = join_fields(parts, &Surface::cell_fields, &Surface::triangle_count);
     if (isovalues.size() == surfaces.size()) {
         std::erase_if(joined.cell_fields, [](const Field& field) { return field.name == "isovalue"; });

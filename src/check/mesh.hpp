@@ -31,7 +31,7 @@ public:
     ///          position is not finite: the lowest-numbered one
     static Result<Mesh> open(const Surface& surface);
 
-    std::uint64_t vertices() const noexcept { return vertices_; }
+    std::uint64_t vertex_count() const noexcept { return vertices_; }
     std::uint64_t triangles() const noexcept { return triangles_; }
 
     Corners corners(std::uint64_t triangle) const {

@@ -13,7 +13,7 @@ using Stars = core::Incidence<Index>;
 /// The triangles around every vertex, those with equal corners left out.
 template <class Index>
 Stars<Index> stars_of(const Mesh& mesh) {
-    return {mesh.vertices(), mesh.triangles(), [&](std::uint64_t triangle, const auto& body) {
+    return {mesh.vertex_count(), mesh.triangles(), [&](std::uint64_t triangle, const auto& body) {
                 const Corners corners = mesh.corners(triangle);
                 if (has_equal_corners(corners)) return;
                 for (const std::uint64_t vertex : corners) body(vertex);

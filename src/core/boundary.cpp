@@ -12,12 +12,11 @@
 #include <fmt/format.h>
 #include <tbb/parallel_sort.h>
 
+#include "core/carry_out.hpp"
 #include "core/faces.hpp"
-#include "core/guard.hpp"
 #include "core/memory.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
-#include "core/rising_progress.hpp"
 
 namespace isotet {
 
@@ -111,7 +110,8 @@ Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& point
                 });
                 return Array::own(std::move(out), 3);
             };
-            if (packed.origin == std::array<double, 3>{}) return positions(Real{}, [](Real x, std::size_t) { return x; });
+            if (packed.origin == std::array<double, 3>{})
+                return positions(Real{}, [](Real x, std::size_t) { return x; });
             return positions(double{}, [&](Real x, std::size_t axis) { return x + packed.origin[axis]; });
         },
         packed.reals);
@@ -179,16 +179,12 @@ Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
 } // namespace core
 
 Result<Surface> boundary_of(const Grid& grid, const Run& run) {
-    return core::guarded("finding the boundary", [&]() -> Result<Surface> {
-        Result<Surface> result = Error{};
-        const Progress rises = core::rising(run.progress);
-        core::with_threads(run.threads, [&] { result = core::boundary_of_grid(grid, rises); });
-        return result;
-    });
+    return core::carry_out("finding the boundary", run,
+                           [&](const Progress& progress) { return core::boundary_of_grid(grid, progress); });
 }
 
-Result<Surface> boundary_of(const PackedGrid& packed, const Progress& progress) {
-    return core::guarded("finding the boundary", [&]() -> Result<Surface> {
+Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
+    return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
         const auto faces = core::boundary_faces(packed.data(), progress);
         if (!faces) return faces.error();
         return core::surface_of(packed.data(), *faces);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <mutex>
 
-#include "core/guard.hpp"
+#include "core/carry_out.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet {
@@ -79,26 +79,25 @@ double variation_of(const Array& array) {
 } // namespace
 
 Result<std::vector<ComponentStatistics>> statistics_of(const Array& values, const Run& run) {
-    return core::guarded("describing a field", [&]() -> Result<std::vector<ComponentStatistics>> {
+    using Statistics = std::vector<ComponentStatistics>;
+    return core::carry_out("describing a field", run, [&](const Progress& progress) -> Result<Statistics> {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         const std::size_t components = values.components();
         const ComponentStatistics nothing{infinity, -infinity, 0, 0};
-        std::vector<ComponentStatistics> totals(components, nothing);
+        Statistics totals(components, nothing);
         std::mutex mutex;
-        core::with_threads(run.threads, [&] {
-            values.visit([&](auto scalars) {
-                const std::size_t grain = std::max<std::size_t>(statistics_grain / std::max<std::size_t>(components, 1), 1);
-                core::parallel_pieces(values.tuples(), grain, run.progress, [&](std::size_t begin, std::size_t end) {
-                    std::vector<ComponentStatistics> parts(components, nothing);
-                    for (std::size_t tuple = begin; tuple < end; ++tuple)
-                        for (std::size_t c = 0; c < components; ++c)
-                            add_value(parts[c], static_cast<double>(scalars[tuple * components + c]));
-                    const std::lock_guard lock(mutex);
-                    for (std::size_t c = 0; c < components; ++c) add_part(totals[c], parts[c]);
-                });
+        values.visit([&](auto scalars) {
+            const std::size_t grain = std::max<std::size_t>(statistics_grain / std::max<std::size_t>(components, 1), 1);
+            core::parallel_pieces(values.tuples(), grain, progress, [&](std::size_t begin, std::size_t end) {
+                Statistics parts(components, nothing);
+                for (std::size_t tuple = begin; tuple < end; ++tuple)
+                    for (std::size_t c = 0; c < components; ++c)
+                        add_value(parts[c], static_cast<double>(scalars[tuple * components + c]));
+                const std::lock_guard lock(mutex);
+                for (std::size_t c = 0; c < components; ++c) add_part(totals[c], parts[c]);
             });
         });
-        if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "describing a field was cancelled"};
+        if (progress.cancelled()) return Error{ErrorCode::cancelled, "describing a field was cancelled"};
         return totals;
     });
 }

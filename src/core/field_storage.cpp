@@ -127,7 +127,7 @@ Pass pass_over(const Array& values, const Packed& packed, const Storage& storage
 /// Tries offset 0 and scale 1, which are mostly right, and passes over the values again when they are not.
 template <class Real>
 FieldStorage choose_and_store(const Array& values, const Packed& packed, const Progress& progress, Real* out) {
-    const Precision precision = packed.single() ? Precision::single : Precision::double_;
+    const Precision precision = packed.single() ? Precision::float32 : Precision::float64;
     Storage tried;
     for (;;) {
         const Pass pass = pass_over(values, packed, tried, progress, out);

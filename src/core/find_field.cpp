@@ -7,17 +7,14 @@
 #include <isotet/grid.hpp>
 
 #include "core/average_to_points.hpp"
+#include "core/carry_out.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
-#include "core/guard.hpp"
-#include "core/parallel.hpp"
 #include "core/scalar_of.hpp"
 
 namespace isotet {
 
 namespace {
-
-using Prefer = FindFieldOptions::Prefer;
 
 /// Names of point and cell fields, each once, in the order of the grid.
 std::vector<std::string> names_of(const Grid& grid) {
@@ -78,7 +75,7 @@ Result<PointField> coordinate(const Grid& grid, std::string_view name) {
     return PointField{std::string(name), core::scalar_of(grid.points, *core::parse_scalar(name)), false, {}};
 }
 
-Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer prefer) {
+Result<PointField> find_by_name(const Grid& grid, std::string_view name, Association prefer) {
     const std::vector<std::string> names = names_of(grid);
     if (name.empty()) {
         if (names.size() != 1)
@@ -96,7 +93,7 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer 
                 : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
     const Field* of_points = find(grid.point_fields, match->field);
     const Field* of_cells = find(grid.cell_fields, match->field);
-    const bool take_cells = of_cells && (!of_points || prefer == Prefer::cell);
+    const bool take_cells = of_cells && (!of_points || prefer == Association::cell);
     const Field& field = take_cells ? *of_cells : *of_points;
     const auto scalar = choose_scalar(field, match->component);
     if (!scalar) return scalar.error();
@@ -118,12 +115,10 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Prefer 
 
 } // namespace
 
-Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options) {
-    return core::guarded("finding the field", [&]() -> Result<PointField> {
-        Result<PointField> found = Error{};
-        core::with_threads(options.threads, [&] { found = find_by_name(grid, name, options.prefer); });
-        return found;
-    });
+Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options,
+                              const Run& run) {
+    return core::carry_out("finding the field", run,
+                           [&](const Progress&) { return find_by_name(grid, name, options.prefer); });
 }
 
 } // namespace isotet

@@ -10,9 +10,9 @@
 #include <isotet/grid.hpp>
 
 #include "core/buffer.hpp"
+#include "core/carry_out.hpp"
 #include "core/cells.hpp"
 #include "core/close_points.hpp"
-#include "core/guard.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
 #include "core/same_place.hpp"
@@ -138,12 +138,13 @@ Result<MergedPoints> merge(const Grid& grid, double tolerance, const Progress& p
 
 } // namespace
 
-Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Progress& progress) {
+Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Run& run) {
     if (!(tolerance >= 0) || std::isinf(tolerance))
         return Error{ErrorCode::invalid_argument,
                      fmt::format("the tolerance is {}, but must be finite and not negative", tolerance)};
-    if (progress.cancelled()) return cancelled();
-    return core::guarded("merging points", [&] { return merge(grid, tolerance, progress); });
+    if (run.progress.cancelled()) return cancelled();
+    return core::carry_out("merging points", run,
+                           [&](const Progress& progress) { return merge(grid, tolerance, progress); });
 }
 
 } // namespace isotet

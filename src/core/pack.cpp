@@ -6,13 +6,12 @@
 #include <fmt/core.h>
 
 #include "core/block_reuse.hpp"
+#include "core/carry_out.hpp"
 #include "core/field_storage.hpp"
-#include "core/guard.hpp"
 #include "core/memory.hpp"
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
-#include "core/rising_progress.hpp"
 
 namespace isotet {
 
@@ -72,7 +71,7 @@ void store_points(const Array& points, Packed& packed) {
 }
 
 Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& field, const PackOptions& options,
-                                     const Progress& progress) {
+                                           const Progress& progress) {
     auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto ok = check_field(field, grid.points.tuples()); !ok) return ok.error();
@@ -88,7 +87,7 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
     auto order = sort_tets(grid, *cells, std::move(counts), options.source_cells, progress);
     if (!order) return order.error();
     Draft draft;
-    if (options.precision == Precision::double_) draft.packed.reals = Values<double>{};
+    if (options.precision == Precision::float64) draft.packed.reals = Values<double>{};
     if (auto ok = form_clusters(*std::move(order), cells->count(), draft, progress); !ok) return ok.error();
     number_points(grid.points.tuples(), draft);
     progress("pack", 0.7);
@@ -151,50 +150,38 @@ PackedGrid::PackedGrid(std::shared_ptr<const core::Packed> data) : data_(std::mo
 
 const PackReport& PackedGrid::report() const noexcept { return data_->report; }
 const FieldReport& PackedGrid::field() const noexcept { return data_->field_report; }
-Precision PackedGrid::precision() const noexcept { return data_->single() ? Precision::single : Precision::double_; }
-std::uint64_t PackedGrid::user_points() const noexcept { return data_->user_points; }
-std::uint64_t PackedGrid::user_cells() const noexcept { return data_->user_cells; }
+Precision PackedGrid::precision() const noexcept { return data_->single() ? Precision::float32 : Precision::float64; }
+std::uint64_t PackedGrid::user_point_count() const noexcept { return data_->user_points; }
+std::uint64_t PackedGrid::user_cell_count() const noexcept { return data_->user_cells; }
 
 Result<PackedGrid> PackedGrid::with_field(const PointField& field, const Run& run) const {
-    return core::guarded("setting the field", [&]() -> Result<PackedGrid> {
+    return core::carry_out("setting the field", run, [&](const Progress& progress) -> Result<PackedGrid> {
         if (auto ok = core::check_field(field, data_->user_points); !ok) return ok.error();
         const auto next = std::make_shared<core::Packed>(*data_);
-        Result<void> stored;
-        core::with_threads(run.threads, [&] {
-            stored = core::store_field(field, *next, run.progress);
-            if (stored && !next->gradients.empty()) core::store_gradients(*next);
-        });
-        if (!stored) return stored.error();
+        if (auto stored = core::store_field(field, *next, progress); !stored) return stored.error();
+        if (!next->gradients.empty()) core::store_gradients(*next);
         return PackedGrid(next);
     });
 }
 
 Result<PackedGrid> PackedGrid::with_points(const Array& points, const Run& run) const {
-    return core::guarded("setting the points", [&]() -> Result<PackedGrid> {
+    return core::carry_out("setting the points", run, [&](const Progress& progress) -> Result<PackedGrid> {
         if (!is_floating(points.type()) || points.components() != 3 || points.tuples() != data_->user_points)
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the new points are {} x {} {}, but must be {} x 3 of float32 or float64",
                                      points.tuples(), points.components(), name_of(points.type()), data_->user_points)};
         const auto next = std::make_shared<core::Packed>(*data_);
-        Result<void> checked;
-        core::with_threads(run.threads, [&] {
-            checked = core::check_moved_points(*next, points);
-            if (!checked) return;
-            core::store_points(points, *next);
-            if (!next->gradients.empty()) core::store_gradients(*next);
-        });
-        if (!checked) return checked.error();
-        run.progress("pack", 1);
+        if (auto checked = core::check_moved_points(*next, points); !checked) return checked.error();
+        core::store_points(points, *next);
+        if (!next->gradients.empty()) core::store_gradients(*next);
+        progress("pack", 1);
         return PackedGrid(next);
     });
 }
 
-Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options,
-                        const Progress& progress) {
-    return core::guarded("packing", [&]() -> Result<PackedGrid> {
-        Result<std::shared_ptr<const core::Packed>> result = Error{};
-        const Progress rises = core::rising(progress);
-        core::with_threads(options.threads, [&] { result = core::pack(grid, field, options, rises); });
+Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options, const Run& run) {
+    return core::carry_out("packing", run, [&](const Progress& progress) -> Result<PackedGrid> {
+        Result<std::shared_ptr<const core::Packed>> result = core::pack(grid, field, options, progress);
         if (!result) return std::move(result).error();
         return PackedGrid(*std::move(result));
     });

@@ -9,7 +9,7 @@ Storage choose_offset(ScalarType type, const ValueStatistics& statistics, Precis
     Storage storage;
     if (!(statistics.lower <= statistics.upper)) return storage; // nothing finite
     const double magnitude = std::max(std::abs(statistics.lower), std::abs(statistics.upper));
-    const bool single = precision == Precision::single;
+    const bool single = precision == Precision::float32;
     storage.unchanged =
         is_floating(type) ? type == ScalarType::float32 || !single : magnitude < (single ? 0x1p24 : 0x1p53);
     const double range = statistics.upper - statistics.lower;

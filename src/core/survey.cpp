@@ -2,12 +2,10 @@
 // survey() and split(): what a grid holds, without packing it.
 #include <algorithm>
 
+#include "core/carry_out.hpp"
 #include "core/duplicate_points.hpp"
 #include "core/faces.hpp"
-#include "core/guard.hpp"
 #include "core/memory.hpp"
-#include "core/parallel.hpp"
-#include "core/rising_progress.hpp"
 #include "core/tet_survey.hpp"
 
 namespace isotet {
@@ -73,17 +71,14 @@ Result<TetList> split(const Grid& grid, const Progress& progress) {
 } // namespace
 } // namespace core
 
-Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
-    return core::guarded("checking the grid", [&]() -> Result<GridReport> {
-        Result<GridReport> result = Error{};
-        const Progress rises = core::rising(progress);
-        core::with_threads(options.threads, [&] { result = core::survey(grid, options, rises); });
-        return result;
-    });
+Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Run& run) {
+    return core::carry_out("checking the grid", run,
+                           [&](const Progress& progress) { return core::survey(grid, options, progress); });
 }
 
-Result<TetList> split(const Grid& grid, const Progress& progress) {
-    return core::guarded("splitting the cells", [&] { return core::split(grid, progress); });
+Result<TetList> split(const Grid& grid, const Run& run) {
+    return core::carry_out("splitting the cells", run,
+                           [&](const Progress& progress) { return core::split(grid, progress); });
 }
 
 } // namespace isotet

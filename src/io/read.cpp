@@ -135,9 +135,12 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
 
 /// The only place where a failed allocation of a reader becomes an error.
 template <class Value, class Work>
-Result<Value> without_exceptions(const std::string& path, const Work& work) {
+Result<Value> without_exceptions(const std::string& path, const Run& run, const Work& work) {
     try {
-        return work();
+        const Progress rises = core::rising(run.progress);
+        Result<Value> result = Error{};
+        core::with_threads(run.threads, [&] { result = work(rises); });
+        return result;
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::out_of_memory, path + " needs more memory than is free"};
     } catch (const std::exception& exception) {
@@ -149,17 +152,17 @@ Result<Value> without_exceptions(const std::string& path, const Work& work) {
 
 } // namespace io
 
-Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return io::without_exceptions<FileInfo>(path, [&]() -> Result<FileInfo> {
+Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, const Run& run) {
+    return io::without_exceptions<FileInfo>(path, run, [&](const Progress& progress) -> Result<FileInfo> {
         const auto reader = io::choose_reader(path, options);
         if (!reader) return reader.error();
-        return (*reader)->inspect(path, options, core::rising(progress));
+        return (*reader)->inspect(path, options, progress);
     });
 }
 
-Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return io::without_exceptions<ReadResult>(path,
-                                              [&] { return io::read_checked(path, options, core::rising(progress)); });
+Result<ReadResult> read(const std::string& path, const ReadOptions& options, const Run& run) {
+    return io::without_exceptions<ReadResult>(
+        path, run, [&](const Progress& progress) { return io::read_checked(path, options, progress); });
 }
 
 } // namespace isotet

@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 
 #include "core/buffer.hpp"
+#include "core/carry_out.hpp"
 #include "core/cells.hpp"
-#include "core/guard.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "make/analytic_field.hpp"
@@ -239,14 +239,11 @@ std::optional<Error> fault_in(const MakeOptions& options) {
 std::vector<std::string> make_shapes() { return names_in(make::shapes); }
 std::vector<std::string> make_fields() { return names_in(make::analytic_fields); }
 
-Result<Grid> make_grid(const MakeOptions& options, const Progress& progress) {
+Result<Grid> make_grid(const MakeOptions& options, const Run& run) {
     if (const auto fault = fault_in(options)) return *fault;
     const Shape& shape = *std::ranges::find(shapes, options.shape, &Shape::name);
-    return core::guarded("making the grid", [&]() -> Result<Grid> {
-        Result<Grid> grid = Error{};
-        core::with_threads(options.threads, [&] { grid = Maker(shape, options, progress).make(); });
-        return grid;
-    });
+    return core::carry_out("making the grid", run,
+                           [&](const Progress& progress) { return Maker(shape, options, progress).make(); });
 }
 
 } // namespace isotet

@@ -102,13 +102,13 @@ public:
     StoredGrid(const ops::DirectInput& input, std::vector<UserTet> tets, ops::DirectResult& result)
         : tets_(std::move(tets)), field_(input.field.values), points_(input.grid.points) {
         for (const UserTet& tet : tets_) used_.insert(tet.corners.begin(), tet.corners.end());
-        const Precision precision = sizeof(Real) == sizeof(float) ? Precision::single : Precision::double_;
+        const Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
         const Looked looked = look_at(field_, used_, precision);
         storage_ = looked.storage;
         result.field = report_on(input.field, looked);
         for (const Field& field : input.carried)
             result.carried.push_back(look_at(field.values, used_, precision).storage);
-        rounds_ = input.grid.points.type() == ScalarType::float64 && precision == Precision::single;
+        rounds_ = input.grid.points.type() == ScalarType::float64 && precision == Precision::float32;
         if (rounds_) origin_ = origin_of(points_, used_);
         result.origin = origin_;
         for (const std::uint64_t point : used_) {
@@ -283,7 +283,7 @@ ops::DirectSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Di
 
 template <class Real>
 Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
-                                       const Progress& progress) {
+                                         const Progress& progress) {
     if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
     std::vector<UserTet> tets = all_tets(input.grid, input.cells);
     if (tets.empty()) return core::nothing_to_contour(input.grid, input.cells);
@@ -299,8 +299,8 @@ Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const op
 }
 
 template Result<ops::DirectResult> extract_direct<float>(const ops::DirectInput&, const ops::DirectRequest&,
-                                                       const Progress&);
+                                                         const Progress&);
 template Result<ops::DirectResult> extract_direct<double>(const ops::DirectInput&, const ops::DirectRequest&,
-                                                        const Progress&);
+                                                          const Progress&);
 
 } // namespace isotet::reference

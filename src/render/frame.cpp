@@ -48,7 +48,7 @@ Frame::Frame(std::shared_ptr<vulkan::Context> context, std::unique_ptr<vulkan::R
 
 Result<std::unique_ptr<Frame>> Frame::make(std::shared_ptr<vulkan::Context> context) {
     if (const std::string why = vulkan::why_unable_to_draw(context->capabilities()); !why.empty())
-        return Error{ErrorCode::machine, fmt::format("the device {} cannot draw: {}", context->info().name, why)};
+        return Error{ErrorCode::no_device, fmt::format("the device {} cannot draw: {}", context->info().name, why)};
     Result<std::unique_ptr<vulkan::RenderPass>> pass = vulkan::RenderPass::make(*context);
     if (!pass) return pass.error();
     return std::unique_ptr<Frame>(new Frame(std::move(context), *std::move(pass)));

@@ -44,10 +44,10 @@ Result<void> check_shapes(const Surface& surface) {
     }
     if (!is_floating(surface.positions.type()) || is_floating(surface.triangles.type()))
         return invalid_argument("a surface needs positions of float32 or float64, and triangles of whole numbers");
-    if (surface.vertices() > most || surface.triangle_count() > most) {
+    if (surface.vertex_count() > most || surface.triangle_count() > most) {
         return invalid_argument(
             fmt::format("a surface of {} vertices and {} triangles, but of each {} can be drawn at most",
-                        surface.vertices(), surface.triangle_count(), most));
+                        surface.vertex_count(), surface.triangle_count(), most));
     }
     return {};
 }
@@ -59,11 +59,11 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::upload(std::shared_ptr<vulkan:
     if (Result<void> fits = check_shapes(surface); !fits) return fits.error();
     auto mesh = std::make_unique<MeshBuffers>();
     mesh->context = std::move(context);
-    mesh->vertices = static_cast<std::uint32_t>(surface.vertices());
+    mesh->vertices = static_cast<std::uint32_t>(surface.vertex_count());
     mesh->triangle_count = static_cast<std::uint32_t>(surface.triangle_count());
     if (Result<void> done = mesh->upload_positions(surface); !done) return done.error();
     if (Result<void> done = mesh->upload_triangles(surface); !done) return done.error();
-    if (surface.normals_kind != Normals::gradient || surface.normals.tuples() != surface.vertices()) return mesh;
+    if (surface.normals_kind != Normals::gradient || surface.normals.tuples() != surface.vertex_count()) return mesh;
     Result<vulkan::Buffer> normals = send<float>(*mesh->context, surface.normals, "normals");
     if (!normals) return normals.error();
     mesh->normals = *std::move(normals);

@@ -21,7 +21,7 @@ struct Renderer::Data {
 
 namespace {
 
-Error built_without() { return {ErrorCode::machine, "isotet was built without Vulkan (ISOTET_VULKAN=OFF)"}; }
+Error built_without() { return {ErrorCode::no_device, "isotet was built without Vulkan (ISOTET_VULKAN=OFF)"}; }
 
 } // namespace
 
@@ -29,7 +29,7 @@ DeviceMesh::DeviceMesh(std::unique_ptr<render::MeshBuffers> buffers) : buffers_(
 DeviceMesh::DeviceMesh(DeviceMesh&&) noexcept = default;
 DeviceMesh& DeviceMesh::operator=(DeviceMesh&&) noexcept = default;
 DeviceMesh::~DeviceMesh() = default;
-std::uint64_t DeviceMesh::vertices() const noexcept { return 0; }
+std::uint64_t DeviceMesh::vertex_count() const noexcept { return 0; }
 std::uint64_t DeviceMesh::triangle_count() const noexcept { return 0; }
 Result<DeviceMesh> DeviceMesh::upload(const Device&, const Surface&) { return built_without(); }
 
@@ -50,8 +50,8 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 const DeviceWork& Renderer::work() const noexcept { return data_->work; }
-Result<Renderer> Renderer::make(const Device&) { return built_without(); }
-Result<Picture> Renderer::draw(const Scene&, const PictureOptions&, const Progress&) { return built_without(); }
+Result<Renderer> Renderer::create(const Device&) { return built_without(); }
+Result<Picture> Renderer::draw(const Scene&, const PictureOptions&, const Run&) { return built_without(); }
 
 TetSurface::TetSurface(std::unique_ptr<render::ChosenTets> tets) : tets_(std::move(tets)) {}
 TetSurface::TetSurface(TetSurface&&) noexcept = default;
@@ -68,8 +68,7 @@ TetStore::TetStore(TetStore&&) noexcept = default;
 TetStore& TetStore::operator=(TetStore&&) noexcept = default;
 TetStore::~TetStore() = default;
 const TetStoreReport& TetStore::report() const noexcept { return pages_->report; }
-Result<TetStore> TetStore::upload(const Device&, const PackedGrid&, DrawMethod, const TetStoreOptions&, int,
-                                  const Progress&) {
+Result<TetStore> TetStore::upload(const Device&, const PackedGrid&, DrawMethod, const TetStoreOptions&, const Run&) {
     return built_without();
 }
 Result<TetSurface> TetStore::at(double) { return built_without(); }

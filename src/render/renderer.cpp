@@ -9,6 +9,7 @@
 #include <isotet/render.hpp>
 
 #include "core/errors.hpp"
+#include "core/carry_out.hpp"
 #include "core/guard.hpp"
 #include "core/packed.hpp"
 #include "render/field_buffer.hpp"
@@ -67,7 +68,7 @@ DeviceMesh::DeviceMesh(std::unique_ptr<render::MeshBuffers> buffers) : buffers_(
 DeviceMesh::DeviceMesh(DeviceMesh&&) noexcept = default;
 DeviceMesh& DeviceMesh::operator=(DeviceMesh&&) noexcept = default;
 DeviceMesh::~DeviceMesh() = default;
-std::uint64_t DeviceMesh::vertices() const noexcept { return buffers_ ? buffers_->vertices : 0; }
+std::uint64_t DeviceMesh::vertex_count() const noexcept { return buffers_ ? buffers_->vertices : 0; }
 std::uint64_t DeviceMesh::triangle_count() const noexcept { return buffers_ ? buffers_->triangle_count : 0; }
 
 Result<DeviceMesh> DeviceMesh::upload(const Device& device, const Surface& surface) {
@@ -192,9 +193,12 @@ Renderer::Renderer(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
-const DeviceWork& Renderer::work() const noexcept { return data_->work; }
+const DeviceWork& Renderer::work() const noexcept {
+    static const DeviceWork none;
+    return data_ ? data_->work : none;
+}
 
-Result<Renderer> Renderer::make(const Device& device) {
+Result<Renderer> Renderer::create(const Device& device) {
     return core::guarded("preparing to draw", [&]() -> Result<Renderer> {
         auto frame = render::Frame::make(device.context());
         if (!frame) return frame.error();
@@ -202,8 +206,11 @@ Result<Renderer> Renderer::make(const Device& device) {
     });
 }
 
-Result<Picture> Renderer::draw(const Scene& scene, const PictureOptions& options, const Progress& progress) {
-    return core::guarded("drawing", [&] { return data_->draw(scene, options, progress); });
+Result<Picture> Renderer::draw(const Scene& scene, const PictureOptions& options, const Run& run) {
+    return core::carry_out("drawing", run, [&](const Progress& progress) -> Result<Picture> {
+        if (!data_) return moved_from("the renderer");
+        return data_->draw(scene, options, progress);
+    });
 }
 
 } // namespace isotet

@@ -28,7 +28,7 @@ bool has_textures(DrawMethod method) { return method == DrawMethod::textures || 
 Result<void> check_options(const vulkan::Context& context, const core::Packed& packed, DrawMethod method,
                            const TetStoreOptions& options) {
     if (method == DrawMethod::mesh && !context.capabilities().mesh_shaders)
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::no_device,
                      fmt::format("the device {} has no mesh shaders (VK_EXT_mesh_shader), which the method mesh needs",
                                  context.info().name)};
     if (!options.gradients) return {};

@@ -4,8 +4,9 @@
 
 #include <isotet/draw_tets.hpp>
 
+#include "core/carry_out.hpp"
+#include "core/errors.hpp"
 #include "core/guard.hpp"
-#include "core/parallel.hpp"
 #include "render/chosen_tets.hpp"
 
 namespace isotet {
@@ -14,28 +15,33 @@ TetSurface::TetSurface(std::unique_ptr<render::ChosenTets> tets) : tets_(std::mo
 TetSurface::TetSurface(TetSurface&&) noexcept = default;
 TetSurface& TetSurface::operator=(TetSurface&&) noexcept = default;
 TetSurface::~TetSurface() = default;
-double TetSurface::isovalue() const noexcept { return tets_->isovalue(); }
-std::uint64_t TetSurface::tets() const noexcept { return tets_->tets(); }
-std::uint64_t TetSurface::sent_bytes() const noexcept { return tets_->sent_bytes(); }
-std::uint64_t TetSurface::bytes_a_picture() const noexcept { return tets_->bytes_a_picture(); }
+double TetSurface::isovalue() const noexcept { return tets_ ? tets_->isovalue() : 0; }
+std::uint64_t TetSurface::tets() const noexcept { return tets_ ? tets_->tets() : 0; }
+std::uint64_t TetSurface::sent_bytes() const noexcept { return tets_ ? tets_->sent_bytes() : 0; }
+std::uint64_t TetSurface::bytes_a_picture() const noexcept { return tets_ ? tets_->bytes_a_picture() : 0; }
 
 Result<std::vector<std::array<std::array<double, 3>, 3>>> TetSurface::triangles() const {
-    return core::guarded("finding the triangles of tets", [&] { return tets_->triangles(); });
+    return core::guarded("finding the triangles of tets", [&]() -> decltype(triangles()) {
+        if (!tets_) return moved_from("the surface of tets");
+        return tets_->triangles();
+    });
 }
 
 TetStore::TetStore(std::shared_ptr<render::TetPages> pages) : pages_(std::move(pages)) {}
 TetStore::TetStore(TetStore&&) noexcept = default;
 TetStore& TetStore::operator=(TetStore&&) noexcept = default;
 TetStore::~TetStore() = default;
-const TetStoreReport& TetStore::report() const noexcept { return pages_->report; }
+
+const TetStoreReport& TetStore::report() const noexcept {
+    static const TetStoreReport none;
+    return pages_ ? pages_->report : none;
+}
 
 Result<TetStore> TetStore::upload(const Device& device, const PackedGrid& packed, DrawMethod method,
-                                  const TetStoreOptions& options, int threads, const Progress& progress) {
-    return core::guarded("uploading tets", [&]() -> Result<TetStore> {
-        Result<std::shared_ptr<render::TetPages>> pages = Error{};
-        core::with_threads(threads, [&] {
-            pages = render::TetPages::upload(device.context(), packed.data(), method, options, progress);
-        });
+                                  const TetStoreOptions& options, const Run& run) {
+    return core::carry_out("uploading tets", run, [&](const Progress& progress) -> Result<TetStore> {
+        Result<std::shared_ptr<render::TetPages>> pages =
+            render::TetPages::upload(device.context(), packed.data(), method, options, progress);
         if (!pages) return pages.error();
         return TetStore(*std::move(pages));
     });
@@ -43,6 +49,7 @@ Result<TetStore> TetStore::upload(const Device& device, const PackedGrid& packed
 
 Result<TetSurface> TetStore::at(double isovalue) {
     return core::guarded("choosing tets", [&]() -> Result<TetSurface> {
+        if (!pages_) return moved_from("the store of tets");
         auto chosen = render::ChosenTets::choose(pages_, isovalue, {});
         if (!chosen) return chosen.error();
         return TetSurface(*std::move(chosen));
@@ -51,6 +58,7 @@ Result<TetSurface> TetStore::at(double isovalue) {
 
 Result<TetSurface> TetStore::at(double isovalue, std::span<const std::uint32_t> tets) {
     return core::guarded("choosing tets", [&]() -> Result<TetSurface> {
+        if (!pages_) return moved_from("the store of tets");
         auto chosen = render::ChosenTets::choose(pages_, isovalue, tets);
         if (!chosen) return chosen.error();
         return TetSurface(*std::move(chosen));

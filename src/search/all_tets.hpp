@@ -8,7 +8,7 @@
 
 namespace isotet::search {
 
-/// No filter: finds all tets. What the others are compared with.
+/// No index: finds all tets. What the others are compared with.
 class AllTets final : public Search {
 public:
     explicit AllTets(const core::TetTable& table) : table_(table) {}

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <isotet/extract_direct.hpp>
+#include <isotet/reference.hpp>
 
 #include "core/array_identity.hpp"
 #include "core/errors.hpp"
@@ -61,28 +62,26 @@ struct PointsMark {
 Result<void> check(const ContourOptions& options) {
     if (options.device && options.method == Method::direct)
         return invalid_argument("a device extracts from clusters, but direct extraction was asked for");
-    if (options.device && options.engine != Engine::cpu)
-        return invalid_argument("a device was given, but the reference engine was asked for, which uses none");
+    if (options.device && options.by_reference)
+        return invalid_argument("a device was given, but the reference was asked for, which uses none");
     return {};
 }
 
-ExtractOptions extract_options(const ContourOptions& options, const ContourInput& input, int threads) {
+ExtractOptions extract_options(const ContourOptions& options, const ContourInput& input) {
     ExtractOptions extract;
-    extract.engine = options.engine;
     extract.ties = options.ties;
     extract.normals = options.normals;
     extract.edge_ends = options.edge_ends;
     extract.source_cells = options.source_cells;
     extract.point_fields = input.point_fields;
     extract.cell_fields = input.cell_fields;
-    extract.threads = threads;
     return extract;
 }
 
 } // namespace
 
 struct Contour::Data {
-    std::mutex mutex; ///< of all that follows
+    std::mutex mutex;   ///< of all that follows
     ContourInput input; ///< without the grid when that is packed
     ContourOptions options;
     FieldSample sample;
@@ -94,7 +93,7 @@ struct Contour::Data {
     std::optional<PointsMark> points;
     std::optional<core::ArrayIdentity> field;
     std::optional<DeviceGrid> on_device;
-    DeviceSurface surface; ///< used again for the next isovalue
+    DeviceSurface surface;            ///< used again for the next isovalue
     std::optional<FieldReport> range; ///< found by a look at the grid
     double update_seconds = 0;
     std::vector<std::string> notes;
@@ -114,9 +113,9 @@ namespace {
 
 Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
                                        std::span<const double> isovalues, const Run& run) {
+    const auto extract = options.by_reference ? extract_direct_by_reference : extract_direct;
     Result<DirectExtraction> direct =
-        extract_direct(input.grid, input.field, isovalues,
-                     {extract_options(options, input, run.threads), options.precision}, run.progress);
+        extract(input.grid, input.field, isovalues, {extract_options(options, input), options.precision}, run);
     if (!direct) return std::move(direct).error();
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
@@ -157,9 +156,9 @@ Result<void> Contour::Data::upload(const Run& run) {
     if (!uploaded) return without_device(uploaded.error());
     on_device = *std::move(uploaded);
     if (!on_device->complete())
-        notes.push_back(fmt::format(
-            "not all of the packed grid, {}, fits into the device's memory: its parts come and go",
-            core::format_bytes(DeviceGrid::needs(*packed, device_options).all())));
+        notes.push_back(
+            fmt::format("not all of the packed grid, {}, fits into the device's memory: its parts come and go",
+                        core::format_bytes(DeviceGrid::needs(*packed, device_options).all())));
     return {};
 }
 
@@ -170,8 +169,7 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
     pack_options.precision = options.precision;
     pack_options.source_cells = options.source_cells || !input.cell_fields.empty();
     pack_options.gradients = options.normals == Normals::gradient;
-    pack_options.threads = run.threads;
-    Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run.progress);
+    Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run);
     if (!made) return made.error();
     packed = *made;
     core::with_threads(run.threads, [&] {
@@ -252,13 +250,13 @@ Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
 
 Result<void> Contour::Data::extract_on_device(std::span<const double> isovalues, const Run& run,
                                               ContourResult& result) {
-    const ExtractOptions extract = extract_options(options, input, run.threads);
+    const ExtractOptions extract = extract_options(options, input);
     while (on_device && result.surfaces.size() < isovalues.size()) {
         const auto one = [&]() -> Result<Extraction> {
-            if (auto ok = on_device->extract(isovalues[result.surfaces.size()], surface, extract, run.progress); !ok)
+            if (auto ok = on_device->extract(isovalues[result.surfaces.size()], surface, extract, run); !ok)
                 return ok.error();
             result.work = on_device->work();
-            Result<Extraction> down = on_device->download(surface, run.progress);
+            Result<Extraction> down = on_device->download(surface, run);
             if (down) result.work.downloaded_bytes += on_device->work().downloaded_bytes;
             return down;
         };
@@ -272,7 +270,7 @@ Result<void> Contour::Data::extract_on_device(std::span<const double> isovalues,
 Result<Contour> Contour::create(ContourInput input, const ContourOptions& options) {
     return core::guarded("starting to contour", [&]() -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
-        Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+        Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
         if (!sample) return sample.error();
         auto data = std::make_unique<Data>();
         data->input = std::move(input);
@@ -289,14 +287,15 @@ Contour::~Contour() = default;
 
 Result<ContourUpdate> Contour::set(ContourInput input, const Run& run) {
     return core::guarded("setting another grid", [&]() -> Result<ContourUpdate> {
-        Result<FieldSample> sample = FieldSample::take(input.grid, input.field);
+        if (!data_) return moved_from("the session");
+        Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
         if (!sample) return sample.error();
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         ContourUpdate update = ContourUpdate::grid;
         const bool needs_cells = data.options.source_cells || !input.cell_fields.empty();
         const bool usable = data.packed && (!needs_cells || data.packed->report().source_bytes > 0) &&
-                            data.packed->user_points() == input.grid.points.tuples();
+                            data.packed->user_point_count() == input.grid.points.tuples();
         if (usable && data.behind != ContourUpdate::grid) {
             core::with_threads(run.threads, [&] {
                 if (!data.cells->is(input.grid.cells)) return;
@@ -318,6 +317,7 @@ Result<ContourUpdate> Contour::set(ContourInput input, const Run& run) {
 
 Result<void> Contour::prepare(const Run& run) {
     return core::guarded("preparing to contour", [&]() -> Result<void> {
+        if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         return data_->prepare(1, run);
     });
@@ -327,6 +327,7 @@ Result<ContourResult> Contour::extract(double isovalue, const Run& run) { return
 
 Result<ContourResult> Contour::extract(std::span<const double> isovalues, const Run& run) {
     return core::guarded("extraction", [&]() -> Result<ContourResult> {
+        if (!data_) return moved_from("the session");
         Data& data = *data_;
         std::unique_lock lock(data.mutex);
         data.asked += isovalues.size();
@@ -347,12 +348,15 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             std::ranges::move(std::exchange(data.notes, {}), std::back_inserter(head.notes));
             result->on_device = data.on_device.has_value();
             const PackedGrid packed = *data.packed;
-            const ExtractOptions options = extract_options(data.options, data.input, run.threads);
+            const bool by_reference = data.options.by_reference;
+            const ExtractOptions options = extract_options(data.options, data.input);
             lock.unlock();
             result->field = packed.field();
             result->cells_left_out = packed.report().cells_left_out;
             if (result->surfaces.size() < isovalues.size()) {
-                auto rest = isotet::extract(packed, isovalues.subspan(result->surfaces.size()), options, run.progress);
+                const auto left = isovalues.subspan(result->surfaces.size());
+                auto rest = by_reference ? extract_by_reference(packed, left, options, run)
+                                         : isotet::extract(packed, left, options, run);
                 if (!rest) return rest.error();
                 std::ranges::move(*rest, std::back_inserter(result->surfaces));
             }
@@ -368,22 +372,24 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
 
 Result<std::vector<DeviceSurface>> Contour::extract_on_device(std::span<const double> isovalues, const Run& run) {
     return core::guarded("extraction", [&]() -> Result<std::vector<DeviceSurface>> {
+        if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         if (auto ok = data.prepare(isovalues.size(), run); !ok) return ok.error();
         if (!data.on_device) return invalid_argument("the session extracts on the CPU: it has no device");
         data.asked += isovalues.size();
-        return data.on_device->extract(isovalues, extract_options(data.options, data.input, run.threads),
-                                       run.progress);
+        return data.on_device->extract(isovalues, extract_options(data.options, data.input), run);
     });
 }
 
 Method Contour::method(std::size_t isovalues) const {
+    if (!data_) return Method::direct;
     const std::lock_guard lock(data_->mutex);
     return data_->method_of_next(isovalues);
 }
 
 Result<Contour::Prediction> Contour::predict(double isovalue) const {
+    if (!data_) return moved_from("the session");
     const std::lock_guard lock(data_->mutex);
     const Data& data = *data_;
     Prediction prediction;
@@ -404,6 +410,7 @@ Result<Contour::Prediction> Contour::predict(double isovalue) const {
 
 Result<FieldReport> Contour::field(const Run& run) {
     return core::guarded("looking at the field", [&]() -> Result<FieldReport> {
+        if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         if (data.range) return *data.range;
@@ -417,6 +424,7 @@ Result<FieldReport> Contour::field(const Run& run) {
 }
 
 std::optional<PackedGrid> Contour::packed() const {
+    if (!data_) return std::nullopt;
     const std::lock_guard lock(data_->mutex);
     return data_->behind == ContourUpdate::nothing ? data_->packed : std::nullopt;
 }
@@ -427,6 +435,7 @@ DeviceWork Contour::device_work() const {
 }
 
 bool Contour::has_device() const {
+    if (!data_) return false;
     const std::lock_guard lock(data_->mutex);
     return data_->options.device.has_value();
 }

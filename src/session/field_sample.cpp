@@ -31,7 +31,7 @@ bool is_within(const core::CellReader& cells, std::size_t cell) {
 
 } // namespace
 
-Result<FieldSample> FieldSample::take(const Grid& grid, const PointField& field) {
+Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& field) {
     return core::guarded("looking at the field", [&]() -> Result<FieldSample> {
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();

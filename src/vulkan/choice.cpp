@@ -51,7 +51,7 @@ std::string lower_case(std::string_view text) {
 
 Result<std::size_t> if_usable(std::span<const DeviceInfo> devices, std::size_t i) {
     if (devices[i].unusable.empty()) return i;
-    return Error{ErrorCode::machine,
+    return Error{ErrorCode::no_device,
                  fmt::format("the device {} cannot be used: {}", devices[i].name, devices[i].unusable)};
 }
 
@@ -77,7 +77,7 @@ Result<std::size_t> only(std::span<const DeviceInfo> devices, std::vector<std::s
 Result<std::size_t> choose(std::span<const DeviceInfo> devices, std::string_view choice) {
     if (choice.empty()) {
         if (const auto best = best_gpu(devices)) return *best;
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::no_device,
                      fmt::format("no graphics card that can be used; devices: {}", listed(devices))};
     }
     if (const auto index = whole_number(choice)) {

@@ -33,7 +33,7 @@ std::string_view name_of(VkResult result) noexcept {
 
 Error failure(std::string_view doing, VkResult result) {
     const bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return {memory ? ErrorCode::out_of_memory : ErrorCode::machine,
+    return {memory ? ErrorCode::out_of_memory : ErrorCode::device_failed,
             fmt::format("{} failed: {} ({})", doing, name_of(result), static_cast<int>(result))};
 }
 

@@ -42,9 +42,10 @@ VKAPI_ATTR VkBool32 VKAPI_CALL hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDe
 /// Always the machine's fault: loaders speak of memory, too, when a driver's description is broken.
 Error no_instance(VkResult result) {
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-        return {ErrorCode::machine, "there is a Vulkan loader on this machine, but no driver that it can use; drivers of graphics cards bring "
-                "one, and the package mesa-vulkan-drivers of Debian and Ubuntu has a software device"};
-    return {ErrorCode::machine, failure("starting Vulkan", result).message};
+        return {ErrorCode::no_device,
+                "there is a Vulkan loader on this machine, but no driver that it can use; drivers of graphics cards "
+                "bring one, and the package mesa-vulkan-drivers of Debian and Ubuntu has a software device"};
+    return {ErrorCode::no_device, failure("starting Vulkan", result).message};
 }
 
 } // namespace
@@ -59,11 +60,11 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
     if (const VkResult asked = load.vkEnumerateInstanceVersion(&version); asked != VK_SUCCESS)
         return no_instance(asked);
     if (version < VK_API_VERSION_1_2) {
-        return Error{ErrorCode::machine, fmt::format("the Vulkan loader is of version {}.{}, but 1.2 is needed",
-                                                     VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
+        return Error{ErrorCode::no_device, fmt::format("the Vulkan loader is of version {}.{}, but 1.2 is needed",
+                                                       VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
     }
     if (validation != Validation::off && !has_validation_layer(load))
-        return Error{ErrorCode::machine, fmt::format("the layer {} is not installed", validation_layer)};
+        return Error{ErrorCode::no_device, fmt::format("the layer {} is not installed", validation_layer)};
 
     std::unique_ptr<Instance> instance(new Instance);
     instance->watch_ = watch;
@@ -120,7 +121,7 @@ Result<std::unique_ptr<Instance>> Instance::open(const Watch& watch) {
     }
 #undef ISOTET_LOAD
 #define ISOTET_CHECK(name)                                                                                             \
-    if (!call.name) return Error{ErrorCode::machine, "the Vulkan loader lacks " #name};
+    if (!call.name) return Error{ErrorCode::no_device, "the Vulkan loader lacks " #name};
     ISOTET_VULKAN_INSTANCE_FUNCTIONS(ISOTET_CHECK)
 #undef ISOTET_CHECK
 

@@ -12,7 +12,7 @@ Result<LoaderFunctions> open_loader() {
     void* library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         const char* why = dlerror();
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::no_device,
                      fmt::format("there is no Vulkan on this machine: {}", why ? why : "libvulkan.so.1")};
     }
     LoaderFunctions call;
@@ -25,7 +25,7 @@ Result<LoaderFunctions> open_loader() {
 #undef ISOTET_LOAD
     // vkEnumerateInstanceVersion came with Vulkan 1.1.
     if (!complete)
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::no_device,
                      "the Vulkan loader libvulkan.so.1 is too old: it lacks the functions of Vulkan 1.1"};
     return call;
 }

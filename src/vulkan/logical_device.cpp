@@ -81,7 +81,7 @@ Result<std::unique_ptr<LogicalDevice>> LogicalDevice::open(const Instance& insta
     }
 #undef ISOTET_CHECK
     if (missing)
-        return Error{ErrorCode::machine, fmt::format("the driver of {} lacks {}", device->device_name_, missing)};
+        return Error{ErrorCode::no_device, fmt::format("the driver of {} lacks {}", device->device_name_, missing)};
 
     call.vkGetDeviceQueue(device->handle_, device->compute_.family, 0, &device->compute_.handle);
     call.vkGetDeviceQueue(device->handle_, device->transfer_.family, 0, &device->transfer_.handle);
@@ -114,7 +114,7 @@ void LogicalDevice::name_object(VkObjectType type, std::uint64_t handle, std::st
 
 Error LogicalDevice::lose(std::string why) {
     if (lost_.empty()) lost_ = std::move(why);
-    return {ErrorCode::machine, lost_};
+    return {ErrorCode::device_failed, lost_};
 }
 
 Result<void> LogicalDevice::submit(const Queue& queue, VkCommandBuffer commands, VkFence done, std::string_view what) {
@@ -145,7 +145,7 @@ Result<void> LogicalDevice::wait(VkFence done, std::chrono::milliseconds limit, 
 
 Result<void> LogicalDevice::alive() const {
     if (lost_.empty()) return {};
-    return Error{ErrorCode::machine, lost_};
+    return Error{ErrorCode::device_failed, lost_};
 }
 
 bool LogicalDevice::hung() const {

@@ -84,7 +84,7 @@ Result<void> Memory::choose_types(const Capabilities& capabilities, const Option
     if (!set_up(Where::device, device_memory_type(capabilities, *allowed)) ||
         !set_up(Where::upload, upload_memory_type(capabilities, *allowed)) ||
         !set_up(Where::download, download_memory_type(capabilities, *allowed)))
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::no_device,
                      fmt::format("the driver allows buffers in the memory types {:#b} alone, and the processor can "
                                  "reach none of them",
                                  *allowed)};
@@ -198,7 +198,8 @@ Result<void> Memory::place(Buffer& buffer, Pool& pool) {
     VkMemoryRequirements needs{};
     device_.call().vkGetBufferMemoryRequirements(device_.handle(), buffer.handle_, &needs);
     if (!(needs.memoryTypeBits >> pool.type & 1))
-        return Error{ErrorCode::machine, fmt::format("the driver does not allow buffers in memory type {}", pool.type)};
+        return Error{ErrorCode::no_device,
+                     fmt::format("the driver does not allow buffers in memory type {}", pool.type)};
     const std::uint64_t alignment = std::max(needs.alignment, grain);
     const std::uint64_t bytes = round_up(needs.size, grain);
 

@@ -144,7 +144,7 @@ Result<void> Target::make_image(Image& image, VkFormat format, VkImageUsageFlags
     allocate.allocationSize = needs.size;
     allocate.memoryTypeIndex = device_memory_type(context_.capabilities(), needs.memoryTypeBits);
     if (allocate.memoryTypeIndex == Capabilities::none)
-        return Error{ErrorCode::machine,
+        return Error{ErrorCode::no_device,
                      fmt::format("the driver allows images in the memory types {:#b} alone, and none of them is plain "
                                  "memory",
                                  needs.memoryTypeBits)};

@@ -11,6 +11,7 @@
 #include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
+#include "support/engines.hpp"
 #include "support/small_grid.hpp"
 
 namespace isotet::test {
@@ -33,31 +34,32 @@ public:
     }
     std::vector<std::pair<std::string, Operation>> all() {
         return {
-            {"survey", [this](const Progress& p) { return code_of(survey(grid_, {}, p)); }},
-            {"split", [this](const Progress& p) { return code_of(split(grid_, p)); }},
-            {"pack", [this](const Progress& p) { return code_of(pack(grid_, point_field(grid_), {}, p)); }},
-            {"set_field", [this](const Progress& p) { return code_of(packed_.with_field(point_field(grid_), {.progress = p})); }},
-            {"extract", [this](const Progress& p) { return code_of(extract(packed_, 0.1, {}, p)); }},
+            {"survey", [this](const Progress& p) { return code_of(survey(grid_, {}, {.progress = p})); }},
+            {"split", [this](const Progress& p) { return code_of(split(grid_, {.progress = p})); }},
+            {"pack",
+             [this](const Progress& p) { return code_of(pack(grid_, point_field(grid_), {}, {.progress = p})); }},
+            {"set_field",
+             [this](const Progress& p) { return code_of(packed_.with_field(point_field(grid_), {.progress = p})); }},
+            {"extract", [this](const Progress& p) { return code_of(extract(packed_, 0.1, {}, {.progress = p})); }},
             {"extract by reference",
              [this](const Progress& p) {
-                 ExtractOptions options;
-                 options.engine = Engine::reference;
-                 return code_of(extract(packed_, 0.1, options, p));
+                 return code_of(extract_on(Engine::reference, packed_, 0.1, {}, {.progress = p}));
              }},
             {"extract_direct",
-             [this](const Progress& p) { return code_of(extract_direct(grid_, point_field(grid_), isovalues_, {}, p)); }},
+             [this](const Progress& p) {
+                 return code_of(extract_direct(grid_, point_field(grid_), isovalues_, {}, {.progress = p}));
+             }},
             {"extract_direct by reference",
              [this](const Progress& p) {
-                 DirectOptions options;
-                 options.extract.engine = Engine::reference;
-                 return code_of(extract_direct(grid_, point_field(grid_), isovalues_, options, p));
+                 return code_of(
+                     extract_direct_by_reference(grid_, point_field(grid_), isovalues_, {}, {.progress = p}));
              }},
-            {"check", [this](const Progress& p) { return code_of(check(surface_, {}, p)); }},
+            {"check", [this](const Progress& p) { return code_of(check(surface_, {}, {.progress = p})); }},
             {"make_grid",
              [](const Progress& p) {
                  MakeOptions options;
                  options.side = 40;
-                 return code_of(make_grid(options, p));
+                 return code_of(make_grid(options, {.progress = p}));
              }},
         };
     }
@@ -82,7 +84,7 @@ TEST(Cancelling, MidwayEndsPackingAtEveryStep) {
     std::vector<double> fractions;
     Progress listen;
     listen.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
-    ASSERT_TRUE(pack(grid, point_field(grid), {}, listen));
+    ASSERT_TRUE(pack(grid, point_field(grid), {}, {.progress = listen}));
     ASSERT_GT(fractions.size(), 4u);
     for (const double stop : fractions) {
         if (stop >= 0.9) continue; // nearly done: it may end either way
@@ -92,7 +94,7 @@ TEST(Cancelling, MidwayEndsPackingAtEveryStep) {
         progress.report = [&](std::string_view, double fraction) {
             if (fraction >= stop) cancel = true;
         };
-        EXPECT_EQ(code_of(pack(grid, point_field(grid), {}, progress)), ErrorCode::cancelled) << stop;
+        EXPECT_EQ(code_of(pack(grid, point_field(grid), {}, {.progress = progress})), ErrorCode::cancelled) << stop;
     }
 }
 
@@ -101,7 +103,7 @@ TEST(Cancelling, MidwayEndsASurveyAtOnce) {
     std::vector<double> fractions;
     Progress listen;
     listen.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
-    ASSERT_TRUE(survey(grid, {.threads = 1}, listen));
+    ASSERT_TRUE(survey(grid, {}, {1, listen}));
     ASSERT_GT(fractions.size(), 10u);
     for (std::size_t stop = 0; stop + 1 < fractions.size(); stop += 1 + fractions.size() / 40) {
         std::atomic<bool> cancel{false};
@@ -112,7 +114,7 @@ TEST(Cancelling, MidwayEndsASurveyAtOnce) {
             later += cancel;
             if (fraction >= fractions[stop]) cancel = true;
         };
-        EXPECT_EQ(code_of(survey(grid, {.threads = 1}, progress)), ErrorCode::cancelled) << fractions[stop];
+        EXPECT_EQ(code_of(survey(grid, {}, {1, progress})), ErrorCode::cancelled) << fractions[stop];
         EXPECT_EQ(later, 0) << "work went on after " << fractions[stop];
     }
 }
@@ -151,7 +153,7 @@ TEST(Progress, NeverFallsWhenManyThreadsPack) {
             std::this_thread::yield(); // others come to report meanwhile
             --inside;
         };
-        ASSERT_TRUE(pack(grid, point_field(grid), {.threads = 64}, progress));
+        ASSERT_TRUE(pack(grid, point_field(grid), {}, {64, progress}));
         EXPECT_EQ(last, 1);
     }
 }

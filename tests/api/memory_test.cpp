@@ -46,10 +46,8 @@ protected:
 
 void pack_with_little_memory() {
     const Grid grid = made_grid("kuhn", 80, {"plane"}); // 3,072,000 tets
-    PackOptions options;
-    options.threads = 1;
     leave_memory(50 << 20);
-    end_with(pack(grid, point_field(grid), options));
+    end_with(pack(grid, point_field(grid), {}, {.threads = 1}));
 }
 
 TEST_F(OutOfMemory, IsToldByPackWithTheAmountNeeded) {
@@ -61,13 +59,12 @@ TEST_F(OutOfMemory, IsToldByPackWithTheAmountNeeded) {
 void extract_with_memory_left(std::uint64_t bytes) {
     const Grid grid = made_grid("kuhn", 72, {"integer"});
     ExtractOptions options;
-    options.threads = 1;
     options.ties = Ties::keep;
     options.edge_ends = true;
     const PackedGrid packed = pack(grid, point_field(grid)).value();
-    if (!extract(packed, 4, options)) std::exit(3); // what can be loaded lazily is loaded now
+    if (!extract(packed, 4, options, {.threads = 1})) std::exit(3); // what can be loaded lazily is loaded now
     leave_memory(bytes);
-    end_with(extract(packed, 2, options));
+    end_with(extract(packed, 2, options, {.threads = 1}));
 }
 
 TEST_F(OutOfMemory, IsToldByExtractWithTheAmountNeeded) {
@@ -81,12 +78,10 @@ TEST_F(OutOfMemory, IsNotToldByExtractWhenOnlyABoundWouldNotFit) {
 
 void extract_many_with_little_memory() {
     const Grid grid = made_grid("kuhn", 40, {"gyroid"});
-    ExtractOptions options;
-    options.threads = 1;
     const PackedGrid packed = pack(grid, point_field(grid)).value();
-    if (!extract(packed, 0, options)) std::exit(3);
+    if (!extract(packed, 0, {}, {.threads = 1})) std::exit(3);
     leave_memory(32 << 20); // for one of them it is enough
-    end_with(extract(packed, std::vector<double>(40, 0.1), options));
+    end_with(extract(packed, std::vector<double>(40, 0.1), {}, {.threads = 1}));
 }
 
 TEST_F(OutOfMemory, IsToldByExtractForAllIsovaluesTogether) {

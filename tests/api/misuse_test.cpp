@@ -192,12 +192,9 @@ TEST(SetPoints, RefusesPointsOfTheWrongShapeOrType) {
 
 TEST(NumberOfThreads, MayBeAnything) {
     for (const int threads : {std::numeric_limits<int>::min(), -1, 0, 1, 5000, std::numeric_limits<int>::max()}) {
-        PackOptions pack_options;
-        pack_options.threads = threads;
-        const PackedGrid packed = pack(one_tet(), some_field(), pack_options).value();
-        ExtractOptions options;
-        options.threads = threads;
-        EXPECT_EQ(extract(packed, 0.5, options).value().surface.triangle_count(), 1u) << threads;
+        const isotet::Run run{.threads = threads};
+        const PackedGrid packed = pack(one_tet(), some_field(), {}, run).value();
+        EXPECT_EQ(extract(packed, 0.5, {}, run).value().surface.triangle_count(), 1u) << threads;
     }
 }
 
@@ -206,7 +203,7 @@ TEST(EmptyPackedGrid, HasNoSurface) {
     ExtractOptions options;
     options.normals = Normals::gradient;
     options.source_cells = true;
-    EXPECT_EQ(extract(empty, 1, options).value().surface.vertices(), 0u);
+    EXPECT_EQ(extract(empty, 1, options).value().surface.vertex_count(), 0u);
 }
 
 TEST(ResultValue, ThrowsTheErrorAndNothingElse) {

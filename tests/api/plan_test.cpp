@@ -26,7 +26,7 @@ FieldOnGrid made(const std::string& shape, std::uint64_t side, const std::string
 TEST(FieldSample, PredictsTheTrianglesOfALargeSurface) {
     for (const char* shape : {"kuhn", "shuffled", "hex", "wedge", "mixed"}) {
         const FieldOnGrid on = made(shape, 24, "gyroid");
-        const FieldSample sample = FieldSample::take(on.grid, on.field).value();
+        const FieldSample sample = FieldSample::create(on.grid, on.field).value();
         EXPECT_EQ(sample.points(), on.grid.points.tuples());
         const auto tets = static_cast<double>(survey(on.grid, {.faces = false}).value().tets);
         EXPECT_NEAR(static_cast<double>(sample.tets()), tets, 0.05 * tets) << shape;
@@ -45,15 +45,15 @@ TEST(FieldSample, PassesOverWhatHasNoDataAndWhatIsBroken) {
     FieldOnGrid on = made("kuhn", 2, "sphere");
     on.field.values =
         Array::own(std::vector<double>(on.grid.points.tuples(), std::numeric_limits<double>::quiet_NaN()));
-    const FieldSample nothing = FieldSample::take(on.grid, on.field).value();
+    const FieldSample nothing = FieldSample::create(on.grid, on.field).value();
     EXPECT_GT(nothing.lower(), nothing.upper());
     EXPECT_EQ(nothing.triangles(0), 0);
 
     on.grid.cells.connectivity = Array::own(std::vector<std::int64_t>(4 * on.grid.cells.count(), 1'000'000'000));
-    EXPECT_EQ(FieldSample::take(on.grid, on.field).value().triangles(0), 0);
+    EXPECT_EQ(FieldSample::create(on.grid, on.field).value().triangles(0), 0);
 
     on.field.values = Array::own(std::vector<float>(3));
-    const auto wrong = FieldSample::take(on.grid, on.field);
+    const auto wrong = FieldSample::create(on.grid, on.field);
     ASSERT_FALSE(wrong);
     EXPECT_EQ(wrong.error().code, ErrorCode::invalid_argument);
     EXPECT_NE(wrong.error().message.find("3 values"), std::string::npos) << wrong.error().message;

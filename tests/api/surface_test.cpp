@@ -23,7 +23,7 @@ TEST(Surface, CarriesOnlyWhatWasAskedFor) {
     const Grid grid = made_grid("mixed", 5, {"sphere"});
     const PackedGrid packed = packed_with_everything(grid);
     const Surface plain = extract(packed, 0.6).value().surface;
-    EXPECT_GT(plain.vertices(), 0u);
+    EXPECT_GT(plain.vertex_count(), 0u);
     EXPECT_TRUE(plain.normals.empty() && plain.edge_ends.empty() && plain.edge_weights.empty() &&
                 plain.source_cells.empty());
     EXPECT_TRUE(plain.point_fields.empty() && plain.cell_fields.empty());
@@ -54,7 +54,7 @@ TEST(Surface, CarriesPointFieldsOfEveryTypeInterpolated) {
     EXPECT_EQ(surface.point_fields[0].values.type(), ScalarType::float64);
     EXPECT_EQ(surface.point_fields[1].values.type(), ScalarType::float64);
     EXPECT_EQ(surface.point_fields[2].values.type(), ScalarType::float32);
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto place = position_of(surface, v);
         const Field& carried = surface.point_fields[0];
         EXPECT_NEAR(carried.values.at(v), 101325 + place[0], 1e-6);
@@ -71,7 +71,7 @@ TEST(Surface, CarriesNaNOfAPointFieldAsTheCanonicalNaN) {
     options.edge_ends = true;
     options.point_fields = {{"f", Array::own(std::vector<float>{5, 7, std::bit_cast<float>(0xff801234u), 9})}};
     const Surface surface = extract(packed, 0.5, options).value().surface;
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const float value = surface.point_fields[0].values.as<float>()[v];
         const std::int64_t below = ends_of(surface, v).first;
         if (below == 2) {
@@ -139,7 +139,7 @@ TEST(Surface, CanBeGivenALaterFieldByItsEdgeEnds) {
     const Surface surface = extract(packed_with_everything(grid), 0.6, options).value().surface;
     const auto gyroid = grid.point_fields[1].values.as<float>();
     const auto weights = surface.edge_weights.as<float>();
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto [below, above] = ends_of(surface, v);
         const float a = gyroid[static_cast<std::size_t>(below)], b = gyroid[static_cast<std::size_t>(above)];
         EXPECT_NEAR(surface.point_fields[0].values.as<float>()[v], a + weights[v] * (b - a), 1e-6);
@@ -166,7 +166,7 @@ TEST(GradientNormals, FallBackOnTheFirstTriangleWhereTheGradientCancels) {
     const Surface surface = extract(packed, 0.5, gradient).value().surface,
                   faces = extract(packed, 0.5, face).value().surface;
     ASSERT_EQ(surface.triangle_count(), 8u);
-    ASSERT_EQ(surface.vertices(), 6u);
+    ASSERT_EQ(surface.vertex_count(), 6u);
     std::vector<bool> seen(6, false);
     for (std::size_t t = 0; t < 8; ++t)
         for (const std::size_t v : corners_of(surface, t)) {

@@ -39,7 +39,7 @@ TEST(Survey, CountsTheBoundaryOfACube) {
 TEST(Survey, CountsTheBoundaryOfManyTetsInAnyOrder) {
     for (const char* shape : {"kuhn", "shuffled"})
         for (const int threads : {1, 7}) {
-            const GridReport report = survey(cube_of(48, shape), {.threads = threads}).value(); // 663,552 tets
+            const GridReport report = survey(cube_of(48, shape), {}, {.threads = threads}).value(); // 663,552 tets
             EXPECT_EQ(report.boundary_faces, 6u * 48 * 48 * 2) << shape;
             EXPECT_EQ(report.repeated_tets, 0u) << shape;
             EXPECT_EQ(report.duplicate_points, 0u) << shape;

@@ -17,7 +17,7 @@ TEST(WriteText, ReplacesAFileAsAWholeOrNotAtAll) {
     const std::string path = folder / "a.txt";
     put_content(path, "old");
     const std::atomic<bool> cancel = true;
-    EXPECT_FALSE(write_text("new", path, {.report = {}, .cancel = &cancel}));
+    EXPECT_FALSE(write_text("new", path, {.progress = {.report = {}, .cancel = &cancel}}));
     EXPECT_EQ(content_of(path), "old");
     EXPECT_TRUE(write_text("new", path));
     EXPECT_EQ(content_of(path), "new");

@@ -21,7 +21,7 @@ Field field(const std::string& name, std::vector<float> values) { return {name, 
 
 TEST(JoinSurfaces, PutsOneAfterAnotherAndMovesNumbers) {
     const Surface joined = join({surface_of(square()), surface_of(octahedron())}, {0.5, 2});
-    EXPECT_EQ(joined.vertices(), 10u);
+    EXPECT_EQ(joined.vertex_count(), 10u);
     EXPECT_EQ(joined.triangle_count(), 10u);
     EXPECT_EQ(joined.triangles.type(), ScalarType::uint32);
     EXPECT_EQ(joined.triangles.at(2, 0), 4);
@@ -68,9 +68,11 @@ TEST(JoinSurfaces, LetsEmptySurfacesDecideNothing) {
 
 TEST(JoinSurfaces, WidensPositionsOfDifferentTypes) {
     Surface a = surface_of(square()), b = surface_of(square());
-    b.positions = Array::own(std::vector<double>{4000000.1, 0, 0, 4000001.1, 0, 0, 4000001.1, 1, 0, 4000000.1, 1, 0}, 3);
+    b.positions =
+        Array::own(std::vector<double>{4000000.1, 0, 0, 4000001.1, 0, 0, 4000001.1, 1, 0, 4000000.1, 1, 0}, 3);
     const Surface joined = join({a, b}, {});
-    EXPECT_EQ(joined.positions.type(), a.positions.type() == ScalarType::float64 ? a.positions.type() : ScalarType::float64);
+    EXPECT_EQ(joined.positions.type(),
+              a.positions.type() == ScalarType::float64 ? a.positions.type() : ScalarType::float64);
     EXPECT_EQ(joined.positions.at(5, 0), 4000001.1);
 }
 
@@ -87,7 +89,7 @@ TEST(JoinSurfaces, KeepsNormalsOnlyOfOneKind) {
 }
 
 TEST(JoinSurfaces, MakesAnEmptySurfaceOfNothing) {
-    EXPECT_EQ(join({}, {}).vertices(), 0u);
+    EXPECT_EQ(join({}, {}).vertex_count(), 0u);
     EXPECT_TRUE(check(join({Surface{}, Surface{}}, {1, 2})).value().clean);
 }
 

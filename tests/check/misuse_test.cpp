@@ -70,7 +70,7 @@ TEST(CheckMisuse, EndsWithCancelledWhenItIsCancelled) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    const auto report = check(surface_of(octahedron()), {}, progress);
+    const auto report = check(surface_of(octahedron()), {}, {.progress = progress});
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().code, ErrorCode::cancelled);
 }

@@ -43,7 +43,8 @@ TEST(BenchAdvice, LeavesOutWhatIsMissing) {
 }
 
 TEST(BenchAdvice, GainsAreMeansOverTheGridsThatHaveBoth) {
-    const BenchPair all{BenchMethod::textures, Filter::none}, tree{BenchMethod::textures, Filter::interval_tree};
+    const BenchPair all{BenchMethod::textures, SearchIndex::none},
+        tree{BenchMethod::textures, SearchIndex::interval_tree};
     const std::vector<BenchRow> rows{row(0, 6, all, "a"), row(0, 2, tree, "a"), row(0, 5, all, "b"),
                                      row(0, 1, tree, "b"), row(0, 1, tree, "c")};
     EXPECT_DOUBLE_EQ(gain_of_interval_tree(rows, BenchMethod::textures).value(), 4);

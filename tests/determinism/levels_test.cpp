@@ -15,6 +15,7 @@
 
 #include "core/level.hpp"
 #include "determinism/packed_bytes.hpp"
+#include "support/engines.hpp"
 #include "support/random_grid.hpp"
 #include "support/surface_bytes.hpp"
 
@@ -22,10 +23,8 @@ namespace isotet::test {
 namespace {
 
 /// The reference's surface, from every level.
-void expect_equal_levels(const PackedGrid& packed, double isovalue, ExtractOptions options) {
-    options.engine = Engine::reference;
-    const std::string expected = bytes_of(extract(packed, isovalue, options).value().surface);
-    options.engine = Engine::cpu;
+void expect_equal_levels(const PackedGrid& packed, double isovalue, const ExtractOptions& options) {
+    const std::string expected = bytes_of(extract_on(Engine::reference, packed, isovalue, options).value().surface);
     for (int level = 0; level <= int(core::best_level()); ++level) {
         core::force_level(core::Level(level));
         const Extraction made = extract(packed, isovalue, options).value();
@@ -112,7 +111,7 @@ TEST(InstructionLevels, StoreTheSameFields) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const NastyGrid g =
             nasty_grid(seed, {.side = 9, .values = seed % 2 ? 0 : 5, .no_data = seed > 2 ? 0.05 : 0, .missing = 0.05});
-        for (const Precision precision : {Precision::single, Precision::double_}) {
+        for (const Precision precision : {Precision::float32, Precision::float64}) {
             std::string expected;
             for (int level = 0; level <= int(core::best_level()); ++level) {
                 core::force_level(core::Level(level));

@@ -20,21 +20,19 @@ namespace {
 
 constexpr int thread_counts[] = {1, 2, 7, 64, 7, 2};
 
-PackOptions with_everything(Precision precision, int threads) {
+PackOptions with_everything(Precision precision) {
     PackOptions options;
     options.precision = precision;
     options.gradients = options.source_cells = true;
-    options.threads = threads;
     return options;
 }
 
-ExtractOptions with_everything(const Grid& grid, Ties ties, Normals normals, int threads) {
+ExtractOptions with_everything(const Grid& grid, Ties ties, Normals normals) {
     ExtractOptions options;
     options.ties = ties;
     options.normals = normals;
     options.edge_ends = options.source_cells = true;
     options.point_fields = grid.point_fields;
-    options.threads = threads;
     return options;
 }
 
@@ -43,14 +41,15 @@ void expect_same_bytes(const Grid& grid, const PointField& field, Precision prec
     std::string packed_bytes;
     std::vector<std::string> surface_bytes;
     for (const int threads : thread_counts) {
-        const PackedGrid packed = pack(grid, field, with_everything(precision, threads)).value();
+        const PackedGrid packed = pack(grid, field, with_everything(precision), {.threads = threads}).value();
         if (packed_bytes.empty()) packed_bytes = bytes_of(packed);
         ASSERT_TRUE(bytes_of(packed) == packed_bytes) << threads << " threads";
         std::size_t place = 0;
         for (const double isovalue : isovalues)
             for (const Ties ties : {Ties::merge, Ties::keep})
                 for (const Normals normals : {Normals::gradient, Normals::face}) {
-                    const auto out = extract(packed, isovalue, with_everything(grid, ties, normals, threads)).value();
+                    const auto out =
+                        extract(packed, isovalue, with_everything(grid, ties, normals), {.threads = threads}).value();
                     std::string bytes = bytes_of(out.surface);
                     bytes += std::to_string(area(out.surface)) + " " + std::to_string(out.report.tied_points);
                     if (surface_bytes.size() == place) surface_bytes.push_back(bytes);
@@ -61,17 +60,17 @@ void expect_same_bytes(const Grid& grid, const PointField& field, Precision prec
 
 TEST(Threads, DoNotMatterOnAGridOfSeveralBlocks) {
     const Grid grid = made_grid("shuffled", 24, {"gyroid"}); // 82,944 tets: more than one block of growth
-    expect_same_bytes(grid, point_field(grid), Precision::single, {0.3});
+    expect_same_bytes(grid, point_field(grid), Precision::float32, {0.3});
 }
 
 TEST(Threads, DoNotMatterOnMixedCells) {
     const Grid grid = made_grid("mixed", 16, {"wavelet", "integer"});
-    expect_same_bytes(grid, point_field(grid, 1), Precision::single, {2});
+    expect_same_bytes(grid, point_field(grid, 1), Precision::float32, {2});
 }
 
 TEST(Threads, DoNotMatterInDoublePrecision) {
     const Grid grid = made_grid("perturbed", 14, {"gyroid"});
-    expect_same_bytes(grid, point_field(grid), Precision::double_, {-0.2});
+    expect_same_bytes(grid, point_field(grid), Precision::float64, {-0.2});
 }
 
 TEST(Threads, DoNotMatterWithTiesNaNAndTangledTets) {
@@ -84,7 +83,7 @@ TEST(Threads, DoNotMatterWithTiesNaNAndTangledTets) {
                                               .mirrored = 0.3,
                                               .repeated = 0.1,
                                               .wide = seed == 2});
-        expect_same_bytes(g.grid, g.field, Precision::single, {0, 1});
+        expect_same_bytes(g.grid, g.field, Precision::float32, {0, 1});
     }
 }
 
@@ -95,7 +94,8 @@ TEST(Threads, DoNotMatterForNewFieldsAndPoints) {
     const Array points = Array::own(std::move(doubled), 3);
     std::string expected;
     for (const int threads : thread_counts) {
-        PackedGrid packed = pack(grid, point_field(grid), with_everything(Precision::single, threads)).value();
+        PackedGrid packed =
+            pack(grid, point_field(grid), with_everything(Precision::float32), {.threads = threads}).value();
         packed = packed.with_field(point_field(grid, 1), {.threads = threads}).value();
         packed = packed.with_points(points, {.threads = threads}).value();
         if (expected.empty()) expected = bytes_of(packed);
@@ -124,9 +124,7 @@ TEST(Threads, DoNotMatterForReportsAndErrors) {
             EXPECT_EQ(report.area, expected.area);
             EXPECT_EQ(report.volume, expected.volume);
             EXPECT_EQ(report.genus, expected.genus);
-            PackOptions pack_options;
-            pack_options.threads = threads;
-            const auto refused = pack(broken, point_field(grid), pack_options);
+            const auto refused = pack(broken, point_field(grid), {}, {.threads = threads});
             ASSERT_FALSE(refused);
             EXPECT_EQ(refused.error().message, "tets[3000] has point 99999999, but the grid has 2197 points");
         }
@@ -134,11 +132,14 @@ TEST(Threads, DoNotMatterForReportsAndErrors) {
 
 TEST(ManyThreads, MayExtractFromOnePackedGridAtOnce) {
     const Grid grid = made_grid("shuffled", 14, {"gyroid", "integer"});
-    const PackedGrid packed = pack(grid, point_field(grid), with_everything(Precision::single, 2)).value();
+    const PackedGrid packed =
+        pack(grid, point_field(grid), with_everything(Precision::float32), {.threads = 2}).value();
     const std::vector<double> isovalues{-0.9, -0.5, -0.1, 0, 0.1, 0.4, 0.8, 1.1};
     const auto surface_at = [&](double isovalue, int threads) {
         return bytes_of(
-            extract(packed, isovalue, with_everything(grid, Ties::merge, Normals::gradient, threads)).value().surface);
+            extract(packed, isovalue, with_everything(grid, Ties::merge, Normals::gradient), {.threads = threads})
+                .value()
+                .surface);
     };
     std::vector<std::string> expected, found(isovalues.size());
     for (const double isovalue : isovalues) expected.push_back(surface_at(isovalue, 1));
@@ -155,13 +156,15 @@ TEST(ManyThreads, MayExtractFromOnePackedGridAtOnce) {
 
 TEST(ManyThreads, MayPackOneGridAtOnce) {
     const Grid grid = made_grid("shuffled", 10, {"gyroid"});
-    const std::string expected = bytes_of(pack(grid, point_field(grid), with_everything(Precision::single, 1)).value());
+    const std::string expected =
+        bytes_of(pack(grid, point_field(grid), with_everything(Precision::float32), {.threads = 1}).value());
     std::vector<std::string> found(4);
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < found.size(); ++i)
         threads.emplace_back([&, i] {
             found[i] = bytes_of(
-                pack(grid, point_field(grid), with_everything(Precision::single, 1 + static_cast<int>(i))).value());
+                pack(grid, point_field(grid), with_everything(Precision::float32), {.threads = 1 + static_cast<int>(i)})
+                    .value());
         });
     for (std::thread& thread : threads) thread.join();
     EXPECT_EQ(std::count(found.begin(), found.end(), expected), 4);

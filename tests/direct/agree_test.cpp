@@ -11,7 +11,7 @@ namespace isotet::test {
 namespace {
 
 void expect_seed_agrees(std::uint32_t seed, const NastyOptions& nasty, const std::vector<double>& isovalues,
-                        Precision precision = Precision::single) {
+                        Precision precision = Precision::float32) {
     const NastyGrid g = nasty_grid(seed, nasty);
     expect_agreement(g.grid, g.field, isovalues, precision, {{"value", g.field.values}});
 }
@@ -48,7 +48,7 @@ TEST(Once, AgreesOnTangledGridsWithRepeatedAndMissingTets) {
 TEST(Once, AgreesInDoublePrecision) {
     for (const std::uint32_t seed : Seeds(1, 6))
         expect_seed_agrees(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true}, {0, 0.25, 1},
-                           Precision::double_);
+                           Precision::float64);
 }
 
 TEST(Once, AgreesOnFloat64CoordinatesInSinglePrecision) {
@@ -70,8 +70,8 @@ TEST(Once, AgreesOnCellsOfAllTypes) {
     for (const char* shape : {"hex", "wedge", "pyramid", "mixed", "layer", "perturbed"}) {
         SCOPED_TRACE(shape);
         const Grid grid = made_grid(shape, 5, {"integer", "gyroid"}, 7);
-        expect_agreement(grid, point_field(grid, 0), {1, 2, 2.5}, Precision::single, grid.point_fields);
-        expect_agreement(grid, point_field(grid, 1), {-0.5, 0, 0.1}, Precision::single, grid.point_fields);
+        expect_agreement(grid, point_field(grid, 0), {1, 2, 2.5}, Precision::float32, grid.point_fields);
+        expect_agreement(grid, point_field(grid, 1), {-0.5, 0, 0.1}, Precision::float32, grid.point_fields);
     }
 }
 
@@ -79,7 +79,7 @@ TEST(Once, AgreesOnGridsOfSeveralChunks) {
     for (const char* shape : {"kuhn", "shuffled", "mixed"}) {
         SCOPED_TRACE(shape);
         const Grid grid = made_grid(shape, 24, {"gyroid"}); // 13,824 to 82,944 cells
-        const DirectOptions options = with_everything(Ties::merge, Precision::single);
+        const DirectOptions options = with_everything(Ties::merge, Precision::float32);
         expect_surfaces_of_clusters(grid, point_field(grid), {0.1}, options,
                                     extract_on_both(grid, point_field(grid), {0.1}, options));
     }
@@ -91,7 +91,7 @@ TEST(Once, GivesTheVerticesAndTrianglesOfABruteForceWeld) {
             nasty_grid(seed, {.side = 2 + int(seed) % 6, .values = 2 + int(seed) % 4, .no_data = 0.02, .missing = 0.1});
         for (const double isovalue : {0.0, 0.1, 0.5, 1.0})
             for (const Ties ties : {Ties::merge, Ties::keep})
-                ASSERT_EQ(sets_of(surface_once(g.grid, g.field, isovalue, with_everything(ties, Precision::single))),
+                ASSERT_EQ(sets_of(surface_once(g.grid, g.field, isovalue, with_everything(ties, Precision::float32))),
                           brute_weld<float>(g.grid, g.field.values, isovalue, ties))
                     << isovalue;
     }
@@ -99,12 +99,12 @@ TEST(Once, GivesTheVerticesAndTrianglesOfABruteForceWeld) {
 
 TEST(Once, OrdersVerticesByTheirEndsAndTrianglesByTheirCells) {
     const NastyGrid g = nasty_grid(5, {.side = 8, .values = 3, .no_data = 0.02});
-    const Surface surface = surface_once(g.grid, g.field, 0, with_everything(Ties::merge, Precision::single));
+    const Surface surface = surface_once(g.grid, g.field, 0, with_everything(Ties::merge, Precision::float32));
     const auto ordered = [&](std::size_t vertex) {
         const auto [below, above] = ends_of(surface, vertex);
         return std::pair(std::min(below, above), std::max(below, above));
     };
-    for (std::size_t v = 1; v < surface.vertices(); ++v) ASSERT_LT(ordered(v - 1), ordered(v));
+    for (std::size_t v = 1; v < surface.vertex_count(); ++v) ASSERT_LT(ordered(v - 1), ordered(v));
     const auto cells = surface.source_cells.as<std::int64_t>();
     ASSERT_TRUE(std::is_sorted(cells.begin(), cells.end()));
     ASSERT_GT(surface.triangle_count(), 1000u);

@@ -22,7 +22,7 @@ Array as_type(const Array& array) {
 
 TEST(CellsOnce, GiveTheSameBytesWhateverTypeTheirNumbersHave) {
     const NastyGrid g = nasty_grid(3, {.side = 9, .values = 4, .no_data = 0.02, .missing = 0.1});
-    const DirectOptions options = with_everything(Ties::merge, Precision::single);
+    const DirectOptions options = with_everything(Ties::merge, Precision::float32);
     const std::string expected = bytes_of(surface_once(g.grid, g.field, 0, options));
     std::vector<std::int64_t> offsets;
     for (std::size_t cell = 0; cell <= g.grid.cells.count(); ++cell)
@@ -49,10 +49,9 @@ TEST(ThreadsOnce, DoNotMatter) {
         for (const Ties ties : {Ties::merge, Ties::keep}) {
             std::string expected;
             for (const int threads : {1, 2, 7, 64, 7, 2}) {
-                DirectOptions options = with_everything(ties, Precision::single);
-                options.extract.threads = threads;
+                DirectOptions options = with_everything(ties, Precision::float32);
                 options.extract.point_fields = grid.point_fields;
-                const std::string bytes = bytes_of(surface_once(grid, field, isovalue, options));
+                const std::string bytes = bytes_of(surface_once(grid, field, isovalue, options, {.threads = threads}));
                 if (expected.empty()) expected = bytes;
                 ASSERT_TRUE(bytes == expected) << threads << " threads";
             }
@@ -63,7 +62,7 @@ TEST(InstructionLevelsOnce, GiveTheSameBytes) {
     for (const std::uint32_t seed : Seeds(1, 6)) {
         const NastyGrid g = nasty_grid(
             seed, {.side = 9, .values = int(seed % 2) * 5, .missing = 0.05, .inverted = 0.1, .wide = seed % 3 == 0});
-        const DirectOptions options = with_everything(Ties::merge, Precision::single);
+        const DirectOptions options = with_everything(Ties::merge, Precision::float32);
         for (const double isovalue : {-0.5, 0.0, 0.25, 1.5}) {
             std::string expected;
             for (int level = 0; level <= int(cpu::best_level()); ++level) {
@@ -91,7 +90,7 @@ private:
 
 TEST_F(WideNumbersOnce, OfPointsAndEdgesGiveTheSameBytes) {
     const NastyGrid g = nasty_grid(9, {.side = 8, .values = 3, .no_data = 0.02, .wide = true});
-    for (const Precision precision : {Precision::single, Precision::double_})
+    for (const Precision precision : {Precision::float32, Precision::float64})
         for (const Ties ties : {Ties::merge, Ties::keep}) {
             const DirectOptions options = with_everything(ties, precision);
             const std::string narrow = bytes_of(surface_once(g.grid, g.field, 0.5, options));
@@ -104,11 +103,11 @@ TEST_F(WideNumbersOnce, OfPointsAndEdgesGiveTheSameBytes) {
 
 TEST_F(WideNumbersOnce, OfVerticesGiveTheSameTriangles) {
     const NastyGrid g = nasty_grid(9, {.side = 8, .values = 3});
-    const DirectOptions options = with_everything(Ties::merge, Precision::single);
+    const DirectOptions options = with_everything(Ties::merge, Precision::float32);
     const Surface narrow = surface_once(g.grid, g.field, 0.5, options);
-    cpu::wide_from = narrow.vertices();
+    cpu::wide_from = narrow.vertex_count();
     Surface wide = surface_once(g.grid, g.field, 0.5, options);
-    cpu::wide_from = narrow.vertices() + 1;
+    cpu::wide_from = narrow.vertex_count() + 1;
     EXPECT_EQ(surface_once(g.grid, g.field, 0.5, options).triangles.type(), ScalarType::uint32);
     ASSERT_EQ(wide.triangles.type(), ScalarType::uint64);
     const auto indices = wide.triangles.as<std::uint64_t>();

@@ -21,22 +21,22 @@ std::vector<float> values_of(int pattern, std::size_t points) {
 void expect_all_cases(const std::vector<Place>& points, const std::vector<Corners>& tets) {
     PackOptions pack_options;
     pack_options.source_cells = true;
-    pack_options.threads = 1;
     const Grid grid = tet_grid(points, tets);
-    PackedGrid packed = pack(grid, field_of(values_of(0, points.size())), pack_options).value();
+    PackedGrid packed = pack(grid, field_of(values_of(0, points.size())), pack_options, {.threads = 1}).value();
     const int patterns = static_cast<int>(std::lround(std::pow(3, points.size())));
     for (int pattern = 0; pattern < patterns; ++pattern) {
         const PointField field = field_of(values_of(pattern, points.size()));
         packed = packed.with_field(field, {.threads = 1}).value();
         for (const Ties ties : {Ties::merge, Ties::keep})
-            for (const Engine engine : {Engine::cpu, Engine::reference}) {
+            for (const Engine engine : both_engines) {
                 DirectOptions options;
-                options.extract.engine = engine;
                 options.extract.ties = ties;
                 options.extract.edge_ends = options.extract.source_cells = true;
-                options.extract.threads = 1;
-                ASSERT_EQ(sets_of(surface_once(grid, field, 0, options)),
-                          sets_of(extract(packed, 0, options.extract).value().surface))
+                const double isovalue = 0;
+                const auto direct =
+                    extract_direct_on(engine, grid, field, std::span(&isovalue, 1), options, {.threads = 1});
+                ASSERT_EQ(sets_of(direct.value().surfaces.at(0).surface),
+                          sets_of(extract(packed, 0, options.extract, {.threads = 1}).value().surface))
                     << "pattern " << pattern << ", tets " << testing::PrintToString(tets) << ", ties " << int(ties)
                     << ", engine " << int(engine);
             }

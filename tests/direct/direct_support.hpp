@@ -12,6 +12,7 @@
 #include <isotet/extract_direct.hpp>
 
 #include "support/brute_weld.hpp"
+#include "support/engines.hpp"
 #include "support/surface_bytes.hpp"
 
 namespace isotet::test {
@@ -48,15 +49,14 @@ inline void expect_same_report(const ExtractReport& found, const ExtractReport& 
 
 /// Both engines: the same bytes, the same reports. Returns what the CPU engine gave.
 inline DirectExtraction extract_on_both(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
-                                     DirectOptions options) {
+                                        const DirectOptions& options) {
     DirectExtraction cpu = extract_direct(grid, field, isovalues, options).value();
-    options.extract.engine = Engine::reference;
-    const DirectExtraction reference = extract_direct(grid, field, isovalues, options).value();
+    const DirectExtraction reference = extract_direct_by_reference(grid, field, isovalues, options).value();
     EXPECT_EQ(cpu.surfaces.size(), isovalues.size());
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         SCOPED_TRACE(testing::Message() << "isovalue " << isovalues[i] << ", ties " << int(options.extract.ties));
         const Extraction &a = cpu.surfaces[i], &b = reference.surfaces[i];
-        EXPECT_EQ(a.surface.vertices(), b.surface.vertices());
+        EXPECT_EQ(a.surface.vertex_count(), b.surface.vertex_count());
         EXPECT_EQ(a.surface.triangle_count(), b.surface.triangle_count());
         EXPECT_TRUE(bytes_of(a.surface) == bytes_of(b.surface));
         expect_same_report(a.report, b.report);
@@ -96,7 +96,7 @@ inline void expect_surfaces_of_clusters(const Grid& grid, const PointField& fiel
 }
 
 inline void expect_agreement(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
-                             Precision precision = Precision::single, const std::vector<Field>& carried = {}) {
+                             Precision precision = Precision::float32, const std::vector<Field>& carried = {}) {
     for (const Ties ties : {Ties::merge, Ties::keep}) {
         DirectOptions options = with_everything(ties, precision);
         options.extract.point_fields = carried;
@@ -105,8 +105,9 @@ inline void expect_agreement(const Grid& grid, const PointField& field, const st
 }
 
 /// The surface of one isovalue from the CPU engine.
-inline Surface surface_once(const Grid& grid, const PointField& field, double isovalue, const DirectOptions& options) {
-    return extract_direct(grid, field, std::span(&isovalue, 1), options).value().surfaces.at(0).surface;
+inline Surface surface_once(const Grid& grid, const PointField& field, double isovalue, const DirectOptions& options,
+                            const Run& run = {}) {
+    return extract_direct(grid, field, std::span(&isovalue, 1), options, run).value().surfaces.at(0).surface;
 }
 
 } // namespace isotet::test

@@ -37,11 +37,10 @@ void expect_refused_as_by_pack(const Grid& grid) {
     const PointField field = field_of(std::vector<float>(grid.points.tuples(), 0));
     const std::string expected = message_of(pack(grid, field), ErrorCode::invalid_data);
     ASSERT_NE(expected, "no error");
-    for (const Engine engine : {Engine::cpu, Engine::reference})
+    for (const Engine engine : both_engines)
         for (const std::vector<double>& isovalues : {std::vector<double>{}, {0}, {7}}) {
-            DirectOptions options;
-            options.extract.engine = engine;
-            EXPECT_EQ(refusal(grid, field, isovalues, options, ErrorCode::invalid_data), expected);
+            const auto refused = extract_direct_on(engine, grid, field, isovalues);
+            EXPECT_EQ(message_of(refused, ErrorCode::invalid_data), expected);
         }
 }
 
@@ -146,9 +145,7 @@ TEST(WrongCallsOnce, AreRefusedInWords) {
 
 TEST(AnyNumberOfThreadsOnce, Works) {
     for (const int threads : {std::numeric_limits<int>::min(), -1, 0, 1, 5000, std::numeric_limits<int>::max()}) {
-        DirectOptions options;
-        options.extract.threads = threads;
-        EXPECT_EQ(surface_once(one_tet(), some_field(), 0.5, options).triangle_count(), 1u) << threads;
+        EXPECT_EQ(surface_once(one_tet(), some_field(), 0.5, {}, {.threads = threads}).triangle_count(), 1u) << threads;
     }
 }
 
@@ -166,13 +163,12 @@ void leave_memory(std::uint64_t bytes) {
 void extract_with_little_memory(std::uint64_t side, std::uint64_t bytes) {
     const Grid grid = made_grid("kuhn", side, {"integer"});
     DirectOptions options;
-    options.extract.threads = 1;
     options.extract.ties = Ties::keep;
     if (!extract_direct(made_grid("kuhn", 2, {"integer"}), field_of(std::vector<float>(27, 0)), std::vector<double>{0},
-                      options))
+                        options))
         std::exit(3);
     leave_memory(bytes);
-    const auto result = extract_direct(grid, point_field(grid), std::vector<double>{2}, options);
+    const auto result = extract_direct(grid, point_field(grid), std::vector<double>{2}, options, {.threads = 1});
     if (result) std::exit(1);
     std::cerr << result.error().message << std::endl;
     std::exit(result.error().code == ErrorCode::out_of_memory ? 0 : 2);

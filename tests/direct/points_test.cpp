@@ -46,7 +46,7 @@ void expect_unused_points_decide_nothing(const std::vector<Unused>& unused, cons
     grid.point_fields.clear();
     grid.points = Array::own(std::move(points), 3);
     const std::vector<Field> fields{{"large", Array::own(std::move(large))}, {"small", Array::own(std::move(small))}};
-    for (const Precision precision : {Precision::single, Precision::double_})
+    for (const Precision precision : {Precision::float32, Precision::float64})
         expect_agreement(grid, field_of(values), isovalues, precision, fields);
 }
 
@@ -113,18 +113,18 @@ TEST(CoarseTets, AreCountedWhereRoundingMovesCorners) {
         values.insert(values.end(), {-1, 1, 1, 1});
     }
     const Grid grid = tet_grid<double>(points, tets);
-    const DirectOptions single = with_everything(Ties::merge, Precision::single);
+    const DirectOptions single = with_everything(Ties::merge, Precision::float32);
     EXPECT_EQ(extract_on_both(grid, field_of(values), {0}, single).coarse_tets, 2u);
     EXPECT_EQ(extract_on_both(grid, field_of(values), {0, 0.5, 2}, single).coarse_tets, 4u);
     EXPECT_EQ(
-        extract_on_both(grid, field_of(values), {0}, with_everything(Ties::merge, Precision::double_)).coarse_tets, 0u);
+        extract_on_both(grid, field_of(values), {0}, with_everything(Ties::merge, Precision::float64)).coarse_tets, 0u);
     EXPECT_EQ(extract_on_both(tet_grid<float>(points, tets), field_of(values), {0}, single).coarse_tets, 0u);
 }
 
 TEST(NoIsovalues, GiveTheReportOfTheFieldAlone) {
     const Grid grid = made_grid("mixed", 5, {"integer", "gyroid"});
     for (std::size_t f = 0; f < 2; ++f) {
-        const DirectOptions options = with_everything(Ties::merge, Precision::single);
+        const DirectOptions options = with_everything(Ties::merge, Precision::float32);
         expect_surfaces_of_clusters(grid, point_field(grid, f), {}, options,
                                     extract_on_both(grid, point_field(grid, f), {}, options));
     }

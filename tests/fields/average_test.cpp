@@ -110,9 +110,9 @@ TEST(AverageToPoints, IsTheSameBytesForAnyNumberOfThreads) {
     for (std::size_t cell = 0; cell < values.size(); ++cell)
         values[cell] = static_cast<float>(cell * 2654435761u % 1000) / 7;
     grid.cell_fields = {{"c", Array::own(std::move(values))}};
-    const Array one = find_field(grid, "c", {.threads = 1}).value().values;
+    const Array one = find_field(grid, "c", {}, {.threads = 1}).value().values;
     for (const int threads : {2, 7, 64}) {
-        const Array many = find_field(grid, "c", {.threads = threads}).value().values;
+        const Array many = find_field(grid, "c", {}, {.threads = threads}).value().values;
         ASSERT_EQ(one.bytes(), many.bytes());
         EXPECT_EQ(std::memcmp(one.data(), many.data(), one.bytes()), 0) << threads;
     }

@@ -9,7 +9,6 @@
 namespace {
 
 using namespace isotet;
-using Prefer = FindFieldOptions::Prefer;
 
 template <class T>
 Field field(const std::string& name, std::vector<T> values, std::size_t components = 1) {
@@ -82,14 +81,15 @@ TEST(FindField, TakesThePointFieldOfTwoWithOneNameAndSaysSo) {
     const PointField points = find_field(grid, "p").value();
     EXPECT_FALSE(points.averaged);
     EXPECT_EQ(points.note, "'p' is both a point field and a cell field; the point field is taken");
-    const PointField cells = find_field(grid, "p", {.prefer = Prefer::cell}).value();
+    const PointField cells = find_field(grid, "p", {.prefer = Association::cell}).value();
     EXPECT_TRUE(cells.averaged);
     EXPECT_EQ(cells.values.at(2), 9);
     EXPECT_TRUE(cells.note.empty());
 }
 
 TEST(FindField, TakesThePointFieldWhenACellFieldIsPreferredButMissing) {
-    EXPECT_FALSE(find_field(tet({field<float>("p", {1, 2, 3, 4})}), "p", {.prefer = Prefer::cell}).value().averaged);
+    EXPECT_FALSE(
+        find_field(tet({field<float>("p", {1, 2, 3, 4})}), "p", {.prefer = Association::cell}).value().averaged);
 }
 
 TEST(FindField, TakesCoordinatesWhenNoFieldHasTheName) {

@@ -13,7 +13,7 @@ namespace {
 
 std::string written(const Surface& surface, const std::string& format) {
     const Folder folder;
-    const auto report = write_surface(surface, folder / "out", format);
+    const auto report = write_surface(surface, folder / "out", {format});
     EXPECT_TRUE(report) << report.error().message;
     return content_of(folder / "out");
 }
@@ -52,7 +52,7 @@ bool fits(const std::vector<Field>& fields, std::size_t tuples) {
 
 /// What everybody may rely on who gets a surface.
 bool is_valid(const Surface& surface) {
-    const std::size_t vertices = surface.vertices(), triangles = surface.triangle_count();
+    const std::size_t vertices = surface.vertex_count(), triangles = surface.triangle_count();
     bool valid = fits(surface.point_fields, vertices) && fits(surface.cell_fields, triangles);
     if (surface.normals_kind != Normals::none) {
         valid = valid && surface.normals.tuples() == (surface.normals_kind == Normals::face ? triangles : vertices);

@@ -163,7 +163,7 @@ TEST(OutputFile, SaysWhenAFolderCannotBeWritten) {
         if (::chmod(folder.path().c_str(), 0500) != 0) return 1;
         const auto file = OutputFile::open(folder / "out");
         if (file) return 2;
-        if (file.error().code != ErrorCode::machine) return 3;
+        if (file.error().code != ErrorCode::cannot_write) return 3;
         return file.error().message.find("Permission denied") == std::string::npos ? 4 : 0;
     });
     EXPECT_EQ(result, 0);
@@ -197,7 +197,7 @@ TEST(OutputFile, KeepsTheOldFileWhenTheDiskIsFull) {
         if (all_written) return 3;
         const auto committed = file->commit();
         if (committed) return 4;
-        if (committed.error().code != ErrorCode::machine) return 5;
+        if (committed.error().code != ErrorCode::cannot_write) return 5;
         if (committed.error().message.find(folder / "out") == std::string::npos) return 6;
         return committed.error().message.find("File too large") == std::string::npos ? 7 : 0;
     });

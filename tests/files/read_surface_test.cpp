@@ -129,7 +129,7 @@ TEST(ReadStl, ReadsAsciiOfSeveralSolids) {
     const Surface surface =
         parsed("solid first part\n" + facet + "endsolid first part\nSOLID second\n" + facet + facet + "endsolid\n");
     EXPECT_EQ(surface.triangle_count(), 3U);
-    EXPECT_EQ(surface.vertices(), 9U);
+    EXPECT_EQ(surface.vertex_count(), 9U);
     EXPECT_EQ(surface.normals_kind, Normals::face);
     EXPECT_EQ(surface.positions.at(5, 1), 1);
 }
@@ -167,7 +167,7 @@ TEST(ReadTs, ReadsAtomsPropertiesDepthAndSeveralObjects) {
         "NO_DATA_VALUES -9 -9\nTFACE\nPVRTX 10 0 0 5 1 2 3\nPVRTX 20 1 0 5 -9 -9 4\nVRTX 30 1 1 5\nPATOM 40 10 7 8 9\n"
         "TRGL 10 20 30\nTFACE\nTRGL 40 20 30\nBSTONE 10\nBORDER 3 10 20\nEND\n";
     const Surface surface = parsed(object);
-    ASSERT_EQ(surface.vertices(), 4U);
+    ASSERT_EQ(surface.vertex_count(), 4U);
     EXPECT_EQ(surface.positions.at(0, 2), -5);
     EXPECT_EQ(surface.positions.at(3, 0), 0);
     EXPECT_EQ(surface.positions.at(3, 2), -5);
@@ -181,7 +181,7 @@ TEST(ReadTs, ReadsAtomsPropertiesDepthAndSeveralObjects) {
     EXPECT_EQ(surface.point_fields[1].values.at(1, 1), 4);
 
     const Surface two = parsed(object + object);
-    EXPECT_EQ(two.vertices(), 8U);
+    EXPECT_EQ(two.vertex_count(), 8U);
     EXPECT_EQ(two.triangles.at(2, 0), 4);
 }
 
@@ -282,7 +282,7 @@ TEST(ReadVtp, ReadsAsciiWithEveryKindOfCell) {
 
 TEST(ReadVtp, JoinsPieces) {
     const Surface surface = parsed(vtp("", ascii_piece + ascii_piece));
-    EXPECT_EQ(surface.vertices(), 8U);
+    EXPECT_EQ(surface.vertex_count(), 8U);
     EXPECT_EQ(surface.triangle_count(), 8U);
     EXPECT_EQ(surface.triangles.at(4, 1), 5);
 }

@@ -11,7 +11,7 @@ namespace {
 
 Error refused(const Grid& grid, const std::string& format = "vtu") {
     const Folder folder;
-    const auto report = write_grid(grid, folder / "out", format);
+    const auto report = write_grid(grid, folder / "out", {format});
     EXPECT_FALSE(report);
     EXPECT_EQ(folder.entries(), 0U);
     return report ? Error{} : report.error();
@@ -71,10 +71,10 @@ TEST(WriteGrid, IsTheSameBytesWithGivenAndWithGeneratedOffsets) {
     Grid grid = tet_grid();
     for (const auto* format : {"vtu", "vtk"}) {
         grid = tet_grid();
-        ASSERT_TRUE(write_grid(grid, folder / "uniform", format));
+        ASSERT_TRUE(write_grid(grid, folder / "uniform", {format}));
         grid.cells.offsets = Array::own(std::vector<std::int32_t>{0, 4, 8});
         grid.cells.types = Array::own(std::vector<std::uint8_t>{10, 10});
-        ASSERT_TRUE(write_grid(grid, folder / "given", format));
+        ASSERT_TRUE(write_grid(grid, folder / "given", {format}));
         EXPECT_TRUE(content_of(folder / "uniform") == content_of(folder / "given")) << format;
     }
 }
@@ -82,7 +82,7 @@ TEST(WriteGrid, IsTheSameBytesWithGivenAndWithGeneratedOffsets) {
 TEST(WriteGrid, HoldsAGridWithoutCells) {
     const Folder folder;
     for (const auto* format : {"vtu", "vtk"}) {
-        EXPECT_TRUE(write_grid(Grid{}, folder / "out", format)) << format;
+        EXPECT_TRUE(write_grid(Grid{}, folder / "out", {format})) << format;
     }
 }
 
@@ -91,7 +91,7 @@ TEST(WriteGrid, LeavesNoFileWhenCancelled) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    const auto report = write_grid(tet_grid(), folder / "out.vtu", {}, progress);
+    const auto report = write_grid(tet_grid(), folder / "out.vtu", {}, {.progress = progress});
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().code, ErrorCode::cancelled);
     EXPECT_EQ(folder.entries(), 0U);

@@ -41,7 +41,7 @@ bool has_note(const WriteReport& report, std::string_view words) {
 
 Surface with_normals(Surface surface, Normals kind) {
     surface.normals_kind = kind;
-    std::vector<float> normals(3 * (kind == Normals::face ? surface.triangle_count() : surface.vertices()));
+    std::vector<float> normals(3 * (kind == Normals::face ? surface.triangle_count() : surface.vertex_count()));
     for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = static_cast<float>(i) / 7;
     surface.normals = Array::own(std::move(normals), 3);
     return surface;
@@ -175,7 +175,7 @@ TEST(WriteVtp, GivesFieldsOfOneNameTwoNamesAndSaysSo) {
 
 TEST(WriteStl, HoldsTrianglesAsSoupWithFacetNormals) {
     const Surface surface = bare_surface(), back = written_and_read(surface, "stl");
-    ASSERT_EQ(back.vertices(), 9U);
+    ASSERT_EQ(back.vertex_count(), 9U);
     ASSERT_EQ(back.triangle_count(), 3U);
     const auto corners = surface.triangles.as<std::uint32_t>();
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -273,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, testing::ValuesIn(all_formats));
 
 TEST_P(EveryFormat, HoldsAnEmptySurface) {
     const Surface back = written_and_read(empty_surface(), GetParam());
-    EXPECT_EQ(back.vertices(), 0U);
+    EXPECT_EQ(back.vertex_count(), 0U);
     EXPECT_EQ(back.triangle_count(), 0U);
     written_and_read(Surface{}, GetParam());
 }
@@ -322,7 +322,7 @@ TEST_P(EveryFormat, LeavesNoFileWhenCancelled) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    const auto report = write_surface(rich_surface(), folder / ("out." + GetParam()), {}, progress);
+    const auto report = write_surface(rich_surface(), folder / ("out." + GetParam()), {}, {.progress = progress});
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().code, ErrorCode::cancelled);
     EXPECT_EQ(folder.entries(), 0U);
@@ -337,7 +337,7 @@ TEST(WriteSurface, ReportsProgressUpToTheEnd) {
         rises = rises && fraction >= last;
         last = fraction;
     };
-    ASSERT_TRUE(write_surface(rich_surface(), folder / "out.vtp", {}, progress));
+    ASSERT_TRUE(write_surface(rich_surface(), folder / "out.vtp", {}, {.progress = progress}));
     EXPECT_TRUE(rises);
     EXPECT_EQ(last, 1.0);
 }
@@ -346,10 +346,10 @@ TEST(WriteSurface, TakesTheFormatFromTheEndingUnlessGiven) {
     const Folder folder;
     ASSERT_TRUE(write_surface(bare_surface(), folder / "UPPER.PLY"));
     EXPECT_TRUE(content_of(folder / "UPPER.PLY").starts_with("ply\n"));
-    ASSERT_TRUE(write_surface(bare_surface(), folder / "out.ply", "vtk"));
+    ASSERT_TRUE(write_surface(bare_surface(), folder / "out.ply", {"vtk"}));
     EXPECT_TRUE(content_of(folder / "out.ply").starts_with("# vtk"));
     for (const auto& [path, format] : {std::pair{"out.xyz", ""}, {"out", ""}, {"out.ply", "xyz"}, {"a.ply/out", ""}}) {
-        const auto report = write_surface(bare_surface(), folder / path, format);
+        const auto report = write_surface(bare_surface(), folder / path, {format});
         ASSERT_FALSE(report) << path;
         EXPECT_EQ(report.error().code, ErrorCode::invalid_argument);
         EXPECT_NE(report.error().message.find("vtp, ply, stl, obj, vtk, ts"), std::string::npos);

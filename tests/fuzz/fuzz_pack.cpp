@@ -12,6 +12,7 @@
 #include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
+#include "support/engines.hpp"
 #include "support/surface_bytes.hpp"
 
 namespace {
@@ -82,10 +83,8 @@ void extract_and_check(const Grid& grid, const PointField& field, const PackedGr
     options.ties = ties;
     options.edge_ends = true;
     options.normals = Normals::gradient;
-    options.threads = 1;
-    const auto surface = extract(packed, isovalue, options);
-    options.engine = Engine::reference;
-    const auto reference = extract(packed, isovalue, options);
+    const auto surface = extract(packed, isovalue, options, {.threads = 1});
+    const auto reference = test::extract_on(test::Engine::reference, packed, isovalue, options, {.threads = 1});
     expect(surface && reference);
     expect(test::bytes_of(surface->surface) == test::bytes_of(reference->surface));
     const auto report = check(surface->surface, {.grid = &grid, .field = &field});
@@ -100,10 +99,9 @@ void expect_same_once(const Grid& grid, const PointField& field, const Result<Pa
     options.extract.ties = ties;
     options.extract.edge_ends = true;
     options.extract.normals = Normals::gradient;
-    options.extract.threads = 1;
-    const auto once = extract_direct(grid, field, std::span(&isovalue, 1), options);
-    options.extract.engine = Engine::reference;
-    const auto reference = extract_direct(grid, field, std::span(&isovalue, 1), options);
+    const Run run{.threads = 1};
+    const auto once = extract_direct(grid, field, std::span(&isovalue, 1), options, run);
+    const auto reference = extract_direct_by_reference(grid, field, std::span(&isovalue, 1), options, run);
     expect(bool(once) == bool(packed) && bool(reference) == bool(packed));
     if (!packed) {
         expect(once.error().message == packed.error().message && reference.error().message == packed.error().message);
@@ -111,8 +109,8 @@ void expect_same_once(const Grid& grid, const PointField& field, const Result<Pa
     }
     const Extraction &a = once->surfaces[0], &b = reference->surfaces[0];
     expect(test::bytes_of(a.surface) == test::bytes_of(b.surface));
-    const auto clusters = extract(*packed, isovalue, {.ties = ties, .threads = 1});
-    expect(clusters && clusters->surface.vertices() == a.surface.vertices() &&
+    const auto clusters = extract(*packed, isovalue, {.ties = ties}, run);
+    expect(clusters && clusters->surface.vertex_count() == a.surface.vertex_count() &&
            clusters->report.tied_points == a.report.tied_points);
 }
 
@@ -121,11 +119,11 @@ void expect_same_once(const Grid& grid, const PointField& field, const Result<Pa
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes bytes(data, size);
     const double isovalue = some_value(bytes.next());
-    const auto precision = bytes.next() % 4 ? Precision::single : Precision::double_;
+    const auto precision = bytes.next() % 4 ? Precision::float32 : Precision::float64;
     const Grid grid = some_grid(bytes);
     const PointField field{"value", grid.point_fields[0].values, false, {}};
-    const auto report = survey(grid, {.faces = true, .threads = 1});
-    const auto packed = pack(grid, field, {.precision = precision, .gradients = true, .threads = 1});
+    const auto report = survey(grid, {.faces = true}, {.threads = 1});
+    const auto packed = pack(grid, field, {.precision = precision, .gradients = true}, {.threads = 1});
     expect(bool(report) == bool(packed));
     if (std::isfinite(isovalue))
         for (const Ties ties : {Ties::merge, Ties::keep})

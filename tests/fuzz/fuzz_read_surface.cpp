@@ -15,7 +15,7 @@ void require(bool holds) {
 }
 
 void require_valid(const isotet::Surface& surface) {
-    const std::size_t vertices = surface.vertices(), triangles = surface.triangle_count();
+    const std::size_t vertices = surface.vertex_count(), triangles = surface.triangle_count();
     for (const auto& field : surface.point_fields) require(field.values.tuples() == vertices);
     for (const auto& field : surface.cell_fields) require(field.values.tuples() == triangles);
     if (surface.normals_kind == isotet::Normals::gradient) require(surface.normals.tuples() == vertices);

@@ -21,7 +21,7 @@ namespace {
 /// FNV-1a over the positions in ascending order.
 std::uint64_t hash_of(const Surface& surface) {
     std::vector<PositionBits> positions;
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto p = position_of(surface, v);
         positions.push_back(bits_of(p[0], p[1], p[2]));
     }
@@ -45,8 +45,8 @@ std::string lines_of(const Grid& grid) {
             options.ties = ties;
             const Surface surface = extract(packed, isovalue, options).value().surface;
             lines += fmt::format("{} = {} {}: {} vertices, {} triangles, {:016x}\n", name, isovalue,
-                                 ties == Ties::merge ? "merge" : "keep", surface.vertices(), surface.triangle_count(),
-                                 hash_of(surface));
+                                 ties == Ties::merge ? "merge" : "keep", surface.vertex_count(),
+                                 surface.triangle_count(), hash_of(surface));
         }
     }
     return lines;

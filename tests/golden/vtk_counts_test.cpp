@@ -33,7 +33,8 @@ void expect_equal_to_vtk(const Grid& grid, const PackedGrid& packed, const Point
         const bool certified = ties == Ties::keep ? out.report.false_ties.value() == 0 : out.report.tied_points == 0;
         if (!certified) continue;
         ++(ties == Ties::keep ? compared.kept : compared.merged);
-        EXPECT_EQ(out.surface.vertices(), vtk.vertices) << field.name << " = " << isovalue << ", ties " << int(ties);
+        EXPECT_EQ(out.surface.vertex_count(), vtk.vertices)
+            << field.name << " = " << isovalue << ", ties " << int(ties);
         EXPECT_EQ(out.surface.triangle_count(), vtk.triangles)
             << field.name << " = " << isovalue << ", ties " << int(ties);
         if (!std::isfinite(vtk.area)) continue; // VTK interpolates to infinity

@@ -55,12 +55,12 @@ TEST_F(CarriedFields, AreInterpolatedOnTheDevice) {
     ASSERT_EQ(surface.buffers()->fields.size(), options.point_fields.size());
     for (std::size_t i = 0; i < options.point_fields.size(); ++i)
         EXPECT_GE(surface.buffers()->fields[i].size(),
-                  4 * surface.vertices() * options.point_fields[i].values.components());
+                  4 * surface.vertex_count() * options.point_fields[i].values.components());
 
     const std::uint64_t components = stored_bytes(options.point_fields) / (4 * g.grid.points.tuples());
     on_device.download(surface).value();
     EXPECT_EQ(on_device.work().downloaded_bytes,
-              surface.vertices() * (12 + 4 * components) + 12 * surface.triangle_count())
+              surface.vertex_count() * (12 + 4 * components) + 12 * surface.triangle_count())
         << "neither ends nor weights";
     options.edge_ends = true;
     expect_same(on_device, packed, {0.5}, options);

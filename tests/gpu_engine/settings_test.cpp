@@ -182,7 +182,7 @@ TEST_F(Forced, MoreThanCanBeNumberedIsRefusedWithTheNumber) {
     const auto refused = on_device.extract(0.7);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
-    EXPECT_EQ(refused.error().message, "the surface has " + std::to_string(expected.vertices()) + " vertices and " +
+    EXPECT_EQ(refused.error().message, "the surface has " + std::to_string(expected.vertex_count()) + " vertices and " +
                                            std::to_string(expected.triangle_count()) +
                                            " triangles, but the vulkan engine can number " +
                                            std::to_string(settings.most_items) + " of each");
@@ -198,7 +198,7 @@ TEST_F(Forced, WrongCallsAreErrors) {
     options.normals = Normals::gradient;
     EXPECT_EQ(on_device.extract(0.5, options).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(on_device.download(DeviceSurface()).error().code, ErrorCode::invalid_argument);
-    const PackedGrid wide = pack(grid, point_field(grid), {.precision = Precision::double_}).value();
+    const PackedGrid wide = pack(grid, point_field(grid), {.precision = Precision::float64}).value();
     const auto refused = DeviceGrid::upload(device(), wide);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);

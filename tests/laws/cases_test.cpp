@@ -10,6 +10,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
+#include "support/engines.hpp"
 #include "support/small_grid.hpp"
 #include "support/surface_sets.hpp"
 
@@ -106,13 +107,13 @@ void expect_case(const Surface& surface, const std::vector<Corners>& tets, const
         vertices.insert(one.vertices.begin(), one.vertices.end());
     }
     ASSERT_EQ(surface.triangle_count(), triangles);
-    ASSERT_EQ(surface.vertices(), vertices.size());
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    ASSERT_EQ(surface.vertex_count(), vertices.size());
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto wanted = vertices.find(ends_of(surface, v));
         ASSERT_NE(wanted, vertices.end());
         ASSERT_EQ(position_of(surface, v), wanted->second);
     }
-    std::vector<bool> used(surface.vertices(), false);
+    std::vector<bool> used(surface.vertex_count(), false);
     for (std::size_t t = 0; t < surface.triangle_count(); ++t) {
         const Corners& tet = tets[static_cast<std::size_t>(surface.source_cells.as<std::int64_t>()[t])];
         const double up = dot_with_normal(surface, t, gradient_times_volume(tet, values, points));
@@ -153,24 +154,22 @@ void for_corner_orders(const Corners& tet, const std::function<void(const Corner
 void expect_all_cases(const std::vector<Place>& points, const std::vector<Corners>& tets, const Corners* shared) {
     PackOptions pack_options;
     pack_options.source_cells = true;
-    pack_options.threads = 1;
-    PackedGrid packed = pack(tet_grid(points, tets), field_of(values_of(0, points.size())), pack_options).value();
+    PackedGrid packed =
+        pack(tet_grid(points, tets), field_of(values_of(0, points.size())), pack_options, {.threads = 1}).value();
     const int patterns = static_cast<int>(std::lround(std::pow(3, points.size())));
     for (int pattern = 0; pattern < patterns; ++pattern) {
         const std::vector<float> values = values_of(pattern, points.size());
         packed = packed.with_field(field_of(values), {.threads = 1}).value();
         for (const Ties ties : {Ties::merge, Ties::keep})
-            for (const Engine engine : {Engine::cpu, Engine::reference}) {
+            for (const Engine engine : both_engines) {
                 SCOPED_TRACE(testing::Message()
                              << "values " << testing::PrintToString(values) << ", tets " << testing::PrintToString(tets)
                              << ", ties " << int(ties) << ", engine " << int(engine));
                 ExtractOptions options;
-                options.engine = engine;
                 options.ties = ties;
                 options.edge_ends = true;
                 options.source_cells = true;
-                options.threads = 1;
-                const Surface surface = extract(packed, 0, options).value().surface;
+                const Surface surface = extract_on(engine, packed, 0, options, {.threads = 1}).value().surface;
                 ASSERT_NO_FATAL_FAILURE(expect_case(surface, tets, values, points, ties));
                 if (shared) {
                     ASSERT_NO_FATAL_FAILURE(expect_closed_across(*shared, surface));
@@ -198,7 +197,7 @@ TEST(TwoTets, GiveADoubleSheetWhereTheirFaceIsTiedAndBothApexesAreBelow) {
     const Grid grid = tet_grid(two_tets_places, {{0, 1, 2, 3}, {1, 2, 3, 4}});
     const PackedGrid packed = pack(grid, field_of<float>({-1, 0, 0, 0, -1})).value();
     EXPECT_EQ(extract(packed, 0).value().surface.triangle_count(), 2u);
-    EXPECT_EQ(extract(packed, 0).value().surface.vertices(), 3u);
+    EXPECT_EQ(extract(packed, 0).value().surface.vertex_count(), 3u);
     // Above on one side: one sheet. Above on both sides: none.
     EXPECT_EQ(extract(pack(grid, field_of<float>({-1, 0, 0, 0, 1})).value(), 0).value().surface.triangle_count(), 1u);
     EXPECT_EQ(extract(pack(grid, field_of<float>({1, 0, 0, 0, 1})).value(), 0).value().surface.triangle_count(), 0u);
@@ -209,11 +208,11 @@ TEST(IsolatedPeak, GivesNoVertexInDefaultMode) {
     const PackedGrid packed =
         pack(tet_grid(two_tets_places, {{0, 1, 2, 3}}), field_of<float>({0, -1, -1, -1, 0})).value();
     const Extraction merged = extract(packed, 0).value();
-    EXPECT_EQ(merged.surface.vertices(), 0u);
+    EXPECT_EQ(merged.surface.vertex_count(), 0u);
     EXPECT_EQ(merged.report.tied_points, 1u); // point 4 is tied, too, but no tet uses it
     ExtractOptions keep;
     keep.ties = Ties::keep;
-    EXPECT_EQ(extract(packed, 0, keep).value().surface.vertices(), 3u);
+    EXPECT_EQ(extract(packed, 0, keep).value().surface.vertex_count(), 3u);
     EXPECT_EQ(extract(packed, 0, keep).value().surface.triangle_count(), 1u);
 }
 

@@ -12,6 +12,7 @@
 #include <isotet/pack.hpp>
 
 #include "support/close_values.hpp"
+#include "support/engines.hpp"
 #include "support/seeds.hpp"
 #include "support/surface_sets.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 /// By the ends of the vertices, all of which must be different.
 std::map<Ends, double> weights_of(const Surface& surface) {
     std::map<Ends, double> weights;
-    for (std::size_t v = 0; v < surface.vertices(); ++v)
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v)
         EXPECT_TRUE(weights.emplace(ends_of(surface, v), surface.edge_weights.at(v)).second);
     return weights;
 }
@@ -42,7 +43,7 @@ void expect_same_surface(const Extraction& single, const Extraction& expected) {
 /// From clusters by both engines, and from plain arrays.
 void expect_the_surface_of_a_double_packing(const Grid& grid, const PointField& field, double isovalue) {
     SCOPED_TRACE(testing::Message() << "isovalue " << std::hexfloat << isovalue);
-    const PackedGrid single = pack(grid, field).value(), exact = pack(grid, field, {Precision::double_}).value();
+    const PackedGrid single = pack(grid, field).value(), exact = pack(grid, field, {Precision::float64}).value();
     for (const Ties ties : {Ties::merge, Ties::keep}) {
         ExtractOptions options;
         options.ties = ties;
@@ -51,8 +52,7 @@ void expect_the_surface_of_a_double_packing(const Grid& grid, const PointField& 
         expect_same_surface(extract(single, isovalue, options).value(), expected);
         const DirectExtraction once = extract_direct(grid, field, {&isovalue, 1}, {options}).value();
         expect_same_surface(once.surfaces.at(0), expected);
-        options.engine = Engine::reference;
-        expect_same_surface(extract(single, isovalue, options).value(), expected);
+        expect_same_surface(extract_on(Engine::reference, single, isovalue, options).value(), expected);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
+#include "support/engines.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/surface_bytes.hpp"
@@ -29,9 +30,8 @@ void expect_engines_agree(std::uint32_t seed, const NastyOptions& nasty, Precisi
             options.source_cells = true;
             options.point_fields = {{"value", g.field.values}};
             const Extraction cpu = extract(packed, isovalue, options).value();
-            options.engine = Engine::reference;
-            const Extraction reference = extract(packed, isovalue, options).value();
-            ASSERT_EQ(cpu.surface.vertices(), reference.surface.vertices())
+            const Extraction reference = extract_on(Engine::reference, packed, isovalue, options).value();
+            ASSERT_EQ(cpu.surface.vertex_count(), reference.surface.vertex_count())
                 << "seed " << seed << ", isovalue " << isovalue << ", ties " << int(ties);
             ASSERT_EQ(cpu.surface.triangle_count(), reference.surface.triangle_count())
                 << "seed " << seed << ", isovalue " << isovalue << ", ties " << int(ties);
@@ -44,19 +44,19 @@ void expect_engines_agree(std::uint32_t seed, const NastyOptions& nasty, Precisi
 
 TEST(EnginesAgree, OnSmoothFields) {
     for (const std::uint32_t seed : Seeds(1, 4))
-        expect_engines_agree(seed, {.side = 11, .values = 0}, Precision::single, {-2, -0.4, 0, 0.3, 2});
+        expect_engines_agree(seed, {.side = 11, .values = 0}, Precision::float32, {-2, -0.4, 0, 0.3, 2});
 }
 
 TEST(EnginesAgree, OnIntegerFieldsFullOfTies) {
     for (const std::uint32_t seed : Seeds(1, 12))
-        expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 2 + int(seed) % 4}, Precision::single,
+        expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 2 + int(seed) % 4}, Precision::float32,
                              {-1, 0, 0.5, 1, 2});
 }
 
 TEST(EnginesAgree, OnPointsWithoutData) {
     for (const std::uint32_t seed : Seeds(1, 12))
         expect_engines_agree(seed, {.side = 4 + int(seed) % 6, .values = 4, .no_data = 0.05 * (seed % 5)},
-                             Precision::single, {-1, 0, 1, 1.5});
+                             Precision::float32, {-1, 0, 1, 1.5});
 }
 
 TEST(EnginesAgree, OnTangledGridsWithRepeatedAndMissingTets) {
@@ -69,13 +69,13 @@ TEST(EnginesAgree, OnTangledGridsWithRepeatedAndMissingTets) {
                               .inverted = 0.2,
                               .mirrored = 0.5,
                               .repeated = 0.1},
-                             Precision::single, {0, 0.5, 1});
+                             Precision::float32, {0, 0.5, 1});
 }
 
 TEST(EnginesAgree, OnDoublePacking) {
     for (const std::uint32_t seed : Seeds(1, 6))
         expect_engines_agree(seed, {.side = 7, .values = int(seed % 2) * 4, .no_data = 0.02, .wide = true},
-                             Precision::double_, {0, 0.25, 1});
+                             Precision::float64, {0, 0.25, 1});
 }
 
 } // namespace

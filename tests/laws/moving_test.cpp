@@ -18,7 +18,7 @@
 namespace isotet::test {
 namespace {
 
-PackOptions with_everything(Precision precision = Precision::single) {
+PackOptions with_everything(Precision precision = Precision::float32) {
     PackOptions options;
     options.precision = precision;
     options.gradients = options.source_cells = true;
@@ -52,7 +52,7 @@ TEST(SetField, GivesTheBytesOfAFreshPack) {
                                          converted<double>(gyroid, 1e248, 0),
                                          converted<std::int64_t>(gyroid, 1e9, 0),
                                          converted<std::uint8_t>(gyroid, 50, 128)};
-    for (const Precision precision : {Precision::single, Precision::double_}) {
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
         PackedGrid packed = pack(grid, fields.back(), with_everything(precision)).value();
         for (const PointField& field : fields) {
             packed = packed.with_field(field).value();
@@ -131,9 +131,9 @@ void expect_moved_as_fresh(const Grid& original, Precision precision) {
 
 TEST(SetPoints, GivesTheSurfaceOfAFreshPack) {
     const Grid grid = made_grid("mixed", 6, {"gyroid"});
-    expect_moved_as_fresh<float>(grid, Precision::single);
-    expect_moved_as_fresh<double>(grid, Precision::single);
-    expect_moved_as_fresh<double>(grid, Precision::double_);
+    expect_moved_as_fresh<float>(grid, Precision::float32);
+    expect_moved_as_fresh<double>(grid, Precision::float32);
+    expect_moved_as_fresh<double>(grid, Precision::float64);
 }
 
 TEST(SetPoints, RefusesPointsThatTurnATetAndChangesNothing) {
@@ -184,10 +184,10 @@ TEST(HugeOffsets, LeaveCentimetreCellsAsTheyAre) {
     const Surface expected = extract(packed_near, 0.5, options).value().surface;
     const Surface surface = extract(packed_far, 0.5, options).value().surface;
     std::map<Ends, std::array<double, 3>> places;
-    for (std::size_t v = 0; v < expected.vertices(); ++v) places[ends_of(expected, v)] = position_of(expected, v);
-    ASSERT_GT(surface.vertices(), 100u);
-    ASSERT_EQ(surface.vertices(), expected.vertices());
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < expected.vertex_count(); ++v) places[ends_of(expected, v)] = position_of(expected, v);
+    ASSERT_GT(surface.vertex_count(), 100u);
+    ASSERT_EQ(surface.vertex_count(), expected.vertex_count());
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto p = position_of(surface, v), q = places.at(ends_of(surface, v));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double offset = axis == 0 ? 4e6 : axis == 1 ? 2e6 : 0;
@@ -213,12 +213,13 @@ TEST(HugeOffsets, ThatFloat32CannotHoldAreReportedAndDoublePackingHoldsThem) {
     both.cells.connectivity = Array::own(std::move(corners));
     const PackedGrid single = pack(both, field_of(values)).value();
     EXPECT_EQ(single.report().coarse_clusters, single.report().clusters);
-    const PackedGrid precise = pack(both, field_of(values), with_everything(Precision::double_)).value();
+    const PackedGrid precise = pack(both, field_of(values), with_everything(Precision::float64)).value();
     EXPECT_EQ(precise.report().coarse_clusters, 0u);
     EXPECT_EQ(precise.data().origin, (std::array<double, 3>{}));
     const Surface surface = extract(precise, 0.5).value().surface;
     EXPECT_EQ(surface.positions.type(), ScalarType::float64);
-    for (std::size_t v = 0; v < surface.vertices(); ++v) ASSERT_NEAR(std::abs(surface.positions.at(v, 0)), 4e6, 0.021);
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v)
+        ASSERT_NEAR(std::abs(surface.positions.at(v, 0)), 4e6, 0.021);
 }
 
 TEST(Coordinates, TooSmallForTheContractAreZeroAndCounted) {
@@ -226,7 +227,7 @@ TEST(Coordinates, TooSmallForTheContractAreZeroAndCounted) {
     const PackedGrid packed = pack(grid, field_of<float>({1, 0, 0, 0})).value();
     EXPECT_EQ(packed.report().flushed_coordinates, 2u);
     const Surface surface = extract(packed, 1).value().surface; // a peak: nothing
-    EXPECT_EQ(surface.vertices(), 0u);
+    EXPECT_EQ(surface.vertex_count(), 0u);
 }
 
 } // namespace

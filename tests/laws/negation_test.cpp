@@ -52,9 +52,9 @@ TEST(Negation, TurnsEveryTriangleRound) {
         ASSERT_EQ(triangles_of(positive.surface, true), triangles_of(negative.surface, false)) << "seed " << seed;
 
         std::map<Ends, std::array<double, 3>> places;
-        for (std::size_t v = 0; v < negative.surface.vertices(); ++v)
+        for (std::size_t v = 0; v < negative.surface.vertex_count(); ++v)
             places[ends_of(negative.surface, v)] = position_of(negative.surface, v);
-        for (std::size_t v = 0; v < positive.surface.vertices(); ++v) {
+        for (std::size_t v = 0; v < positive.surface.vertex_count(); ++v) {
             const Ends ends = ends_of(positive.surface, v);
             const auto here = position_of(positive.surface, v), there = places.at({ends.second, ends.first});
             for (std::size_t axis = 0; axis < 3; ++axis) ASSERT_NEAR(here[axis], there[axis], 1e-6);

@@ -60,9 +60,9 @@ TEST_P(OnEveryShape, VerticesLieOnTheirEdgesWhereTheFieldHasTheIsovalue) {
     options.edge_ends = true;
     options.point_fields = {g.point_fields[0]};
     const Surface surface = extract(packed(g), 0.2, options).value().surface;
-    ASSERT_GT(surface.vertices(), 0u);
+    ASSERT_GT(surface.vertex_count(), 0u);
     const auto values = g.point_fields[0].values.as<float>();
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto [below, above] = ends_of(surface, v);
         const auto low = static_cast<std::size_t>(below), high = static_cast<std::size_t>(above);
         ASSERT_LT(values[low], 0.2);
@@ -104,7 +104,7 @@ TEST_P(OnEveryShape, NormalsHaveUnitLengthAndGradientNormalsPointAwayFromTheCent
         ExtractOptions options;
         options.normals = kind;
         const Surface surface = extract(packed(g), 0.6, options).value().surface;
-        ASSERT_EQ(surface.normals.tuples(), kind == Normals::face ? surface.triangle_count() : surface.vertices());
+        ASSERT_EQ(surface.normals.tuples(), kind == Normals::face ? surface.triangle_count() : surface.vertex_count());
         double worst = 1;
         for (std::size_t n = 0; n < surface.normals.tuples(); ++n) {
             const double x = surface.normals.at(n, 0), y = surface.normals.at(n, 1), z = surface.normals.at(n, 2);
@@ -178,7 +178,7 @@ TEST(Isovalues, OutsideTheRangeGiveAnEmptySurface) {
         everything.edge_ends = everything.source_cells = true;
         everything.point_fields = g.point_fields;
         const Surface surface = extract(packed, isovalue, everything).value().surface;
-        EXPECT_EQ(surface.vertices(), 0u);
+        EXPECT_EQ(surface.vertex_count(), 0u);
         EXPECT_EQ(surface.triangle_count(), 0u);
         EXPECT_EQ(check(surface).value().triangles, 0u);
     }

@@ -22,7 +22,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::vector<std::array<double, 3>> unit{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 template <class T>
-PackedGrid one_tet(std::vector<T> values, Precision precision = Precision::single) {
+PackedGrid one_tet(std::vector<T> values, Precision precision = Precision::float32) {
     PackOptions options;
     options.precision = precision;
     return pack(tet_grid(unit, {{0, 1, 2, 3}}), field_of(std::move(values)), options).value();
@@ -55,8 +55,8 @@ bool expect_certified(const Grid& grid, const PackedGrid& packed, const std::vec
     for (const T value : values) exact_ties += static_cast<Exact>(value) == static_cast<Exact>(isovalue);
     EXPECT_EQ(out.report.tied_points - out.report.false_ties.value(), exact_ties) << "a tie vanished at " << isovalue;
     if (out.report.tied_points != 0) return false;
-    EXPECT_EQ(out.surface.vertices(), crossed_edges(grid, values, isovalue)) << isovalue;
-    for (std::size_t v = 0; v < out.surface.vertices(); ++v) {
+    EXPECT_EQ(out.surface.vertex_count(), crossed_edges(grid, values, isovalue)) << isovalue;
+    for (std::size_t v = 0; v < out.surface.vertex_count(); ++v) {
         const auto [below, above] = ends_of(out.surface, v);
         EXPECT_LT(static_cast<Exact>(values[static_cast<std::size_t>(below)]), static_cast<Exact>(isovalue));
         EXPECT_GE(static_cast<Exact>(values[static_cast<std::size_t>(above)]), static_cast<Exact>(isovalue));
@@ -77,7 +77,7 @@ void expect_certificate(std::uint32_t seed, const Draw& draw) {
         isovalues.insert(isovalues.end(), {a, std::nextafter(a, infinity), std::nextafter(a, -infinity),
                                            a / 2 + static_cast<double>(values[random() % values.size()]) / 2});
     }
-    for (const Precision precision : {Precision::single, Precision::double_}) {
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
         PackOptions options;
         options.precision = precision;
         const PackedGrid packed = pack(grid, field_of(values), options).value();
@@ -142,8 +142,8 @@ TEST(Pressure, KeepsItsDigits) {
     ExtractOptions options;
     options.edge_ends = true;
     const Extraction out = extract(packed, 101325.3, options).value();
-    ASSERT_GT(out.surface.vertices(), 0u);
-    for (std::size_t v = 0; v < out.surface.vertices(); ++v) {
+    ASSERT_GT(out.surface.vertex_count(), 0u);
+    for (std::size_t v = 0; v < out.surface.vertex_count(); ++v) {
         const auto [below, above] = ends_of(out.surface, v);
         const double s0 = values[static_cast<std::size_t>(below)], s1 = values[static_cast<std::size_t>(above)];
         EXPECT_NEAR(out.surface.edge_weights.at(v), (101325.3 - s0) / (s1 - s0), 2e-6);
@@ -212,13 +212,13 @@ TEST(Zeros, OfBothSignsAreTiedAlike) {
 }
 
 TEST(Infinity, GivesTheFiniteEndOrTheMiddle) {
-    for (const Precision precision : {Precision::single, Precision::double_}) {
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
         ExtractOptions options;
         options.edge_ends = true;
         const PackedGrid packed = one_tet<double>({-infinity, infinity, 1, 2}, precision);
         EXPECT_EQ(packed.field().infinite, 2u);
         const Surface surface = extract(packed, 0.5, options).value().surface;
-        ASSERT_EQ(surface.vertices(), 3u);
+        ASSERT_EQ(surface.vertex_count(), 3u);
         for (std::size_t v = 0; v < 3; ++v) {
             const auto [below, above] = ends_of(surface, v);
             EXPECT_EQ(below, 0);
@@ -227,7 +227,7 @@ TEST(Infinity, GivesTheFiniteEndOrTheMiddle) {
         }
         const Surface other =
             extract(one_tet<double>({-3, infinity, infinity, infinity}, precision), -1e300, options).value().surface;
-        EXPECT_EQ(other.vertices(), 0u); // -3 is above, and nothing is below
+        EXPECT_EQ(other.vertex_count(), 0u); // -3 is above, and nothing is below
     }
 }
 
@@ -235,7 +235,7 @@ TEST(NoData, GivesNothingHoweverNaNIsWritten) {
     for (const std::uint32_t bits : {0x7fc00000u, 0xffc00000u, 0x7f800001u, 0x7fffffffu, 0xffffffffu}) {
         const PackedGrid packed = one_tet<float>({std::bit_cast<float>(bits), -1, 1, 2});
         EXPECT_EQ(packed.field().no_data, 1u);
-        EXPECT_EQ(extract(packed, 0).value().surface.vertices(), 0u);
+        EXPECT_EQ(extract(packed, 0).value().surface.vertex_count(), 0u);
     }
     const PackedGrid nothing = one_tet<double>(std::vector<double>(4, std::nan("")));
     EXPECT_EQ(nothing.field().no_data, 4u);
@@ -259,7 +259,7 @@ TEST(IsovalueOnFloat32, IsComparedAsADouble) {
     const Extraction between = extract(packed, 0.7).value();
     EXPECT_EQ(between.report.tied_points, 0u);
     EXPECT_TRUE(between.report.near_tie);
-    EXPECT_EQ(between.surface.vertices(), 3u); // only point 3 is above
+    EXPECT_EQ(between.surface.vertex_count(), 3u); // only point 3 is above
     EXPECT_EQ(between.surface.triangle_count(), 1u);
     const double snapped = snap(Array::own(std::vector<float>{0}), 0.7);
     EXPECT_EQ(snapped, static_cast<double>(0.7f));
@@ -294,7 +294,7 @@ TEST(FalseTies, AreToldFromTiesOfTheInput) {
     EXPECT_EQ(report.tied_points, 2u);
     EXPECT_EQ(report.false_ties, 1u);
     EXPECT_EQ(extract(packed, close).value().report.false_ties, 1u);
-    EXPECT_EQ(extract(one_tet<double>({1, close, -50, 50}, Precision::double_), 1).value().report.tied_points, 1u);
+    EXPECT_EQ(extract(one_tet<double>({1, close, -50, 50}, Precision::float64), 1).value().report.tied_points, 1u);
 }
 
 TEST(FalseTies, OfIntegersBeyondDoublesAreToldExactly) {

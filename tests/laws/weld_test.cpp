@@ -19,7 +19,7 @@ void expect_equal_to_weld(const Grid& grid, const PointField& field, const std::
                           const std::string& which) {
     PackOptions pack_options;
     pack_options.source_cells = true;
-    pack_options.precision = std::is_same_v<Real, float> ? Precision::single : Precision::double_;
+    pack_options.precision = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
     const PackedGrid packed = pack(grid, field, pack_options).value();
     for (const double isovalue : isovalues)
         for (const Ties ties : {Ties::merge, Ties::keep}) {
@@ -31,7 +31,7 @@ void expect_equal_to_weld(const Grid& grid, const PointField& field, const std::
             const SurfaceSets found = sets_of(surface), wanted = brute_weld<Real>(grid, field.values, isovalue, ties);
             const std::string place =
                 which + ", isovalue " + std::to_string(isovalue) + (ties == Ties::keep ? ", kept" : "");
-            ASSERT_EQ(surface.vertices(), wanted.vertices.size()) << place;
+            ASSERT_EQ(surface.vertex_count(), wanted.vertices.size()) << place;
             ASSERT_EQ(surface.triangle_count(), wanted.triangle_count()) << place;
             ASSERT_EQ(found.vertices, wanted.vertices) << place;
             ASSERT_EQ(found, wanted) << place;

@@ -23,7 +23,7 @@ private:
 };
 
 TEST_F(WideIndices, GiveTheSameSurfaceAsNarrowOnes) {
-    for (const Precision precision : {Precision::single, Precision::double_})
+    for (const Precision precision : {Precision::float32, Precision::float64})
         for (const Ties ties : {Ties::merge, Ties::keep}) {
             const NastyGrid g = nasty_grid(9, {.side = 8, .values = 3, .no_data = 0.02, .wide = true});
             PackOptions pack_options;
@@ -35,9 +35,9 @@ TEST_F(WideIndices, GiveTheSameSurfaceAsNarrowOnes) {
             options.normals = Normals::gradient;
             options.edge_ends = options.source_cells = true;
             const Surface narrow = extract(packed, 0.5, options).value().surface;
-            cpu::wide_from = narrow.vertices();
+            cpu::wide_from = narrow.vertex_count();
             Surface wide = extract(packed, 0.5, options).value().surface;
-            cpu::wide_from = narrow.vertices() + 1;
+            cpu::wide_from = narrow.vertex_count() + 1;
             EXPECT_EQ(extract(packed, 0.5, options).value().surface.triangles.type(), ScalarType::uint32);
             ASSERT_EQ(narrow.triangles.type(), ScalarType::uint32);
             ASSERT_EQ(wide.triangles.type(), ScalarType::uint64);

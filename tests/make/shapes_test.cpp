@@ -32,9 +32,8 @@ Grid made(const std::string& shape, std::uint64_t side, std::uint64_t seed = 1, 
     options.shape = shape;
     options.side = side;
     options.seed = seed;
-    options.threads = threads;
     options.fields = make_fields();
-    return make_grid(options).value();
+    return make_grid(options, {.threads = threads}).value();
 }
 
 bool same_bytes(const Array& a, const Array& b) {
@@ -298,7 +297,7 @@ TEST(MakeGrid, EndsWithCancelledWhenItIsCancelled) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    const auto grid = make_grid({}, progress);
+    const auto grid = make_grid({}, {.progress = progress});
     ASSERT_FALSE(grid);
     EXPECT_EQ(grid.error().code, ErrorCode::cancelled);
 }
@@ -307,7 +306,7 @@ TEST(MakeGrid, ReportsProgressThatRisesToOne) {
     std::vector<double> fractions;
     Progress progress;
     progress.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
-    make_grid({}, progress).value();
+    make_grid({}, {.progress = progress}).value();
     ASSERT_FALSE(fractions.empty());
     EXPECT_TRUE(std::ranges::is_sorted(fractions));
     EXPECT_EQ(fractions.back(), 1);

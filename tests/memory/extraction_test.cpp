@@ -57,17 +57,18 @@ std::vector<Options> all_options(const Field& point_field, const Field& cell_fie
     return all;
 }
 
-void expect_limits_hold(const PackedGrid& packed, const std::vector<double>& isovalues, const ExtractOptions& options) {
+void expect_limits_hold(const PackedGrid& packed, const std::vector<double>& isovalues, const ExtractOptions& options,
+                        const Run& run) {
     core::drop_kept_blocks(); // what is kept from before would be used without being taken
     std::vector<Extraction> surfaces;
-    const std::size_t peak = peak_bytes([&] { surfaces = extract(packed, isovalues, options).value(); });
+    const std::size_t peak = peak_bytes([&] { surfaces = extract(packed, isovalues, options, run).value(); });
     std::size_t output = 0, triangles = 0, selected = 0;
     for (const Extraction& extraction : surfaces) {
         output += extraction.report.surface_bytes;
         triangles += extraction.surface.triangle_count();
         selected += extraction.report.selected_clusters;
     }
-    const auto threads = static_cast<std::size_t>(options.threads);
+    const auto threads = static_cast<std::size_t>(run.threads);
     const std::size_t limit = 48 * triangles + 100 * selected + 16 * packed.report().clusters + 1'000'000 * threads;
     const ExtractReport& report = surfaces[0].report;
     EXPECT_LE(peak, output + limit) << triangles << " triangles, " << selected << " selected clusters";
@@ -90,35 +91,33 @@ void expect_limits_hold(const Grid& grid, const PointField& field, Precision pre
     for (const Options& options : all_options({"point", field.values}, cell_field))
         for (const int threads : {1, 4}) {
             SCOPED_TRACE(options.name + ", " + std::to_string(threads) + " threads");
-            ExtractOptions with_threads = options.extract;
-            with_threads.threads = threads;
-            expect_limits_hold(packed, {isovalues[0]},
-                               with_threads); // the field is looked at here, which takes no memory either
-            expect_limits_hold(packed, isovalues, with_threads);
+            // The field is looked at first, which takes no memory either.
+            expect_limits_hold(packed, {isovalues[0]}, options.extract, {.threads = threads});
+            expect_limits_hold(packed, isovalues, options.extract, {.threads = threads});
         }
 }
 
 TEST(ExtractionMemory, StaysWithinItsLimitsOnSmoothFields) {
     const Grid grid = made_grid("kuhn", 40, {"gyroid"}); // 384,000 tets
-    expect_limits_hold(grid, point_field(grid), Precision::single, {0.1, 0.11, 0.12, -0.9});
+    expect_limits_hold(grid, point_field(grid), Precision::float32, {0.1, 0.11, 0.12, -0.9});
 }
 
 TEST(ExtractionMemory, StaysWithinItsLimitsOnShuffledGrids) {
     const Grid grid = made_grid("shuffled", 30, {"gyroid"});
-    expect_limits_hold(grid, point_field(grid), Precision::single, {0.3, 0, -0.3});
-    expect_limits_hold(grid, point_field(grid), Precision::double_, {0.3, 0, -0.3});
+    expect_limits_hold(grid, point_field(grid), Precision::float32, {0.3, 0, -0.3});
+    expect_limits_hold(grid, point_field(grid), Precision::float64, {0.3, 0, -0.3});
 }
 
 TEST(ExtractionMemory, StaysWithinItsLimitsOnFieldsFullOfTies) {
     const Grid grid = made_grid("mixed", 24, {"integer"});
-    expect_limits_hold(grid, point_field(grid), Precision::single, {0, 1, 2, 2.5});
+    expect_limits_hold(grid, point_field(grid), Precision::float32, {0, 1, 2, 2.5});
 }
 
 TEST(ExtractionMemory, StaysWithinItsLimitsOnTangledGridsWithNaN) {
     for (const std::uint32_t seed : Seeds(1, 2)) {
         const NastyGrid g = nasty_grid(
             seed, {.side = 20, .values = 5, .no_data = 0.05, .missing = 0.1, .inverted = 0.1, .repeated = 0.1});
-        expect_limits_hold(g.grid, g.field, seed % 2 ? Precision::single : Precision::double_, {0, 1, 1.5});
+        expect_limits_hold(g.grid, g.field, seed % 2 ? Precision::float32 : Precision::float64, {0, 1, 1.5});
     }
 }
 
@@ -127,13 +126,13 @@ TEST(ExtractionMemory, StaysWithinItsLimitsOnLooseTets) {
     std::vector<float> values(grid.points.tuples());
     for (std::size_t p = 0; p < values.size(); ++p)
         values[p] = static_cast<float>(p % 4) + 1e-5f * static_cast<float>(p % 1000);
-    expect_limits_hold(grid, field_of(values), Precision::single, {0.5, 1.5, 2.5});
+    expect_limits_hold(grid, field_of(values), Precision::float32, {0.5, 1.5, 2.5});
 }
 
 TEST(ExtractionMemory, IsSmallForSmallSurfacesOnLargeGrids) {
     const Grid grid = made_grid("kuhn", 60, {"plane"});
-    expect_limits_hold(grid, point_field(grid), Precision::single, {1e9, -1e9});
-    expect_limits_hold(grid, point_field(grid), Precision::single, {0.5});
+    expect_limits_hold(grid, point_field(grid), Precision::float32, {1e9, -1e9});
+    expect_limits_hold(grid, point_field(grid), Precision::float32, {0.5});
 }
 
 } // namespace

@@ -11,26 +11,23 @@
 namespace isotet::test {
 namespace {
 
-double bytes_a_tet(const Grid& grid, const PackOptions& options) {
+double bytes_a_tet(const Grid& grid, int threads) {
     core::drop_kept_blocks(); // what is kept from before would be used without being taken
     std::uint64_t tets = 0;
-    const std::size_t peak = peak_bytes([&] { tets = pack(grid, point_field(grid), options).value().report().tets; });
+    const std::size_t peak =
+        peak_bytes([&] { tets = pack(grid, point_field(grid), {}, {.threads = threads}).value().report().tets; });
     return static_cast<double>(peak) / static_cast<double>(tets);
 }
 
 TEST(PackingMemory, StaysBelowFortyBytesATet) {
     for (const char* shape : {"kuhn", "shuffled", "layer"}) {
         const Grid grid = made_grid(shape, 52, {"gyroid"}); // over 800,000 tets
-        PackOptions options;
-        options.threads = 2;
-        EXPECT_LE(bytes_a_tet(grid, options), 40) << shape;
+        EXPECT_LE(bytes_a_tet(grid, 2), 40) << shape;
     }
 }
 
 TEST(PackingMemory, StaysBelowFortyBytesATetWithManyThreads) {
-    PackOptions options;
-    options.threads = 64;
-    EXPECT_LE(bytes_a_tet(made_grid("kuhn", 72, {"gyroid"}), options), 40); // 34 blocks, over two million tets
+    EXPECT_LE(bytes_a_tet(made_grid("kuhn", 72, {"gyroid"}), 64), 40); // 34 blocks, over two million tets
 }
 
 } // namespace

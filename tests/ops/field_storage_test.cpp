@@ -55,7 +55,7 @@ Expected expected_of(const Array& values, const Packed& packed, std::vector<Real
     for (std::size_t i = 0; i < packed.points(); ++i) exact.push_back(values.at(packed.user_point(i)));
     for (const double value : exact) out.statistics.add(value);
     out.storage =
-        core::choose_offset(values.type(), out.statistics, packed.single() ? Precision::single : Precision::double_);
+        core::choose_offset(values.type(), out.statistics, packed.single() ? Precision::float32 : Precision::float64);
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (const double value : exact) {
         const double magnitude = std::abs(value - out.storage.offset);
@@ -75,7 +75,7 @@ template <class Real, class T>
 void expect_stored_like_one_by_one(int kind) {
     const Grid grid = made_grid("shuffled", 5, {"sphere"}); // 216 points: whole lanes and a rest
     PackOptions options;
-    options.precision = sizeof(Real) == 4 ? Precision::single : Precision::double_;
+    options.precision = sizeof(Real) == 4 ? Precision::float32 : Precision::float64;
     const PackedGrid packed = pack(grid, point_field(grid), options).value();
     std::mt19937 random(static_cast<unsigned>(kind) + 1);
     std::vector<T> values;

@@ -49,7 +49,7 @@ Storage storage_for(const std::vector<double>& values, ScalarType type, Precisio
 
 template <class Real>
 void expect_rules(const std::vector<double>& values, ScalarType type) {
-    const Storage storage = storage_for(values, type, sizeof(Real) == 4 ? Precision::single : Precision::double_);
+    const Storage storage = storage_for(values, type, sizeof(Real) == 4 ? Precision::float32 : Precision::float64);
     int exponent = 0;
     ASSERT_EQ(std::frexp(storage.scale, &exponent), 0.5) << "the scale must be a power of two";
     Real before = -std::numeric_limits<Real>::infinity();
@@ -86,7 +86,7 @@ TEST(UnchangedValues, AreOnTheSideOfTheExactIsovalue) {
     std::vector<double> values;
     for (int i = 0; i < 300; ++i)
         values.push_back(static_cast<double>(std::uniform_real_distribution<float>(-4, 9)(random)));
-    const Storage storage = storage_for(values, ScalarType::float32, Precision::single);
+    const Storage storage = storage_for(values, ScalarType::float32, Precision::float32);
     ASSERT_TRUE(storage.unchanged);
     for (int i = 0; i < 300; ++i) {
         const double near = values[random() % values.size()];
@@ -106,7 +106,7 @@ TEST(ChangedValues, NeverChangeSideWithoutATie) {
     std::mt19937_64 random(6);
     std::vector<double> values;
     for (int i = 0; i < 300; ++i) values.push_back(std::uniform_real_distribution<double>(101324, 101326)(random));
-    const Storage storage = storage_for(values, ScalarType::float64, Precision::single);
+    const Storage storage = storage_for(values, ScalarType::float64, Precision::float32);
     EXPECT_NEAR(storage.offset, 101325, 0.1);
     for (const double isovalue : values)
         for (const double value : values) {
@@ -117,7 +117,7 @@ TEST(ChangedValues, NeverChangeSideWithoutATie) {
 }
 
 TEST(Offset, IsTakenOnlyWhereTheRangeIsBelowAnEighthOfTheMagnitude) {
-    const auto offset = [](ScalarType type, double lower, double upper, Precision precision = Precision::single) {
+    const auto offset = [](ScalarType type, double lower, double upper, Precision precision = Precision::float32) {
         core::ValueStatistics statistics;
         statistics.add(lower);
         statistics.add(upper);
@@ -129,7 +129,7 @@ TEST(Offset, IsTakenOnlyWhereTheRangeIsBelowAnEighthOfTheMagnitude) {
     EXPECT_EQ(offset(ScalarType::float32, 701, 800), 0); // stored unchanged
     EXPECT_EQ(offset(ScalarType::int64, 701, 800), 0);   // below 2^24
     EXPECT_EQ(offset(ScalarType::int64, 0x1p30, 0x1p30 + 2), 0x1p30 + 1);
-    EXPECT_EQ(offset(ScalarType::float64, 701, 800, Precision::double_), 0);
+    EXPECT_EQ(offset(ScalarType::float64, 701, 800, Precision::float64), 0);
 }
 
 TEST(Scale, IsTakenOnlyWhereValuesAreHugeOrTiny) {

@@ -204,7 +204,7 @@ TEST_F(ReadFile, ReportsProgressThatNeverFallsFromOneFileToTheOther) {
     std::vector<double> fractions;
     Progress progress;
     progress.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
-    const auto result = read(path("a.mesh"), {}, progress);
+    const auto result = read(path("a.mesh"), {}, {.progress = progress});
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_GT(fractions.size(), 3u);
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));

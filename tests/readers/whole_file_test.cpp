@@ -64,7 +64,7 @@ TEST(ReadOfAFile, ThatIsCutShortMeanwhileGivesItAsItWas) {
         std::filesystem::resize_file(path, 10);
         was_cut = true;
     };
-    const auto result = read(path, {}, progress);
+    const auto result = read(path, {}, {.progress = progress});
     EXPECT_TRUE(was_cut);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->grid.points.tuples(), 200'000u);

@@ -30,7 +30,7 @@ constexpr std::array<std::array<std::uint8_t, 4>, 3> frame_colors{
     {{200, 40, 40, 255}, {40, 180, 60, 255}, {250, 250, 250, 255}}};
 
 std::uint64_t write_colors(const std::string& path) {
-    Animation animation = Animation::begin(path, 8).value();
+    Animation animation = Animation::create(path, 8).value();
     for (const auto& color : frame_colors) EXPECT_TRUE(animation.add(plain(70, 50, color)));
     return animation.finish().value();
 }
@@ -69,24 +69,24 @@ TEST_F(Animations, AreTheSameBytesForTheSamePictures) {
 TEST_F(Animations, LeaveTheOldFileUntilTheyAreFinished) {
     std::ofstream(path("a.webp")) << "old";
     {
-        Animation animation = Animation::begin(path("a.webp"), 8).value();
+        Animation animation = Animation::create(path("a.webp"), 8).value();
         ASSERT_TRUE(animation.add(plain(8, 8, frame_colors[0])));
     }
     EXPECT_EQ(content_of(path("a.webp")), "old");
 }
 
 TEST_F(Animations, RefuseWhatCannotBeOne) {
-    EXPECT_EQ(Animation::begin(path("a.gif"), 8).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(Animation::create(path("a.gif"), 8).error().code, ErrorCode::invalid_argument);
     for (const double rate : {0.0, -1.0, 101.0, std::nan("")})
-        EXPECT_EQ(Animation::begin(path("a.webp"), rate).error().code, ErrorCode::invalid_argument);
-    Animation animation = Animation::begin(path("a.webp"), 8).value();
+        EXPECT_EQ(Animation::create(path("a.webp"), rate).error().code, ErrorCode::invalid_argument);
+    Animation animation = Animation::create(path("a.webp"), 8).value();
     EXPECT_EQ(animation.finish().error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(animation.add({}).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(animation.add(plain(16384, 1, frame_colors[0])).error().code, ErrorCode::invalid_argument);
     ASSERT_TRUE(animation.add(plain(8, 8, frame_colors[0])));
     EXPECT_EQ(animation.add(plain(8, 9, frame_colors[0])).error().message,
               "a picture of 8 x 9, but those before it are 8 x 8");
-    Animation nowhere = Animation::begin(path("no/where.webp"), 8).value();
+    Animation nowhere = Animation::create(path("no/where.webp"), 8).value();
     ASSERT_TRUE(nowhere.add(plain(8, 8, frame_colors[0])));
     EXPECT_EQ(nowhere.finish().error().code, ErrorCode::file);
 }

@@ -13,7 +13,7 @@
 namespace isotet::test {
 namespace {
 
-Surface boundary_of_made(const std::string& shape, std::size_t side, Precision precision = Precision::single) {
+Surface boundary_of_made(const std::string& shape, std::size_t side, Precision precision = Precision::float32) {
     const Grid grid = make_grid({.shape = shape, .side = side, .fields = {"sphere"}}).value();
     return boundary_of(pack(grid, find_field(grid, "sphere").value(), {.precision = precision}).value()).value();
 }
@@ -31,7 +31,7 @@ TEST(Boundary, OfACubeIsTheCube) {
 }
 
 TEST(Boundary, OfADoublePackingIsDouble) {
-    const Surface surface = boundary_of_made("kuhn", 4, Precision::double_);
+    const Surface surface = boundary_of_made("kuhn", 4, Precision::float64);
     EXPECT_EQ(surface.positions.type(), ScalarType::float64);
     EXPECT_EQ(surface.triangle_count(), 6u * 4 * 4 * 2);
 }
@@ -40,7 +40,7 @@ TEST(Boundary, CanBeCancelled) {
     const Grid grid = make_grid({.shape = "kuhn", .side = 4, .fields = {"sphere"}}).value();
     const PackedGrid packed = pack(grid, find_field(grid, "sphere").value()).value();
     const std::atomic<bool> cancel = true;
-    const Result<Surface> surface = boundary_of(packed, {.report = {}, .cancel = &cancel});
+    const Result<Surface> surface = boundary_of(packed, {.progress = {.report = {}, .cancel = &cancel}});
     ASSERT_FALSE(surface);
     EXPECT_EQ(surface.error().code, ErrorCode::cancelled);
 }

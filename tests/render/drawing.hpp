@@ -44,7 +44,7 @@ protected:
     void SetUp() override {
         OnDevice::SetUp();
         device_.emplace(shared_context());
-        renderer_.emplace(Renderer::make(*device_).value());
+        renderer_.emplace(Renderer::create(*device_).value());
         options_.width = options_.height = 64;
         options_.samples = 2;
         options_.camera = camera_of(View::plus_x, Projection::parallel);

@@ -70,7 +70,7 @@ TEST_F(Pictures, AreTheSameEveryTime) {
     scene_.lines.push_back(outline_of(scene_.bounds));
     const Picture first = draw();
     EXPECT_TRUE(draw().pixels == first.pixels);
-    renderer_.emplace(Renderer::make(*device_).value());
+    renderer_.emplace(Renderer::create(*device_).value());
     EXPECT_TRUE(draw().pixels == first.pixels);
 }
 

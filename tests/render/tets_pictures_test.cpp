@@ -30,7 +30,7 @@ protected:
         device_.reset();
         reopen(watched(), memory_limit);
         device_.emplace(shared_context());
-        renderer_.emplace(Renderer::make(*device_).value());
+        renderer_.emplace(Renderer::create(*device_).value());
     }
 
     /// What extraction gives, from the CPU engine.
@@ -70,8 +70,8 @@ TEST_F(TetPictures, AreThoseOfTheExtractedSurface) {
             const TetSurface all = store.at(0.1).value();
             expect_alike(drawn(all, opacity), clusters);
             EXPECT_LT(renderer_->work().uploaded_bytes, 2'000'000u) << "parameters, and once the corners of quads";
-            TetFilter filter = TetFilter::build(packed_, Filter::span_space).value();
-            const TetSurface some = store.at(0.1, *filter.find(0.1).value()).value();
+            TetIndex index = TetIndex::create(packed_, SearchIndex::span_space).value();
+            const TetSurface some = store.at(0.1, index.find(0.1).value()).value();
             EXPECT_LT(some.tets(), all.tets());
             expect_alike(drawn(some, opacity), clusters);
             EXPECT_LT(renderer_->work().uploaded_bytes, 1000u) << "parameters only";

@@ -11,6 +11,7 @@
 #include <isotet/draw_tets.hpp>
 #include <isotet/search.hpp>
 
+#include "support/engines.hpp"
 #include "support/random_grid.hpp"
 #include "support/seeds.hpp"
 #include "support/small_grid.hpp"
@@ -29,9 +30,7 @@ Triangles as_set(Triangles triangles) {
 
 /// Without triangles of which two corners lie in one place.
 Triangles reference_triangles(const PackedGrid& packed, double isovalue) {
-    ExtractOptions options;
-    options.engine = Engine::reference;
-    const Surface surface = extract(packed, isovalue, options).value().surface;
+    const Surface surface = extract_on(Engine::reference, packed, isovalue).value().surface;
     Triangles triangles;
     for (std::size_t t = 0; t < surface.triangle_count(); ++t) {
         std::array<std::array<double, 3>, 3> triangle{};
@@ -53,10 +52,10 @@ protected:
         device_.reset();
         reopen(settings);
         device_.emplace(shared_context());
-        renderer_.emplace(Renderer::make(*device_).value());
+        renderer_.emplace(Renderer::create(*device_).value());
     }
 
-    /// With all tets, and with the list of every filter.
+    /// With all tets, and with the list of every index.
     void expect_reference_triangles(const PackedGrid& packed, const std::vector<double>& isovalues) {
         std::vector<TetStore> stores;
         for (const DrawMethod method : all_draw_methods)
@@ -70,10 +69,11 @@ protected:
                 EXPECT_EQ(all.tets(), packed.report().tets);
                 EXPECT_EQ(all.sent_bytes(), 0u);
                 ASSERT_TRUE(as_set(all.triangles().value()) == expected);
-                const Filter filter = all_filters[static_cast<std::size_t>(filters_asked_++) % all_filters.size()];
-                SCOPED_TRACE(std::string(name_of(filter)));
-                TetFilter candidates = TetFilter::build(packed, filter).value();
-                const std::vector<std::uint32_t>& list = *candidates.find(isovalue).value();
+                const SearchIndex index =
+                    all_search_indexes[static_cast<std::size_t>(indexes_asked_++) % all_search_indexes.size()];
+                SCOPED_TRACE(std::string(name_of(index)));
+                TetIndex candidates = TetIndex::create(packed, index).value();
+                const std::span<const std::uint32_t> list = candidates.find(isovalue).value();
                 const TetSurface some = stores[m].at(isovalue, list).value();
                 EXPECT_EQ(some.tets(), list.size());
                 EXPECT_EQ(some.sent_bytes(), 4 * list.size());
@@ -83,7 +83,7 @@ protected:
     }
 
 private:
-    int filters_asked_ = 0;
+    int indexes_asked_ = 0;
 };
 
 TEST_F(Tets, StoresTakeWhatThePaperSays) {
@@ -187,7 +187,7 @@ TEST_F(Tets, MeshShadersAreAskedOfDevicesThatHaveThemOnly) {
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     const auto without = TetStore::upload(*device_, packed, DrawMethod::mesh);
     ASSERT_FALSE(without);
-    EXPECT_EQ(without.error().code, ErrorCode::machine);
+    EXPECT_EQ(without.error().code, ErrorCode::no_device);
     EXPECT_NE(without.error().message.find("has no mesh shaders (VK_EXT_mesh_shader)"), std::string::npos)
         << without.error().message;
     TetStore textures = TetStore::upload(*device_, packed, DrawMethod::textures).value();
@@ -208,7 +208,7 @@ TEST_F(Tets, WhatCannotBeIsRefused) {
     EXPECT_EQ(error(packed, DrawMethod::registers, {.gradients = true, .picture_bytes = {}}),
               "the method registers was asked for gradients, but only textures and mesh keep them");
     PackOptions in_double;
-    in_double.precision = Precision::double_;
+    in_double.precision = Precision::float64;
     EXPECT_NE(error(pack(grid, point_field(grid), in_double).value(), DrawMethod::textures, {}), "");
     TetStore store = TetStore::upload(*device_, packed, DrawMethod::textures).value();
     EXPECT_EQ(store.at(INFINITY).error().message, "the isovalue is inf, but must be finite");
@@ -218,7 +218,7 @@ TEST_F(Tets, WhatCannotBeIsRefused) {
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    EXPECT_EQ(TetStore::upload(*device_, packed, DrawMethod::textures, {}, 0, progress).error().code,
+    EXPECT_EQ(TetStore::upload(*device_, packed, DrawMethod::textures, {}, {.progress = progress}).error().code,
               ErrorCode::cancelled);
 }
 

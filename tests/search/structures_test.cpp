@@ -75,20 +75,20 @@ TEST(SeedSets, AreSmallOnSmoothFieldsAndNeverEmptyWhereSomethingIsCut) {
     EXPECT_LT(20 * seeds.seeds(), table.tets.size());
 }
 
-TEST(TetFilterReports, TellTheBytesThatTheHeadersPromise) {
+TEST(TetIndexReports, TellTheBytesThatTheHeadersPromise) {
     const Grid grid = made_grid("shuffled", 20, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
-    const auto bytes = [&](Filter filter) {
-        const TetFilterReport report = TetFilter::build(packed, filter).value().report();
-        return static_cast<double>(report.filter_bytes) / static_cast<double>(report.tets);
+    const auto bytes = [&](SearchIndex index) {
+        const TetIndexReport report = TetIndex::create(packed, index).value().report();
+        return static_cast<double>(report.index_bytes) / static_cast<double>(report.tets);
     };
-    EXPECT_LT(bytes(Filter::cluster_ranges), 0.5);
-    EXPECT_GE(bytes(Filter::interval_tree), 16);
-    EXPECT_LT(bytes(Filter::interval_tree), 32);
-    EXPECT_LT(bytes(Filter::octree), 8);
-    EXPECT_GE(bytes(Filter::seed_set), 16);
-    EXPECT_LT(bytes(Filter::seed_set), 18);
-    EXPECT_DOUBLE_EQ(bytes(Filter::span_space), 12);
+    EXPECT_LT(bytes(SearchIndex::cluster_ranges), 0.5);
+    EXPECT_GE(bytes(SearchIndex::interval_tree), 16);
+    EXPECT_LT(bytes(SearchIndex::interval_tree), 32);
+    EXPECT_LT(bytes(SearchIndex::octree), 8);
+    EXPECT_GE(bytes(SearchIndex::seed_set), 16);
+    EXPECT_LT(bytes(SearchIndex::seed_set), 18);
+    EXPECT_DOUBLE_EQ(bytes(SearchIndex::span_space), 12);
 }
 
 } // namespace

@@ -90,7 +90,7 @@ inline std::array<double, 3> position_of(const Surface& surface, std::size_t ver
 /// The sets of a surface that was extracted with edge ends and source cells.
 inline SurfaceSets sets_of(const Surface& surface) {
     SurfaceSets sets;
-    for (std::size_t v = 0; v < surface.vertices(); ++v) {
+    for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
         const auto p = position_of(surface, v);
         sets.repeated_vertices += !sets.vertices.emplace(ends_of(surface, v), bits_of(p[0], p[1], p[2])).second;
     }

@@ -77,7 +77,7 @@ TEST_F(FoundReader, CanBeRunAndIsNotTheRunningProgram) {
 TEST_F(FoundReader, ThatIsNowhereIsAnErrorThatSaysWhatToDo) {
     const auto missing = find_reader({.program = folder_.file("solver"), .search_path = "/not/there"});
     ASSERT_FALSE(missing);
-    EXPECT_EQ(missing.error().code, ErrorCode::machine);
+    EXPECT_EQ(missing.error().code, ErrorCode::system);
     for (const std::string& part : {folder_.file("isotet"), std::string("/not/there/isotet"), std::string("PATH"),
                                     std::string("ReadOptions::reader_program"), std::string("run_as_reader()")})
         EXPECT_NE(missing.error().message.find(part), std::string::npos) << part << ": " << missing.error().message;

@@ -27,7 +27,7 @@ protected:
         ReadOptions options;
         options.reader_program = folder_.write_script("reader", commands);
         options.time_limit = time_limit_;
-        const auto result = read(folder_.file("sample.vtu"), options, progress);
+        const auto result = read(folder_.file("sample.vtu"), options, {.progress = progress});
         return result ? Error{ErrorCode::internal, "no error"} : result.error();
     }
     static void expect_words(const Error& error, std::initializer_list<std::string_view> words) {
@@ -70,7 +70,7 @@ TEST_F(ReaderProcess, OutputWithoutEndIsCutToItsLastLines) {
 TEST_F(ReaderProcess, IsStoppedAtItsTimeLimit) {
     time_limit_ = std::chrono::seconds(1);
     const Error error = error_with("sleep 1000");
-    EXPECT_EQ(error.code, ErrorCode::machine);
+    EXPECT_EQ(error.code, ErrorCode::system);
     expect_words(error, {"1 s", "time limit"});
 }
 
@@ -113,7 +113,7 @@ TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
     options.reader_program = folder_.file("not-there");
     const auto result = read(folder_.file("sample.vtu"), options);
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().code, ErrorCode::machine);
+    EXPECT_EQ(result.error().code, ErrorCode::system);
     expect_words(result.error(), {"not-there", "No such file"});
 }
 

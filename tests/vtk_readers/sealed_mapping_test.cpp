@@ -75,7 +75,7 @@ TEST(SealedMapping, OfAFileThatSomebodyMayStillWriteIsRefused) {
     ASSERT_NE(writable, MAP_FAILED);
     const auto mapping = map_sealed(file.number());
     ASSERT_FALSE(mapping);
-    EXPECT_EQ(mapping.error().code, ErrorCode::machine);
+    EXPECT_EQ(mapping.error().code, ErrorCode::system);
     EXPECT_NE(mapping.error().message.find("cannot be sealed"), std::string::npos) << mapping.error().message;
     ::munmap(writable, 4096);
 }

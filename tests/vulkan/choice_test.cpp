@@ -49,7 +49,7 @@ TEST_F(Choosing, TakesTheDiscreteDeviceWithTheMostMemoryThatCanBeUsed) {
 TEST_F(Choosing, NeverTakesASoftwareDeviceUnasked) {
     devices.resize(1);
     EXPECT_EQ(chosen(""), "no graphics card that can be used; devices: 0: llvmpipe (LLVM 15) (software)");
-    EXPECT_EQ(code(""), ErrorCode::machine);
+    EXPECT_EQ(code(""), ErrorCode::no_device);
     EXPECT_EQ(chosen("software"), "llvmpipe (LLVM 15)");
 }
 
@@ -77,7 +77,7 @@ TEST_F(Choosing, SaysWhyTheDeviceThatWasNamedCannotBeUsed) {
     const std::string why = "the device NVIDIA Quadro 600 cannot be used: it has Vulkan 1.0.3, but 1.2 is needed";
     EXPECT_EQ(chosen("quadro"), why);
     EXPECT_EQ(chosen("4"), why);
-    EXPECT_EQ(code("4"), ErrorCode::machine);
+    EXPECT_EQ(code("4"), ErrorCode::no_device);
 }
 
 TEST_F(Choosing, SaysWhatThereIs) {

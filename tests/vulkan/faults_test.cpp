@@ -101,7 +101,7 @@ TEST_P(FailingCall, OfAnyNumberIsAnErrorAndLeavesNothingBehind) {
                 << when << ": only the cache is done without, only large blocks become smaller ones";
         } else {
             const bool memory = GetParam() == VK_ERROR_OUT_OF_DEVICE_MEMORY && name != "vkWaitForFences";
-            EXPECT_EQ(result.error().code, memory ? ErrorCode::out_of_memory : ErrorCode::machine) << when;
+            EXPECT_EQ(result.error().code, memory ? ErrorCode::out_of_memory : ErrorCode::device_failed) << when;
             EXPECT_GT(result.error().message.size(), 20u) << when;
         }
         expect_no_complaints(failing, when);
@@ -132,7 +132,7 @@ TEST_F(Faults, ALostDeviceSaysSoFromThenOn) {
         recorder.fill(words, 0, 4, 1);
         const auto lost = recorder.run();
         ASSERT_FALSE(lost);
-        EXPECT_EQ(lost.error().code, ErrorCode::machine);
+        EXPECT_EQ(lost.error().code, ErrorCode::device_failed);
         EXPECT_NE(lost.error().message.find("was lost before running 'fill'"), std::string::npos)
             << lost.error().message;
         std::vector<std::byte> bytes(4);
@@ -191,7 +191,7 @@ TEST(FaultsOfDevices, AMissingFeatureIsNamed) {
     settings.alter_capabilities = [](vulkan::Capabilities& device) { device.features12.scalarBlockLayout = VK_FALSE; };
     const auto refused = Context::open({"software", 0}, settings);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::machine);
+    EXPECT_EQ(refused.error().code, ErrorCode::no_device);
     EXPECT_NE(refused.error().message.find("cannot be used: it lacks the feature scalarBlockLayout"), std::string::npos)
         << refused.error().message;
 }

@@ -92,7 +92,7 @@ TEST_F(MemoryTypesOfADriver, NoneOfWhichBuffersMayHaveAreAnError) {
     odd_.images = 0b111;
     const auto refused = Context::open({"software", 0}, odd());
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::machine);
+    EXPECT_EQ(refused.error().code, ErrorCode::no_device);
     EXPECT_NE(refused.error().message.find("the driver allows buffers in the memory types 0b0 alone"),
               std::string::npos)
         << refused.error().message;
@@ -105,7 +105,7 @@ TEST_F(MemoryTypesOfADriver, NoneOfWhichImagesMayHaveAreAnError) {
     ASSERT_TRUE(pass) << pass.error().message;
     const auto refused = vulkan::Target::make(context(), **pass, 64, 64);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::machine);
+    EXPECT_EQ(refused.error().code, ErrorCode::no_device);
     EXPECT_NE(refused.error().message.find("the driver allows images in the memory types 0b0 alone"), std::string::npos)
         << refused.error().message;
 }

@@ -145,7 +145,7 @@ private:
 
     template <class Point>
     Result<ops::DirectSurface> make_surface(const VertexSource<Real>& source, CutCells<Point> cut,
-                                           const CutContext& context, const Progress& progress) {
+                                            const CutContext& context, const Progress& progress) {
         const CutCounts counts = cut.counts();
         EmitOptions options{request_.ends || request_.normals, request_.source_cells, counts.edges >= wide_from};
         const std::uint64_t needed =
@@ -155,7 +155,7 @@ private:
         Welded<Point> welded = weld(cut, context.ranges);
         if (progress.cancelled()) return cancelled();
         progress("extract", 0.7);
-        options.wide = welded.vertices() >= wide_from;
+        options.wide = welded.vertex_count() >= wide_from;
         const std::uint64_t kept = sides_.bytes() + context.budget.taken();
         result_.transient_bytes = std::max(result_.transient_bytes, kept + welding_memory<Point>(counts.edges) +
                                                                         counts.edges * (options.wide ? 8 : 4));
@@ -235,13 +235,13 @@ namespace isotet::cpu {
 
 template <class Real>
 Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
-                                       const Progress& progress) {
+                                         const Progress& progress) {
     return direct::DirectRun<Real>(input, request).run(progress);
 }
 
 template Result<ops::DirectResult> extract_direct<float>(const ops::DirectInput&, const ops::DirectRequest&,
-                                                       const Progress&);
+                                                         const Progress&);
 template Result<ops::DirectResult> extract_direct<double>(const ops::DirectInput&, const ops::DirectRequest&,
-                                                        const Progress&);
+                                                          const Progress&);
 
 } // namespace isotet::cpu

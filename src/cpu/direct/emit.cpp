@@ -91,7 +91,7 @@ std::uint64_t emitting_memory(std::uint64_t vertices, std::uint64_t triangles, s
 template <class Real, class Point>
 Result<ops::RawSurface> emit(const VertexSource<Real>& source, const CutCells<Point>& cut, Welded<Point> welded,
                              const EmitOptions& options, const Progress& progress) {
-    const std::uint64_t vertices = welded.vertices(), triangle_count = cut.chunks.back().triangles,
+    const std::uint64_t vertices = welded.vertex_count(), triangle_count = cut.chunks.back().triangles,
                         edges = cut.chunks.back().edges;
     core::Buffer<Real> positions(3 * vertices), weights(options.ends ? vertices : 0);
     core::Buffer<std::int64_t> ends(options.ends ? 2 * vertices : 0),

@@ -124,14 +124,14 @@ Bounds bounds_of(const Array& array, const Sides* seen, bool wanted) {
 
 template <class Real>
 PointSurvey survey_points(const ops::DirectInput& input, const Sides* seen) {
-    constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::single : Precision::double_;
+    constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
     PointSurvey out;
     out.field = survey_field(input.field.values, seen, precision);
     if (out.field.may_flush()) out.flushed = count_flushed<Real>(input.field.values, seen, out.field.storage);
     for (const Field& field : input.carried) out.carried.push_back(survey_field(field.values, seen, precision));
 
     const Array& points = input.grid.points;
-    out.rounds_coordinates = points.type() == ScalarType::float64 && precision == Precision::single;
+    out.rounds_coordinates = points.type() == ScalarType::float64 && precision == Precision::float32;
     const Bounds bounds = bounds_of(points, seen, out.rounds_coordinates);
     out.has_unsound = bounds.has_unsound;
     if (out.rounds_coordinates && bounds.lower[0] <= bounds.upper[0]) {

@@ -23,7 +23,7 @@ struct Welded {
     core::Buffer<FoundEdge<Point>> edges;
     std::vector<std::uint64_t> first_edge, first_vertex; ///< of each range, and the totals
 
-    std::uint64_t vertices() const { return first_vertex.back(); }
+    std::uint64_t vertex_count() const { return first_vertex.back(); }
 };
 
 /// Bytes that welding takes for so many edges.

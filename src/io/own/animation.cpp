@@ -63,8 +63,8 @@ struct Animation::Encoder {
     }
 
     Error failed() const {
-        return {ErrorCode::machine, fmt::format("{}: libwebp could not make picture {}: {}", path, count + 1,
-                                                WebPAnimEncoderGetError(pictures.get()))};
+        return {ErrorCode::cannot_write, fmt::format("{}: libwebp could not make picture {}: {}", path, count + 1,
+                                                     WebPAnimEncoderGetError(pictures.get()))};
     }
 };
 
@@ -73,7 +73,7 @@ Animation::Animation(Animation&&) noexcept = default;
 Animation& Animation::operator=(Animation&&) noexcept = default;
 Animation::~Animation() = default;
 
-Result<Animation> Animation::begin(const std::string& path, double pictures_per_second) {
+Result<Animation> Animation::create(const std::string& path, double pictures_per_second) {
     if (!path.ends_with(".webp"))
         return invalid_argument(fmt::format("{} does not end in .webp, but animations are written as WebP", path));
     if (!(pictures_per_second > 0 && pictures_per_second <= 100))
@@ -86,6 +86,7 @@ Result<Animation> Animation::begin(const std::string& path, double pictures_per_
 }
 
 Result<void> Animation::add(const Picture& picture) {
+    if (!encoder_) return moved_from("the animation");
     Encoder& to = *encoder_;
     if (picture.width == 0 || picture.height == 0 || picture.width > largest_side || picture.height > largest_side ||
         picture.pixels.size() != std::size_t{picture.width} * picture.height)
@@ -118,6 +119,7 @@ Result<void> Animation::add(const Picture& picture) {
 }
 
 Result<std::uint64_t> Animation::finish() {
+    if (!encoder_) return moved_from("the animation");
     Encoder& from = *encoder_;
     if (!from.pictures)
         return invalid_argument(fmt::format("{} has no picture, but an animation has one at least", from.path));

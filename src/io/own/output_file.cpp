@@ -28,7 +28,7 @@ constexpr int most_names = 10000;
 Error system_error(std::string_view path, std::string_view what, int number) {
     // Who has to act: a path that cannot be is the caller's business, all else the machine's.
     const bool path_is_wrong = number == ENOENT || number == ENOTDIR || number == ENAMETOOLONG || number == ELOOP;
-    return {path_is_wrong ? ErrorCode::file : ErrorCode::machine,
+    return {path_is_wrong ? ErrorCode::file : ErrorCode::cannot_write,
             fmt::format("{}: {}: {}", path, what, std::generic_category().message(number))};
 }
 

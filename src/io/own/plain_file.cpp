@@ -15,7 +15,7 @@ namespace isotet::io {
 
 Error system_error(const std::string& path, std::string_view what, int number) {
     const bool machine = number == ENOMEM || number == EMFILE || number == ENFILE || number == EIO;
-    return {machine ? ErrorCode::machine : ErrorCode::file,
+    return {machine ? ErrorCode::system : ErrorCode::file,
             fmt::format("{}: {}: {}", path, what, std::generic_category().message(number))};
 }
 

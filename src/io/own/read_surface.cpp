@@ -101,12 +101,12 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
 
 } // namespace io
 
-Result<SurfaceFile> read_surface(const std::string& path, const std::string& format, const Progress& progress) {
-    const auto file = io::WholeFile::read(path, progress);
+Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options, const Run& run) {
+    const Progress rises = core::rising(run.progress);
+    const auto file = io::WholeFile::read(path, rises);
     if (!file) return file.error();
     std::string compressed;
-    const Progress rises = core::rising(progress);
-    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), format, rises, compressed);
+    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), options.format, rises, compressed);
     if (surface) {
         rises("read", 1.0);
         return surface;

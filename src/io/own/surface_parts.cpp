@@ -73,7 +73,7 @@ Result<Surface> assemble(SurfaceParts&& parts) {
     Surface surface;
     surface.positions = std::move(parts.positions);
     for (const auto& attribute : parts.point_data) {
-        if (auto fits = check_length(attribute, surface.vertices(), "vertices"); !fits) return fits.error();
+        if (auto fits = check_length(attribute, surface.vertex_count(), "vertices"); !fits) return fits.error();
         if (place_point_attribute(surface, attribute)) continue;
         surface.point_fields.push_back({attribute.name, attribute.values});
     }
@@ -83,7 +83,7 @@ Result<Surface> assemble(SurfaceParts&& parts) {
         if (place_cell_attribute(surface, attribute, values)) continue;
         surface.cell_fields.push_back({attribute.name, std::move(values)});
     }
-    auto triangles = parts.cells.take(surface.vertices());
+    auto triangles = parts.cells.take(surface.vertex_count());
     if (!triangles) return triangles.error();
     surface.triangles = std::move(*triangles);
     return surface;

@@ -10,6 +10,8 @@
 
 #include <fmt/core.h>
 
+#include "core/parallel.hpp"
+#include "core/rising_progress.hpp"
 #include "io/own/write_formats.hpp"
 #include "io/own/write_names.hpp"
 
@@ -63,9 +65,11 @@ Result<Format> choose(std::span<const Format> formats, const std::string& path, 
 
 /// Runs a writer; what it throws, for want of memory, becomes an error.
 template <class F>
-Result<WriteReport> guarded(const std::string& path, std::vector<std::string>& notes, const F& write) {
+Result<WriteReport> guarded(const std::string& path, const Run& run, std::vector<std::string>& notes, const F& write) {
     try {
-        Result<WriteReport> report = write();
+        Result<WriteReport> report = Error{};
+        const Progress rises = core::rising(run.progress);
+        core::with_threads(run.threads, [&] { report = write(rises); });
         if (report) report->notes = std::move(notes);
         return report;
     } catch (const std::bad_alloc&) {
@@ -89,11 +93,11 @@ void note_left_out(const SurfaceToWrite& input, std::string_view format,
 
 } // namespace io
 
-Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const std::string& format,
-                                  const Progress& progress) {
+Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const WriteOptions& options,
+                                  const Run& run) {
     std::vector<std::string> notes;
-    return io::guarded(path, notes, [&]() -> Result<WriteReport> {
-        const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, format, "surface");
+    return io::guarded(path, run, notes, [&](const Progress& progress) -> Result<WriteReport> {
+        const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, options.format, "surface");
         if (!chosen) return chosen.error();
         const auto columns = io::columns_of(surface, notes);
         if (!columns) return columns.error();
@@ -101,11 +105,10 @@ Result<WriteReport> write_surface(const Surface& surface, const std::string& pat
     });
 }
 
-Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const std::string& format,
-                               const Progress& progress) {
+Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const WriteOptions& options, const Run& run) {
     std::vector<std::string> notes;
-    return io::guarded(path, notes, [&]() -> Result<WriteReport> {
-        const auto chosen = io::choose<io::GridFormat>(io::grid_formats, path, format, "grid");
+    return io::guarded(path, run, notes, [&](const Progress& progress) -> Result<WriteReport> {
+        const auto chosen = io::choose<io::GridFormat>(io::grid_formats, path, options.format, "grid");
         if (!chosen) return chosen.error();
         const auto columns = io::columns_of(grid, notes);
         if (!columns) return columns.error();

@@ -28,7 +28,7 @@ std::string misfit(std::string_view name, const Array& array, std::size_t tuples
 }
 
 Result<void> check_shapes(const Surface& surface) {
-    const std::size_t vertices = surface.vertices(), triangles = surface.triangle_count();
+    const std::size_t vertices = surface.vertex_count(), triangles = surface.triangle_count();
     if (!is_floating(surface.positions.type())) {
         return invalid_argument(
             fmt::format("the surface's positions are {}, not floating", name_of(surface.positions.type())));
@@ -156,15 +156,15 @@ std::array<double, 3> position_of(const Surface& surface, std::uint64_t vertex) 
 
 Result<SurfaceColumns> columns_of(const Surface& surface, std::vector<std::string>& notes) {
     if (auto shapes = check_shapes(surface); !shapes) return shapes.error();
-    if (const auto bad = first_bad_index(surface.triangles, surface.vertices())) {
+    if (const auto bad = first_bad_index(surface.triangles, surface.vertex_count())) {
         return Error{ErrorCode::invalid_data,
                      fmt::format("triangles[{}] has vertex {:.0f}, but the surface has {} vertices", *bad / 3,
-                                 surface.triangles.at(*bad / 3, *bad % 3), surface.vertices())};
+                                 surface.triangles.at(*bad / 3, *bad % 3), surface.vertex_count())};
     }
     SurfaceColumns columns;
     columns.positions = column_of("Points", surface.positions);
     columns.positions.components = 3;
-    columns.triangles = fits_int32(std::max<std::uint64_t>(surface.vertices(), 3 * surface.triangle_count()))
+    columns.triangles = fits_int32(std::max<std::uint64_t>(surface.vertex_count(), 3 * surface.triangle_count()))
                             ? converted<std::int32_t>("connectivity", surface.triangles)
                             : converted<std::int64_t>("connectivity", surface.triangles);
     columns.triangles.components = 3;

@@ -34,12 +34,12 @@ std::string relative_to_folder_of(const std::string& index, const std::string& f
 
 } // namespace
 
-Result<void> write_text(std::string_view text, const std::string& path, const Progress& progress) {
+Result<void> write_text(std::string_view text, const std::string& path, const Run& run) {
     return core::guarded("writing a file", [&]() -> Result<void> {
         Result<io::OutputFile> file = io::OutputFile::open(path);
         if (!file) return file.error();
         if (Result<void> written = file->write(text); !written) return written;
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "writing a file was cancelled"};
+        if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "writing a file was cancelled"};
         return file->commit();
     });
 }
@@ -52,13 +52,13 @@ Result<void> check_writable(const std::string& path) {
 }
 
 Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
-                              const Progress& progress) {
+                              const Run& run) {
     return core::guarded("writing a collection", [&] {
         std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
         for (const CollectionEntry& entry : entries)
             text += fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"{}\"/>\n", entry.time,
                                 entry.part, in_xml_attribute(relative_to_folder_of(path, entry.file)));
-        return write_text(text + "  </Collection>\n</VTKFile>\n", path, progress);
+        return write_text(text + "  </Collection>\n</VTKFile>\n", path, run);
     });
 }
 

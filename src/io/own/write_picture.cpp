@@ -75,7 +75,7 @@ Result<std::uint64_t> write_png(const Picture& picture, const std::string& path)
     Sink sink{*file, {}};
     if (!encode(&sink, picture.width, picture.height, alpha, bytes.data())) {
         if (sink.error) return *sink.error;
-        return Error{ErrorCode::machine, fmt::format("{}: libpng could not make the picture", path)};
+        return Error{ErrorCode::cannot_write, fmt::format("{}: libpng could not make the picture", path)};
     }
     if (Result<void> done = file->commit(); !done) return done.error();
     return file->bytes();

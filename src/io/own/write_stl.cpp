@@ -37,7 +37,7 @@ Vector position(const Surface& surface, std::uint64_t vertex, const Origin& orig
 Origin middle_of(const Surface& surface) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Origin lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity}, middle;
-    for (std::uint64_t vertex = 0; vertex < surface.vertices(); ++vertex)
+    for (std::uint64_t vertex = 0; vertex < surface.vertex_count(); ++vertex)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double x = surface.positions.at(vertex, axis);
             lower[axis] = std::min(lower[axis], x);

@@ -215,7 +215,7 @@ Result<ChildOutcome> run_child(const ChildRun& run, const Progress& progress) {
     Pipe output = make_pipe(), status = make_pipe();
     const Descriptor request = duplicate_high(run.request), reply = duplicate_high(run.reply);
     if (!output.read_end || !output.write_end || !status.read_end || !status.write_end || !request || !reply)
-        return Error{ErrorCode::machine, fmt::format("a reader process cannot be started: {}", std::strerror(errno))};
+        return Error{ErrorCode::system, fmt::format("a reader process cannot be started: {}", std::strerror(errno))};
 
     // The process is tied to the thread that starts it (PR_SET_PDEATHSIG), which stays here until it has ended.
     const auto deadline = std::chrono::steady_clock::now() + run.time_limit;
@@ -225,8 +225,8 @@ Result<ChildOutcome> run_child(const ChildRun& run, const Progress& progress) {
     output.write_end.reset();
     status.write_end.reset();
     if (failure != 0)
-        return Error{ErrorCode::machine, fmt::format("the reader program \"{}\" cannot be started: {}",
-                                                     escaped(run.program), std::strerror(failure))};
+        return Error{ErrorCode::system, fmt::format("the reader program \"{}\" cannot be started: {}",
+                                                    escaped(run.program), std::strerror(failure))};
     return Watch(process, output, status, progress).until(deadline);
 }
 

@@ -82,7 +82,7 @@ Result<std::string> find_reader(const ReaderPlaces& places) {
     }
     std::vector<std::string> shown;
     for (const std::string& candidate : candidates) shown.push_back(escaped(candidate));
-    return Error{ErrorCode::machine,
+    return Error{ErrorCode::system,
                  fmt::format("the program that runs VTK's readers was not found as {}: put isotet's folder of programs "
                              "into PATH, name the program in ReadOptions::reader_program, or call run_as_reader() in "
                              "main()",

@@ -38,7 +38,7 @@ Result<void> write_reply(int descriptor, Reply reply);
 /// of the reply are views of the mapping and share it.
 ///
 /// Guarantees   whoever wrote the file cannot change, shrink or make it invalid afterwards
-/// Errors       internal when there is no complete reply in the file; machine when it cannot be sealed or mapped
+/// Errors       internal when there is no complete reply in the file; system when it cannot be sealed or mapped
 Result<Reply> map_reply(int descriptor);
 
 } // namespace isotet::io::vtk

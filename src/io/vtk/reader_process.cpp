@@ -32,7 +32,7 @@ Result<Descriptor> memory_file(const char* name, std::string_view content) {
     const bool written =
         file && ::pwrite(file.number(), content.data(), content.size(), 0) == static_cast<ssize_t>(content.size());
     if (!written)
-        return Error{ErrorCode::machine, fmt::format("no memory file for a reader process: {}", std::strerror(errno))};
+        return Error{ErrorCode::system, fmt::format("no memory file for a reader process: {}", std::strerror(errno))};
     return file;
 }
 
@@ -49,7 +49,7 @@ Error failure(const Request& request, const ChildOutcome& outcome) {
     };
     if (outcome.end == ChildOutcome::End::cancelled) return {ErrorCode::cancelled, path + ": reading was cancelled"};
     if (outcome.end == ChildOutcome::End::timed_out)
-        return sentence(ErrorCode::machine,
+        return sentence(ErrorCode::system,
                         fmt::format("was stopped after {} s, its time limit", request.options.time_limit.count()));
     if (outcome.memory_ran_out)
         return sentence(ErrorCode::out_of_memory,

@@ -207,8 +207,9 @@ Result<void> GridOnDevice::extract_paged(const Task& task, Passes& passes, const
 
 Result<WorkDone> GridOnDevice::extract(std::span<Task> tasks, const Progress& progress) {
     if (torn_)
-        return Error{ErrorCode::machine, "another field or other points could not be set on the device before, which "
-                                         "left the grid there incomplete: it must be uploaded again"};
+        return Error{ErrorCode::device_failed,
+                     "another field or other points could not be set on the device before, which "
+                     "left the grid there incomplete: it must be uploaded again"};
     WorkDone done;
     if (tasks.empty() || resident_.sizes().clusters == 0) return done;
     const std::uint64_t up = context_->staging().uploaded(), loads = cache_->loads();

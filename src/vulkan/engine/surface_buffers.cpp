@@ -118,7 +118,7 @@ Result<void> SurfaceBuffers::grow(Context& context, std::uint64_t vertices, std:
 }
 
 Result<ops::RawSurface> SurfaceBuffers::download(Context& context, const core::Packed& packed, bool with_ends) const {
-    const std::uint64_t v = vertices(), t = triangle_count();
+    const std::uint64_t v = vertex_count(), t = triangle_count();
     ops::RawSurface out;
     out.selected_clusters = result.selected_clusters;
     out.tied_points = result.tied_points;

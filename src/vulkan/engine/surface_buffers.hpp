@@ -34,7 +34,7 @@ public:
     Buffer positions, triangles, normals, lowest, ends, weights, sources;
     std::vector<Buffer> fields; ///< float x components a vertex
 
-    std::uint64_t vertices() const noexcept { return result.vertices_low; }
+    std::uint64_t vertex_count() const noexcept { return result.vertices_low; }
     std::uint64_t triangle_count() const noexcept { return result.triangles_low; }
     std::uint64_t bytes() const; ///< of device memory
 

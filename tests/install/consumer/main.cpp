@@ -12,10 +12,10 @@ int main() {
     const std::vector<float> temperature{10, 20, 30, 40, 80};
 
     isotet::ContourInput input;
-    input.grid.points = isotet::Array::borrow<double>(points, 3);
-    input.grid.cells.connectivity = isotet::Array::borrow<int>(tets);
+    input.grid.points = isotet::Array::borrow(points, 3);
+    input.grid.cells.connectivity = isotet::Array::borrow(tets);
     input.field.name = "temperature";
-    input.field.values = isotet::Array::borrow<float>(temperature);
+    input.field.values = isotet::Array::borrow(temperature);
 
     isotet::Result<isotet::Contour> contour = isotet::Contour::create(input);
     if (!contour) return std::puts(contour.error().message.c_str()), 1;
@@ -23,7 +23,7 @@ int main() {
     if (!result) return std::puts(result.error().message.c_str()), 1;
 
     const isotet::Surface& surface = result->surfaces[0].surface;
-    std::printf("%zu vertices, %zu triangles\n", surface.vertices(), surface.triangle_count());
+    std::printf("%zu vertices, %zu triangles\n", surface.vertex_count(), surface.triangle_count());
     const auto written = isotet::write_surface(surface, "surface.vtp");
     if (!written) return std::puts(written.error().message.c_str()), 1;
 }

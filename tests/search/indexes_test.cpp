@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Every filter finds every cut tet, on fields that are as nasty as they come, whatever was asked before.
+// Every index finds every cut tet, on fields that are as nasty as they come, whatever was asked before.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -20,33 +20,37 @@
 namespace isotet::test {
 namespace {
 
-bool is_exact(Filter filter) {
-    return filter == Filter::interval_tree || filter == Filter::seed_set || filter == Filter::span_space;
+std::vector<std::uint32_t> numbers(const Result<std::span<const std::uint32_t>>& found) {
+    return {found.value().begin(), found.value().end()};
 }
 
-/// Builds every filter on a field, and asks it for the isovalues one after another.
+bool is_exact(SearchIndex index) {
+    return index == SearchIndex::interval_tree || index == SearchIndex::seed_set || index == SearchIndex::span_space;
+}
+
+/// Builds every index on a field, and asks it for the isovalues one after another.
 void expect_all_cut_tets_found(const Grid& grid, const PointField& field, const std::vector<double>& isovalues) {
     const PackedGrid packed = pack(grid, field).value();
-    for (const Filter filter : all_filters) {
-        SCOPED_TRACE(std::string(name_of(filter)));
-        TetFilter tets = TetFilter::build(packed, filter).value();
+    for (const SearchIndex index : all_search_indexes) {
+        SCOPED_TRACE(std::string(name_of(index)));
+        TetIndex tets = TetIndex::create(packed, index).value();
         ASSERT_EQ(tets.report().tets, packed.report().tets);
         for (const double isovalue : isovalues) {
             SCOPED_TRACE(isovalue);
             std::vector<std::uint32_t> cut;
             for (std::uint32_t tet = 0; tet < tets.report().tets; ++tet)
                 if (tets.is_cut(tet, isovalue)) cut.push_back(tet);
-            std::vector<std::uint32_t> found = *tets.find(isovalue).value();
+            std::vector<std::uint32_t> found = numbers(tets.find(isovalue));
             std::sort(found.begin(), found.end());
             ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "a tet was found twice";
             ASSERT_TRUE(found.empty() || found.back() < tets.report().tets);
-            if (is_exact(filter)) ASSERT_EQ(found, cut);
+            if (is_exact(index)) ASSERT_EQ(found, cut);
             else ASSERT_TRUE(std::includes(found.begin(), found.end(), cut.begin(), cut.end()));
         }
     }
 }
 
-TEST(Filters, FindAllCutTetsOfSmoothFields) {
+TEST(SearchIndexes, FindAllCutTetsOfSmoothFields) {
     for (const char* shape : {"kuhn", "shuffled", "layer", "mixed"}) {
         SCOPED_TRACE(shape);
         const Grid grid = made_grid(shape, 9, {"gyroid"});
@@ -54,7 +58,7 @@ TEST(Filters, FindAllCutTetsOfSmoothFields) {
     }
 }
 
-TEST(Filters, FindAllCutTetsOfManyComponentsAndExtrema) {
+TEST(SearchIndexes, FindAllCutTetsOfManyComponentsAndExtrema) {
     Grid grid = made_grid("shuffled", 14, {"wavelet"});
     std::vector<float> values(grid.points.tuples());
     for (std::size_t p = 0; p < values.size(); ++p) // a bump around every fifth point or so
@@ -63,7 +67,7 @@ TEST(Filters, FindAllCutTetsOfManyComponentsAndExtrema) {
     expect_all_cut_tets_found(grid, field_of(values), {0.9, 0.5, 0.1, 0, -0.1, -0.5, -0.9, 0.95});
 }
 
-TEST(Filters, FindAllCutTetsOfNastyFields) {
+TEST(SearchIndexes, FindAllCutTetsOfNastyFields) {
     for (const std::uint32_t seed : Seeds(1, 12)) {
         const NastyGrid g = nasty_grid(seed, {.side = 6,
                                               .values = seed % 3 ? static_cast<int>(2 + seed % 4) : 0,
@@ -76,7 +80,7 @@ TEST(Filters, FindAllCutTetsOfNastyFields) {
     }
 }
 
-TEST(Filters, FindAllCutTetsOfPlateaus) {
+TEST(SearchIndexes, FindAllCutTetsOfPlateaus) {
     Grid grid = made_grid("kuhn", 10, {"plane"});
     std::vector<float> values(grid.points.tuples());
     for (std::size_t p = 0; p < values.size(); ++p)
@@ -84,70 +88,72 @@ TEST(Filters, FindAllCutTetsOfPlateaus) {
     expect_all_cut_tets_found(grid, field_of(values), {0, 1, 2, 0.5, 1.5, 3});
 }
 
-TEST(Filters, FindNothingInAConstantFieldOrOneWithoutData) {
+TEST(SearchIndexes, FindNothingInAConstantFieldOrOneWithoutData) {
     const Grid grid = made_grid("kuhn", 3, {"plane"});
     for (const float value : {1.0f, std::numeric_limits<float>::quiet_NaN()}) {
         const PackedGrid packed = pack(grid, field_of(std::vector<float>(grid.points.tuples(), value))).value();
-        for (const Filter filter : all_filters) {
-            TetFilter tets = TetFilter::build(packed, filter).value();
-            const std::size_t expected = filter == Filter::none ? packed.report().tets : 0;
+        for (const SearchIndex index : all_search_indexes) {
+            TetIndex tets = TetIndex::create(packed, index).value();
+            const std::size_t expected = index == SearchIndex::none ? packed.report().tets : 0;
             for (const double isovalue : {1.0, 0.0, 2.0})
-                EXPECT_EQ(tets.find(isovalue).value()->size(), expected) << name_of(filter);
+                EXPECT_EQ(tets.find(isovalue).value().size(), expected) << name_of(index);
         }
     }
 }
 
-TEST(Filters, FindTheTetsThatExtractionTakesTrianglesFrom) {
+TEST(SearchIndexes, FindTheTetsThatExtractionTakesTrianglesFrom) {
     const Grid grid = made_grid("perturbed", 8, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     ExtractOptions options;
     options.ties = Ties::keep; // one or two triangles of every cut tet
     const std::uint64_t triangles = extract(packed, 0.25, options).value().surface.triangle_count();
-    for (const Filter filter : all_filters) {
-        TetFilter tets = TetFilter::build(packed, filter).value();
+    for (const SearchIndex index : all_search_indexes) {
+        TetIndex tets = TetIndex::create(packed, index).value();
         std::uint64_t cut = 0;
-        for (const std::uint32_t tet : *tets.find(0.25).value()) cut += tets.is_cut(tet, 0.25);
+        for (const std::uint32_t tet : tets.find(0.25).value()) cut += tets.is_cut(tet, 0.25);
         EXPECT_LE(cut, triangles);
         EXPECT_GE(2 * cut, triangles);
     }
 }
 
-TEST(Filters, AreTheSameForAnyNumberOfThreads) {
+TEST(SearchIndexes, AreTheSameForAnyNumberOfThreads) {
     const Grid grid = made_grid("shuffled", 24, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
-    for (const Filter filter : all_filters) {
-        TetFilter one = TetFilter::build(packed, filter, 1).value(), four = TetFilter::build(packed, filter, 4).value();
-        EXPECT_EQ(one.report().filter_bytes, four.report().filter_bytes);
+    for (const SearchIndex index : all_search_indexes) {
+        TetIndex one = TetIndex::create(packed, index, {.threads = 1}).value(),
+                 four = TetIndex::create(packed, index, {.threads = 4}).value();
+        EXPECT_EQ(one.report().index_bytes, four.report().index_bytes);
         for (const double isovalue : {0.1, 0.2, -0.3})
-            EXPECT_EQ(*one.find(isovalue).value(), *four.find(isovalue).value()) << name_of(filter);
+            EXPECT_EQ(numbers(one.find(isovalue)), numbers(four.find(isovalue))) << name_of(index);
     }
 }
 
-TEST(Filters, OutliveThePackedGrid) {
+TEST(SearchIndexes, OutliveThePackedGrid) {
     const Grid grid = made_grid("kuhn", 5, {"gyroid"});
     std::optional<PackedGrid> packed = pack(grid, point_field(grid)).value();
-    for (const Filter filter : all_filters) {
-        TetFilter tets = TetFilter::build(*packed, filter).value();
-        const std::vector<std::uint32_t> before = *tets.find(0.1).value();
-        if (filter == all_filters.back()) packed.reset();
-        EXPECT_EQ(*tets.find(0.1).value(), before);
+    for (const SearchIndex index : all_search_indexes) {
+        TetIndex tets = TetIndex::create(*packed, index).value();
+        const std::vector<std::uint32_t> before = numbers(tets.find(0.1));
+        if (index == all_search_indexes.back()) packed.reset();
+        EXPECT_EQ(numbers(tets.find(0.1)), before);
     }
 }
 
-TEST(Filters, RefuseWhatTheyCannotDo) {
+TEST(SearchIndexes, RefuseWhatTheyCannotDo) {
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
-    TetFilter tets = TetFilter::build(packed, Filter::octree).value();
+    TetIndex tets = TetIndex::create(packed, SearchIndex::octree).value();
     EXPECT_EQ(tets.find(std::nan("")).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(tets.find(INFINITY).error().message, "the isovalue is inf, but must be finite");
     PackOptions options;
-    options.precision = Precision::double_;
+    options.precision = Precision::float64;
     const PackedGrid in_double = pack(grid, point_field(grid), options).value();
-    EXPECT_EQ(TetFilter::build(in_double, Filter::seed_set).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(TetIndex::create(in_double, SearchIndex::seed_set).error().code, ErrorCode::invalid_argument);
     const std::atomic<bool> cancel{true};
     Progress progress;
     progress.cancel = &cancel;
-    EXPECT_EQ(TetFilter::build(packed, Filter::seed_set, 0, progress).error().code, ErrorCode::cancelled);
+    EXPECT_EQ(TetIndex::create(packed, SearchIndex::seed_set, {.progress = progress}).error().code,
+              ErrorCode::cancelled);
 }
 
 } // namespace

@@ -1,0 +1,25 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The slow, short versions of extraction, which every engine is held against: for tests, and for those who doubt.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <isotet/extract.hpp>
+#include <isotet/extract_direct.hpp>
+
+namespace isotet {
+
+/// What extract() gives, byte for byte, worked out on one thread without any cleverness.
+///
+/// Cost     10 to 100 times the time of extract(); memory for a map of all edges of the surface
+/// Errors   as extract()
+Result<std::vector<Extraction>> extract_by_reference(const PackedGrid& packed, std::span<const double> isovalues,
+                                                     const ExtractOptions& options = {}, const Run& run = {});
+
+/// What extract_direct() gives, byte for byte. Cost and errors as above.
+Result<DirectExtraction> extract_direct_by_reference(const Grid& grid, const PointField& field,
+                                                     std::span<const double> isovalues,
+                                                     const DirectOptions& options = {}, const Run& run = {});
+
+} // namespace isotet
