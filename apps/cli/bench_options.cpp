@@ -53,41 +53,6 @@ void add_list(const Command& command, const std::string& option, std::vector<Val
 
 } // namespace
 
-const char* name_of(BenchMethod method) noexcept {
-    switch (method) {
-    case BenchMethod::direct: return "direct";
-    case BenchMethod::clusters: return "clusters";
-    case BenchMethod::clusters_vulkan: return "clusters_vulkan";
-    case BenchMethod::registers: return "registers";
-    case BenchMethod::registers_instanced: return "registers_instanced";
-    case BenchMethod::textures: return "textures";
-    case BenchMethod::mesh: return "mesh";
-    }
-    return "";
-}
-
-std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept { return parse_draw_method(name_of(method)); }
-
-bool needs_device(BenchMethod method) noexcept {
-    return method != BenchMethod::direct && method != BenchMethod::clusters;
-}
-
-std::string BenchPair::name() const {
-    std::string name = name_of(method);
-    if (draw_method_of(method) && index != SearchIndex::none) name += fmt::format(" + {}", name_of(index));
-    return name;
-}
-
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& indexes) {
-    std::vector<BenchPair> pairs;
-    for (const BenchMethod method : methods) {
-        if (!draw_method_of(method)) pairs.push_back({method});
-        else
-            for (const SearchIndex index : indexes) pairs.push_back({method, index});
-    }
-    return pairs;
-}
-
 Command add_bench_command(const Command& program, BenchCommand& bench) {
     const Command command =
         program.add_command("bench", "Measure methods and search indexes on a grid, and tell the fastest");

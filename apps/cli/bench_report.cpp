@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "bench_advice.hpp"
 #include "number_format.hpp"
 #include "report.hpp"
 
@@ -55,7 +54,7 @@ std::string missing_text(const BenchNumbers& numbers) {
 std::string advice_text(const BenchNumbers& numbers) {
     std::string text;
     double from = 1;
-    for (const Advice& one : advice_of(numbers.rows)) {
+    for (const BenchAdvice& one : advice_of(numbers.rows)) {
         const std::string range = std::isinf(one.upto)
                                       ? fmt::format("from {:.0f} surface{} on", from, from == 1 ? "" : "s")
                                       : fmt::format("up to {:.0f} surface{}", one.upto, one.upto == 1 ? "" : "s");
@@ -142,7 +141,7 @@ Json bench_json(const BenchNumbers& numbers) {
     report["rows"] = std::move(rows);
     Json advice = Json::array();
     if (!numbers.command->paper)
-        for (const Advice& one : advice_of(numbers.rows))
+        for (const BenchAdvice& one : advice_of(numbers.rows))
             advice.push_back(
                 {{"row", one.row}, {"up_to_surfaces", std::isinf(one.upto) ? Json(nullptr) : Json(one.upto)}});
     report["advice"] = std::move(advice);

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <isotet/device.hpp>
+#include <isotet/grid_bench.hpp>
 
-#include "bench_run.hpp"
 #include "json_output.hpp"
+#include "options.hpp"
 
 namespace isotet::cli {
 

@@ -9,7 +9,6 @@
 #include <isotet/field_statistics.hpp>
 #include <isotet/levels.hpp>
 #include <isotet/make.hpp>
-#include <isotet/plan.hpp>
 
 #include "bench_report.hpp"
 #include "commands.hpp"
@@ -82,28 +81,13 @@ Result<void> BenchRun::choose_pairs() {
 }
 
 Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
-    BenchBed bed{.grid = grid,
-                 .field = field,
-                 .run = console_.run(),
-                 .device = device_,
-                 .renderer = {},
-                 .packed = {},
-                 .pack_seconds = 0};
-    if (device_) {
-        Result<Renderer> renderer = Renderer::create(*device_);
-        if (!renderer) return renderer.error();
-        bed.renderer = *std::move(renderer);
-    }
-    const Result<FieldSample> sample = FieldSample::create(grid, field);
-    if (!sample) return sample.error();
+    Result<GridBench> bench = GridBench::create(grid, field, device_);
+    if (!bench) return bench.error();
     for (const BenchPair& pair : pairs_) {
         console_.detail(fmt::format("measuring {}: {}", name, pair.name()));
-        Result<BenchRow> row = measure(pair, bed, numbers_.isovalues, command_.rounds);
+        Result<BenchRow> row = bench->measure(pair, numbers_.isovalues, command_.rounds, console_.run());
         if (!row) return row.error();
         row->grid = name;
-        row->tets = bed.packed ? bed.packed->report().tets : sample->tets();
-        row->points = grid.points.tuples();
-        if (bed.packed) row->dropped_tets = bed.packed->report().repeated_tets + bed.packed->report().collapsed_tets;
         numbers_.rows.push_back(*std::move(row));
     }
     return {};

@@ -9,6 +9,7 @@
 
 #include <isotet/draw_tets.hpp>
 #include <isotet/extract.hpp>
+#include <isotet/grid_bench.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/plan.hpp>
@@ -118,11 +119,6 @@ struct RenderCommand {
     std::string reference;     ///< a picture to compare with; empty: none
     double threshold = 0.001;  ///< share of its pixels that may differ
     DeviceChoice device;
-};
-
-/// What `isotet bench` can measure.
-enum class BenchMethod : std::uint8_t {
-    direct, clusters, clusters_vulkan, registers, registers_instanced, textures, mesh
 };
 
 struct BenchCommand {

@@ -31,6 +31,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/search/", {"search/", "ops/", "core/"}},
         {"src/api/", {"api/", "reference/", "cpu/", "search/", "vulkan/", "ops/", "check/", "make/", "core/"}},
         {"src/session/", {"session/", "core/"}},
+        {"src/measure/", {"measure/", "core/"}},
         {"src/io/own/", {"io/", "core/"}},
         {"src/io/vtk/", {"io/", "core/"}},
         {"src/io/", {"io/", "core/"}},
@@ -66,8 +67,8 @@ const std::vector<LibraryRule>& library_rules() {
 }
 
 /// Folders that includes begin with; what begins otherwise is a public header, a library, or a neighbour in a test.
-constexpr std::array<std::string_view, 13> folders_of_includes = {
-    "core/", "check/", "make/", "ops/", "reference/", "cpu/", "api/", "session/", "io/", "search/", "vulkan/", "render/", "cli/"};
+constexpr std::array<std::string_view, 14> folders_of_includes = {
+    "core/", "check/", "make/", "ops/", "reference/", "cpu/", "api/", "session/", "io/", "search/", "vulkan/", "render/", "measure/", "cli/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(),

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "bench_contestant.hpp"
+#include "measure/contestant.hpp"
 
 #include <span>
 #include <utility>
@@ -10,16 +10,14 @@
 #include <isotet/extract_direct.hpp>
 #include <isotet/search.hpp>
 
-#include "stopwatch.hpp"
-
-namespace isotet::cli {
+namespace isotet::measure {
 
 namespace {
 
 /// Makes a surface on the CPU; where there is a device it is uploaded.
 class OnCpu : public Contestant {
 public:
-    Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+    Result<DrawnSurface> make(Bed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch extracting;
         const Result<Extraction> extraction = extract_surface(bed, isovalue);
         if (!extraction) return extraction.error();
@@ -37,17 +35,17 @@ public:
     }
 
 private:
-    virtual Result<Extraction> extract_surface(BenchBed& bed, double isovalue) = 0;
+    virtual Result<Extraction> extract_surface(Bed& bed, double isovalue) = 0;
 
     std::optional<DeviceMesh> mesh_;
 };
 
 class Direct final : public OnCpu {
 public:
-    Result<BenchCosts> prepare(BenchBed&) override { return BenchCosts{}; }
+    Result<BenchCosts> prepare(Bed&) override { return BenchCosts{}; }
 
 private:
-    Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
+    Result<Extraction> extract_surface(Bed& bed, double isovalue) override {
         Result<DirectExtraction> direct = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), {}, bed.run);
         if (!direct) return direct.error();
         return std::move(direct->surfaces.front());
@@ -56,20 +54,20 @@ private:
 
 class Clusters final : public OnCpu {
 public:
-    Result<BenchCosts> prepare(BenchBed& bed) override {
+    Result<BenchCosts> prepare(Bed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         return BenchCosts{bed.pack_seconds, bed.packed->report().bytes, 0, 0};
     }
 
 private:
-    Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
+    Result<Extraction> extract_surface(Bed& bed, double isovalue) override {
         return extract(*bed.packed, isovalue, {}, bed.run);
     }
 };
 
 class ClustersOnDevice final : public Contestant {
 public:
-    Result<BenchCosts> prepare(BenchBed& bed) override {
+    Result<BenchCosts> prepare(Bed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch uploading;
         Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, bed.run);
@@ -78,7 +76,7 @@ public:
         return BenchCosts{bed.pack_seconds + uploading.seconds(), bed.packed->report().bytes, grid_->device_bytes(), 0};
     }
 
-    Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+    Result<DrawnSurface> make(Bed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch extracting;
         if (Result<void> done = grid_->extract(isovalue, surface_, {}, bed.run); !done) return done.error();
         times.extract = extracting.seconds();
@@ -99,7 +97,7 @@ class InTheVertexShader final : public Contestant {
 public:
     InTheVertexShader(DrawMethod method, SearchIndex index) : method_(method), index_(index) {}
 
-    Result<BenchCosts> prepare(BenchBed& bed) override {
+    Result<BenchCosts> prepare(Bed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch preparing;
         Result<TetStore> store = TetStore::upload(*bed.device, *bed.packed, method_, {}, bed.run);
@@ -119,7 +117,7 @@ public:
         return costs;
     }
 
-    Result<DrawnSurface> make(BenchBed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+    Result<DrawnSurface> make(Bed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch searching;
         std::optional<std::span<const std::uint32_t>> found;
         if (tets_) {
@@ -150,7 +148,7 @@ private:
 
 } // namespace
 
-Result<void> BenchBed::pack() {
+Result<void> Bed::pack() {
     if (packed) return {};
     const Stopwatch packing;
     Result<PackedGrid> made = isotet::pack(grid, field, {}, run);
@@ -168,4 +166,4 @@ std::unique_ptr<Contestant> make_contestant(const BenchPair& pair) {
     return std::make_unique<ClustersOnDevice>();
 }
 
-} // namespace isotet::cli
+} // namespace isotet::measure

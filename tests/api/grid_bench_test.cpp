@@ -1,13 +1,16 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What isotet bench concludes from its rows.
+// What follows from rows of measurements.
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "bench_advice.hpp"
+#include <isotet/grid_bench.hpp>
+#include <isotet/make.hpp>
 
-namespace isotet::cli {
+namespace isotet::test {
 namespace {
 
 BenchRow row(double prepare, double each, BenchPair pair = {}, std::string grid = "g") {
@@ -22,7 +25,7 @@ BenchRow row(double prepare, double each, BenchPair pair = {}, std::string grid 
 
 TEST(BenchAdvice, GoesFromCheapToPrepareToCheapToRepeat) {
     // 1 + 0.1 n is below n from 1.11 on; 11 + 0.01 n is below 1 + 0.1 n from 111.1 on; 5 + 0.1 n never is the least.
-    const std::vector<Advice> advice = advice_of({row(11, 0.01), row(5, 0.1), row(1, 0.1), row(0, 1)});
+    const std::vector<BenchAdvice> advice = advice_of({row(11, 0.01), row(5, 0.1), row(1, 0.1), row(0, 1)});
     ASSERT_EQ(advice.size(), 3u);
     EXPECT_EQ(advice[0].row, 3u);
     EXPECT_EQ(advice[0].upto, 1);
@@ -35,7 +38,7 @@ TEST(BenchAdvice, GoesFromCheapToPrepareToCheapToRepeat) {
 TEST(BenchAdvice, LeavesOutWhatIsMissing) {
     BenchRow missing = row(0, 0);
     missing.missing = "no memory";
-    const std::vector<Advice> advice = advice_of({missing, row(1, 1)});
+    const std::vector<BenchAdvice> advice = advice_of({missing, row(1, 1)});
     ASSERT_EQ(advice.size(), 1u);
     EXPECT_EQ(advice[0].row, 1u);
     EXPECT_TRUE(advice_of({missing}).empty());
@@ -51,5 +54,24 @@ TEST(BenchAdvice, GainsAreMeansOverTheGridsThatHaveBoth) {
     EXPECT_FALSE(gain_of_interval_tree(rows, BenchMethod::registers));
 }
 
+TEST(GridBench, MeasuresWithoutADeviceAndRefusesWhatItCannot) {
+    const Grid grid = make_grid({.shape = "kuhn", .side = 4, .fields = {"sphere"}}).value();
+    GridBench bench = GridBench::create(grid, find_field(grid, "sphere").value(), {}).value();
+    const BenchRow measured = bench.measure({BenchMethod::clusters}, std::array{0.5, 0.7}, 2).value();
+    EXPECT_EQ(measured.missing, "");
+    EXPECT_EQ(measured.tets, 384u);
+    EXPECT_GT(measured.median.total(), 0);
+    EXPECT_LE(measured.best.total(), measured.median.total());
+    EXPECT_GT(measured.outcome.triangles.value(), 0u);
+    EXPECT_EQ(bench.measure({BenchMethod::textures}, std::array{0.5}, 1).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(bench.measure({BenchMethod::direct}, {}, 1).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(bench.measure({BenchMethod::direct}, std::array{0.5}, 0).error().code, ErrorCode::invalid_argument);
+    const std::atomic<bool> cancel = true;
+    EXPECT_EQ(bench.measure({BenchMethod::direct}, std::array{0.5}, 1, {.progress = {.report = {}, .cancel = &cancel}})
+                  .error()
+                  .code,
+              ErrorCode::cancelled);
+}
+
 } // namespace
-} // namespace isotet::cli
+} // namespace isotet::test
