@@ -89,7 +89,7 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     count("coincident vertices", report.coincident_vertices);
     if (report.unused_vertices > 0) count("unused vertices", report.unused_vertices);
     if (report.collapsed_by_welding > 0)
-        count("collapsed by welding", report.collapsed_by_welding, "counted, not blamed");
+        count("collapsed by welding", report.collapsed_by_welding, "counted, no defect");
     count("components", report.components);
     table.row({"Euler characteristic", std::to_string(report.euler)});
     table.row({"genus", genus_text(report.genus)});
@@ -100,13 +100,13 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     return table.text();
 }
 
-std::string findings_table(const std::vector<Finding>& findings) {
+std::string findings_table(const std::vector<Finding>& findings, bool sound) {
     Table table = facts();
     for (const Finding& finding : findings) {
         table.row({finding.what, fmt::format("at {}, {}, {}", shortest(finding.where[0]), shortest(finding.where[1]),
                                              shortest(finding.where[2]))});
     }
-    return table.empty() ? "" : fmt::format("\n{}", table.text());
+    return table.empty() ? "" : fmt::format("\n{}\n{}", sound ? "for information:" : "found:", table.text());
 }
 
 Json check_json(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {
@@ -173,8 +173,8 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     if (!report) return report.error();
 
     const bool passed = report->sound && (report->clean || !command.strict);
-    return finish(console, command.common, check_table(*report, *file, command) + findings_table(report->findings),
-                  check_json(*report, *file, command), passed ? ExitCode::done : ExitCode::check_says_no);
+    return finish(console, command.common, check_table(*report, *file, command) + findings_table(report->findings, passed),
+                  check_json(*report, *file, command), passed ? ExitCode::done : ExitCode::check_failed);
 }
 
 } // namespace isotet::cli

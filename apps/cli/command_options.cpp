@@ -20,11 +20,11 @@ written file; a second Ctrl-C ends the program at once.
 
 Exit status:
   0    done
-  1    a check says no
+  1    a check failed
   2    usage: an option or a name is wrong
   3    a file, or the data in it
   4    the machine: memory, disk, device, standard output
-  5    a fault of isotet: please report it
+  5    a bug of isotet: please report it
   130  interrupted
 )";
 
@@ -37,11 +37,13 @@ boundary faces are those that the tets do not use equally often in both directio
 constexpr const char* extract_details = R"(
 FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, mag,
 or a number from 0. x, y and z alone are the coordinates, unless fields are called so. A cell field is averaged to the
-points, weighted by volume.
+points, weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
 
 OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
-isovalue; with {value} or {time} in OUT there is one file each, named by the shortest decimal that reads back. Files
-that were complete when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of
+isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that
+read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is written,
+front.pvd for front-{step}.vtp, which ParaView opens as one series with its times. Files that were complete when Ctrl-C came
+stay. Without OUT only the numbers are printed. Without an isovalue the middle of
 the range is taken.
 
 A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give the
@@ -52,13 +54,14 @@ every machine, unless packing finds too little memory: direct is taken instead, 
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
   isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
-  isotet extract run.pvd 'front-{time}.vtp' -f c -i 0.5 --all-steps
+  isotet extract run.pvd 'front-{step}.vtp' -f c -i 0.5 --all-steps
+  isotet extract grid.vtu surface.vtp -f pressure -i @isovalues.txt --with pressure,velocity
   isotet extract make:kuhn:64:gyroid -i 0
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5 --engine vulkan
 )";
 
 constexpr const char* check_details = R"(
-Says no (exit status 1) when the surface has: an edge that is used unequally often in the two directions where it must
+Fails (exit status 1) if the surface has: an edge that is used unequally often in the two directions where it must
 not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.
 
 Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
@@ -66,12 +69,12 @@ points all lie in one boundary face of the grid's valid tets; with neither they 
 point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
 a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points.
 
-With --strict it also says no to: triangles of zero area, edges with more than two triangles, double sheets (two
+With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
 vertices.
 
-STL has no vertex numbers: its triangles are welded by exact coordinates first. What that collapses is counted, not
-blamed.
+STL has no vertex numbers: its vertices are merged by exact coordinates first. What that collapses is counted, and no
+defect.
 )";
 
 constexpr const char* make_details = R"(
@@ -123,13 +126,13 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
     command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
-        "Weld points closer than this; 0: exactly equal coordinates");
+        "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
     command.add_flag("--merge-pieces", grid.merge_pieces, "Join pieces without global ids by exact coordinates");
-    command.add_flag("--allow-outside", grid.allow_outside, "Index files may name files outside their own folder");
+    command.add_flag("--allow-outside", grid.allow_outside, "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
 }
 
 void add_info(const Command& program, InfoCommand& info) {
-    const Command command = program.add_command("info", "Tell what a grid file holds");
+    const Command command = program.add_command("info", "Show what is in a grid file");
     command.add_file("FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_time(command, info.grid);
     add_reading(command, info.grid, "--format");
@@ -178,7 +181,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_text("-f,--field", extract.field.name, "FIELD",
                      "The field to contour; may be left out where there is only one");
     command.add_flag("--cell-field", extract.field.cell_field,
-                     "Of a name that is both a point and a cell field, the cell field");
+                     "Use the cell field if a point field has the same name");
     add_isovalues(command, extract);
     add_time(command, extract.grid);
     command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {step} or {time}")
@@ -186,7 +189,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
         .excludes(command.option("--step"));
     add_surface_arrays(command, extract);
     command.add_flag("--keep-degenerate", extract.keep_degenerate,
-                     "One vertex for every crossed edge and one or two triangles for every cut tet, ties or not");
+                     "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--fail-if-empty", extract.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
     command.add_choice<Precision>("--precision", extract.precision,
@@ -195,7 +198,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_choice<std::optional<Method>>(
         "--method", extract.method,
         {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
-        "How: clusters packs the grid first, which pays for many surfaces; direct goes through all cells for each "
+        "How: clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each "
         "surface; auto chooses by their number");
     command.add_choice<EngineChoice>(
         "--engine", extract.engine,
@@ -235,22 +238,22 @@ void add_bench(const Command& program, BenchCommand& bench) {
 }
 
 void add_check(const Command& program, CheckCommand& check) {
-    const Command command = program.add_command("check", "Measure a surface and look for what should not be there");
+    const Command command = program.add_command("check", "Measure a surface and check it for defects");
     command.add_file("SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
         .required();
-    command.add_flag("--closed", check.closed, "Blame every edge that is used unequally often in the two directions");
+    command.add_flag("--closed", check.closed, "Report every edge that is used unequally often in the two directions");
     const Option grid = command.add_file("--grid", check.grid.file, "FILE",
-                                         "Blame such edges unless they lie in one boundary face of this grid");
+                                         "Report such edges unless they lie in one boundary face of this grid");
     command
         .add_text("-f,--field", check.field.name, "FIELD",
                   "The field that was contoured: tets without a value do not count")
         .needs(grid);
     command
         .add_flag("--cell-field", check.field.cell_field,
-                  "Of a name that is both a point and a cell field, the cell field")
+                  "Use the cell field if a point field has the same name")
         .needs(grid);
     add_time(command, check.grid);
-    command.add_flag("--strict", check.strict, "Say no to more: see below");
+    command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; without it the name decides");
     add_reading(command, check.grid, "--grid-format");
     for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--merge-pieces"}) {

@@ -151,7 +151,7 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     const bool differs = numbers.differs.value_or(0) > command.threshold;
     return finish(console, command.common, render_table(command, *input, scene, *device, numbers),
                   render_json(command, *input, scene, *device, numbers),
-                  differs ? ExitCode::check_says_no : ExitCode::done);
+                  differs ? ExitCode::check_failed : ExitCode::done);
 }
 
 } // namespace isotet::cli

@@ -11,7 +11,7 @@ namespace isotet::cli {
 
 enum class ExitCode : int {
     done = 0,
-    check_says_no = 1, ///< `check` found what the rule asked for does not allow
+    check_failed = 1, ///< `check` found what the rule asked for does not allow
     usage = 2,
     data = 3,    ///< a file, or what is in it
     machine = 4, ///< memory, disk, device
