@@ -1,19 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "bench_options.hpp"
-
 #include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "option_tree.hpp"
+#include "command_options.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
 constexpr const char* bench_details = R"(
-Each method gets every isovalue in every round. With a device each isovalue ends as a picture of it, shaded by faces; without
+Each method gets every isovalue in every round; without one three are taken. With a device each isovalue ends as a picture of it, shaded by faces; without
 one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the search
 index, uploading. Search is the index's; extract is making triangles, and sending them or the list of tets to the device; draw
 is the rest of the way to the picture. Medians; the best round in JSON.
@@ -66,14 +64,8 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
             "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.max_tets = n; }, "N",
             "Largest grid of --paper; without it 5000000")
         .needs(paper);
-    command
-        .add_text("-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")
-        .excludes(paper);
-    command.add_flag("--cell-field", bench.field.cell_field,
-                     "Use the cell field if a point field has the same name");
-    command
-        .add_numbers("-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")
-        .excludes(paper);
+    add_field(command, bench.field, "The field to contour; without it the one that varies most").excludes(paper);
+    add_isovalues(command, bench.isovalues).excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,
              "Methods, separated by commas; without it all that this machine can");
     add_list(command, "--indexes", bench.indexes, all_search_indexes,

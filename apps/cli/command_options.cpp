@@ -1,11 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "command_options.hpp"
 
-#include "bench_options.hpp"
-#include "device_choice.hpp"
-#include "option_tree.hpp"
-#include "options.hpp"
-#include "render_options.hpp"
+#include "number_format.hpp"
 
 namespace isotet::cli {
 
@@ -128,7 +124,17 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
         "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
     command.add_flag("--merge-pieces", grid.merge_pieces, "Join pieces without global ids by exact coordinates");
-    command.add_flag("--allow-outside", grid.allow_outside, "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
+    command.add_flag("--allow-outside", grid.allow_outside,
+                     "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
+}
+
+/// Which device, which grid, and what every command has.
+void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common) {
+    add_device(command, device);
+    add_device_memory(command, device);
+    add_time(command, grid);
+    add_reading(command, grid, "--format");
+    add_common(command, common);
 }
 
 void add_info(const Command& program, InfoCommand& info) {
@@ -143,11 +149,8 @@ void add_info(const Command& program, InfoCommand& info) {
     command.set_details(info_details);
 }
 
-void add_isovalues(const Command& command, ExtractCommand& extract) {
-    const Option isovalues =
-        command.add_numbers("-i,--isovalue", extract.isovalues, "V[,W...]",
-                            "Isovalues, separated by commas, or @NAME: from that file, separated by blanks, commas or "
-                            "line ends, # begins a comment; may be repeated");
+void add_levels(const Command& command, ExtractCommand& extract) {
+    const Option isovalues = add_isovalues(command, extract.isovalues);
     command
         .add_count(
             "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
@@ -178,11 +181,8 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_file("FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     const Option out = command.add_file("OUT", extract.out, "OUT_FILE", "The surface, as -o");
     command.add_file("-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
-    command.add_text("-f,--field", extract.field.name, "FIELD",
-                     "The field to contour; may be left out where there is only one");
-    command.add_flag("--cell-field", extract.field.cell_field,
-                     "Use the cell field if a point field has the same name");
-    add_isovalues(command, extract);
+    add_field(command, extract.field, "The field to contour; may be left out where there is only one");
+    add_levels(command, extract);
     add_time(command, extract.grid);
     command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {step} or {time}")
         .excludes(command.option("--time"))
@@ -217,24 +217,15 @@ void add_extract(const Command& program, ExtractCommand& extract) {
 }
 
 void add_render(const Command& program, RenderCommand& render) {
-    const Command command = add_render_command(program, render);
-    add_device(command, render.device);
-    add_device_memory(command, render.device);
-    add_time(command, render.grid);
-    add_reading(command, render.grid, "--format");
-    add_common(command, render.common);
+    add_machine_and_input(add_render_command(program, render), render.device, render.grid, render.common);
 }
 
 void add_bench(const Command& program, BenchCommand& bench) {
     const Command command = add_bench_command(program, bench);
-    add_device(command, bench.device);
-    add_device_memory(command, bench.device);
-    add_time(command, bench.grid);
-    add_reading(command, bench.grid, "--format");
+    add_machine_and_input(command, bench.device, bench.grid, bench.common);
     for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces",
                              "--allow-outside", "--cell-field"})
         command.option(name).excludes(command.option("--paper"));
-    add_common(command, bench.common);
 }
 
 void add_check(const Command& program, CheckCommand& check) {
@@ -244,14 +235,8 @@ void add_check(const Command& program, CheckCommand& check) {
     command.add_flag("--closed", check.closed, "Report every edge that is used unequally often in the two directions");
     const Option grid = command.add_file("--grid", check.grid.file, "FILE",
                                          "Report such edges unless they lie in one boundary face of this grid");
-    command
-        .add_text("-f,--field", check.field.name, "FIELD",
-                  "The field that was contoured: tets without a value do not count")
-        .needs(grid);
-    command
-        .add_flag("--cell-field", check.field.cell_field,
-                  "Use the cell field if a point field has the same name")
-        .needs(grid);
+    add_field(command, check.field, "The field that was contoured: tets without a value do not count").needs(grid);
+    command.option("--cell-field").needs(grid);
     add_time(command, check.grid);
     command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; without it the name decides");
@@ -307,6 +292,40 @@ void add_docs(const Command& program, DocsCommand& docs) {
 }
 
 } // namespace
+
+Option add_field(const Command& command, FieldChoice& field, const std::string& description) {
+    const Option name = command.add_text("-f,--field", field.name, "FIELD", description);
+    command.add_flag("--cell-field", field.cell_field, "Use the cell field if a point field has the same name");
+    return name;
+}
+
+Option add_isovalues(const Command& command, std::vector<double>& isovalues) {
+    return command.add_numbers("-i,--isovalue", isovalues, "V[,W...]",
+                               "Isovalues, separated by commas, or @NAME: from that file, separated by blanks, commas "
+                               "or line ends, # begins a comment; may be repeated");
+}
+
+void add_device(const Command& command, DeviceChoice& choice) {
+    command.add_value(
+        "--device",
+        [&choice](const std::string& name) {
+            if (name.empty()) refuse_value("--device", name, "a device of isotet devices, software or none");
+            choice.name = name;
+        },
+        "DEVICE",
+        "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
+        "graphics card");
+}
+
+void add_device_memory(const Command& command, DeviceChoice& choice) {
+    command.add_value(
+        "--device-memory",
+        [&choice](const std::string& text) {
+            choice.memory = parse_bytes(text);
+            if (!choice.memory || *choice.memory == 0) refuse_value("--device-memory", text, "bytes, such as 2GB");
+        },
+        "BYTES", "Memory of the device to take at most, such as 2GB; without it what is free");
+}
 
 void add_commands(const Command& program, CommandLine& line) {
     program.set_details(program_details);

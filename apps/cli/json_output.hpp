@@ -5,15 +5,18 @@
 #include <string>
 #include <vector>
 
-#include <isotet/progress.hpp>
+#include <nlohmann/json.hpp>
+
 #include <isotet/result.hpp>
 
 #include "console.hpp"
 #include "exit_code.hpp"
-#include "json.hpp"
 #include "options.hpp"
 
 namespace isotet::cli {
+
+/// An object keeps the order of its keys.
+using Json = nlohmann::ordered_json;
 
 /// The number under "schema": it grows when a key changes its meaning or goes; new keys leave it as it is.
 constexpr int json_schema = 3;

@@ -78,7 +78,7 @@ ExitCode run_program(std::vector<std::string> words) {
     const Result<ExitCode> result = parse_and_run(std::move(words));
     if (result) return *result;
     // Whatever error an operation returned when it was stopped, Ctrl-C was the cause.
-    if (interrupted || result.error().code == ErrorCode::cancelled) {
+    if (stop_requested || result.error().code == ErrorCode::cancelled) {
         say_error("interrupted: no file was left half written");
         return ExitCode::interrupted;
     }

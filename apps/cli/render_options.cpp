@@ -1,9 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "render_options.hpp"
-
+#include "command_options.hpp"
 #include "number_format.hpp"
-#include "option_tree.hpp"
-#include "options.hpp"
 
 namespace isotet::cli {
 
@@ -75,12 +72,8 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     const Option out = command.add_file("OUT", render.out, "OUT_FILE", "The picture, as -o");
     command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp")
         .excludes(out);
-    command.add_text("-f,--field", render.field.name, "FIELD",
-                     "The field to contour; without it the one that varies most");
-    command.add_flag("--cell-field", render.field.cell_field,
-                     "Use the cell field if a point field has the same name");
-    const Option isovalues = command.add_numbers("-i,--isovalue", render.isovalues, "V[,W...]",
-                                                 "Isovalues, separated by commas; may be repeated");
+    add_field(command, render.field, "The field to contour; without it the one that varies most");
+    const Option isovalues = add_isovalues(command, render.isovalues);
     command
         .add_count(
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
