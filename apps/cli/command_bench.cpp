@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// `isotet bench`: methods and search indexes against each other, on a grid of the user or on those of the paper's Figure 4.
+// `isotet bench`: methods and search indexes against each other, on the user's grid or on those of the
+// paper's Figure 4.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -69,7 +70,7 @@ Result<void> BenchRun::choose_pairs() {
             if (device_ || !needs_device(method)) methods.push_back(method);
     for (const BenchMethod method : methods)
         if (needs_device(method) && !device_)
-            return usage_error(fmt::format("--methods has {}, which needs a device, but there is none", name_of(method)));
+            return usage_error("--methods has {}, which needs a device, but there is none", name_of(method));
     const std::vector<SearchIndex> indexes =
         command_.indexes.empty() ? std::vector{SearchIndex::none, SearchIndex::interval_tree} : command_.indexes;
     if (!command_.indexes.empty() &&

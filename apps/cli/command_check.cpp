@@ -158,10 +158,8 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     std::optional<Origin> origin;
     if (!command.grid.file.empty()) {
         if (file->surface.edge_ends.empty()) {
-            return usage_error(fmt::format(
-                    "{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends writes it "
-                    "into .vtp and .vtk",
-                    command.surface));
+            return usage_error("{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends "
+                               "writes it into .vtp and .vtk", command.surface);
         }
         Result<Origin> read = read_origin(command, console);
         if (!read) return read.error();
@@ -173,8 +171,9 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     if (!report) return report.error();
 
     const bool passed = report->sound && (report->clean || !command.strict);
-    return finish(console, command.common, check_table(*report, *file, command) + findings_table(report->findings, passed),
-                  check_json(*report, *file, command), passed ? ExitCode::done : ExitCode::check_failed);
+    const std::string text = check_table(*report, *file, command) + findings_table(report->findings, passed);
+    return finish(console, command.common, text, check_json(*report, *file, command),
+                  passed ? ExitCode::done : ExitCode::check_failed);
 }
 
 } // namespace isotet::cli

@@ -107,6 +107,7 @@ Result<void> ExtractRun::open() {
     plan_ = *std::move(plan);
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
+    numbers_.steps = plan_.steps.size();
     numbers_.precision = command_.precision;
     numbers_.threads = thread_count(command_.common.threads);
     numbers_.read_seconds = reading.seconds();
@@ -235,7 +236,7 @@ void ExtractRun::note_what_the_step_holds() {
     if (numbers_.pack && numbers_.pack->coarse_clusters > 0)
         where = fmt::format("in {} of {} clusters", grouped(numbers_.pack->coarse_clusters),
                             grouped(numbers_.pack->clusters));
-    else if (coarse_tets_ > 0) where = fmt::format("in {} cut tets", grouped(coarse_tets_));
+    else if (coarse_tets_ > 0) where = fmt::format("in {} active tets", grouped(coarse_tets_));
     if (where.empty()) return;
     console_.note(
         where +

@@ -37,15 +37,14 @@ points, weighted by volume (ParaView's Cell Data to Point Data takes the plain m
 
 OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
 isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that
-read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is written,
-front.pvd for front-{step}.vtp, which ParaView opens as one series with its times. Files that were complete when Ctrl-C came
-stay. Without OUT only the numbers are printed. Without an isovalue the middle of
-the range is taken.
+read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is
+written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times. Files that were complete
+when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of the range is taken.
 
-A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give the
-same vertices and triangles in a different order. auto chooses by a fixed rule: clusters from 32 surfaces on (isovalues
-times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the same bytes on
-every machine, unless packing finds too little memory: direct is taken instead, with a note.
+A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
+the same vertices and triangles in a different order. auto chooses by a fixed rule: clusters from 32 surfaces on
+(isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the
+same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a note.
 
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
@@ -90,11 +89,12 @@ constexpr const char* formats_details = R"(--format takes the names in the first
 
 constexpr const char* devices_details = R"(
 A device can be used when it has Vulkan 1.2 and what the engine needs; of one that cannot, the reason is told. Software
-devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the CPU.
+devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the
+CPU.
 
 With --device that device is opened, and its arithmetic is compared with the processor's, bit by bit: in a few thousand
-cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every command
-that uses the device says so.
+cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every
+command that uses the device says so.
 )";
 
 void add_common(const Command& command, CommonOptions& common) {

@@ -127,9 +127,9 @@ Result<void> check_method(const RenderCommand& command) {
     }
     const std::string_view name = name_of(*command.method.draw);
     if (!command.color_by.empty())
-        return usage_error(fmt::format("--color-by colours surfaces, but --method {} makes none", name));
+        return usage_error("--color-by colours surfaces, but --method {} makes none", name);
     if (command.engine != EngineChoice::automatic)
-        return usage_error(fmt::format("--engine says what extracts, but --method {} extracts nothing", name));
+        return usage_error("--engine says what extracts, but --method {} extracts nothing", name);
     return {};
 }
 

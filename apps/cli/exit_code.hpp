@@ -2,8 +2,9 @@
 // The exit status of the program: who has to act.
 #pragma once
 
-#include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <isotet/result.hpp>
 
@@ -20,7 +21,10 @@ enum class ExitCode : int {
 };
 
 /// The error for an option or a name that is wrong.
-inline Error usage_error(std::string sentence) { return {ErrorCode::invalid_argument, std::move(sentence)}; }
+template <class... Values>
+Error usage_error(fmt::format_string<Values...> sentence, Values&&... values) {
+    return {ErrorCode::invalid_argument, fmt::format(sentence, std::forward<Values>(values)...)};
+}
 
 inline ExitCode exit_code_of(ErrorCode code) noexcept {
     switch (code) {

@@ -29,7 +29,7 @@ Result<Holds> holds(const ExtractCommand& command) {
     for (const auto& [asked, option] :
          {std::pair{command.edge_ends, "--edge-ends"}, {command.source_cells, "--source-cells"}}) {
         if (asked && !vtk) {
-            return usage_error(fmt::format("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name));
+            return usage_error("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name);
         }
     }
     return Holds{format->name != "stl" && format->name != "obj", vtk};
@@ -38,20 +38,18 @@ Result<Holds> holds(const ExtractCommand& command) {
 Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan, const FileInfo& info) {
     if (plan.names.none()) return {};
     if (plan.steps.size() > 1 && !plan.names.by_step())
-        return usage_error(fmt::format("--all-steps has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: "
-                                   "there is one file for each step",
-                                   plan.steps.size(), command.out));
+        return usage_error("--all-steps has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
+                           "one file for each step", plan.steps.size(), command.out);
     if (!plan.names.by_time()) return {};
     std::set<double> times;
     for (const std::size_t step : plan.steps) {
         const std::optional<double> time = time_of(info, step);
         if (!time)
-            return usage_error(fmt::format("OUT, '{}', has {{time}}, but the grid knows no time; {{step}} is its number",
-                                       command.out));
+            return usage_error("OUT, '{}', has {{time}}, but the grid knows no time; {{step}} is its number",
+                               command.out);
         if (!times.insert(*time).second)
-            return usage_error(fmt::format("several time steps have the time {}, but each needs a file of its own: {{step}} "
-                                       "in OUT tells them apart",
-                                       shortest(*time)));
+            return usage_error("several time steps have the time {}, but each needs a file of its own: {{step}} in "
+                               "OUT tells them apart", shortest(*time));
     }
     return {};
 }

@@ -49,6 +49,7 @@ std::string field_text(const ExtractNumbers& numbers) {
     const FieldReport& field = numbers.field;
     std::string text = field.name + (numbers.averaged ? " (cell field, averaged to the points)" : "");
     if (field.lower <= field.upper) text += fmt::format(", {} to {}", shortest(field.lower), shortest(field.upper));
+    if (numbers.steps > 1) text += " in the last time step";
     if (field.no_data > 0) text += fmt::format(", no data at {} points", grouped(field.no_data));
     if (field.infinite > 0) text += fmt::format(", infinite at {}", grouped(field.infinite));
     return text;

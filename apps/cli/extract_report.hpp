@@ -34,7 +34,8 @@ struct ExtractNumbers {
     std::size_t cells = 0;
     std::optional<PackReport> pack; ///< of the last packing; nothing where nothing is packed
     std::uint64_t cells_left_out = 0;
-    FieldReport field; ///< of the last time step
+    FieldReport field;     ///< of the last time step
+    std::size_t steps = 1; ///< time steps
     bool averaged = false;
     Precision precision = Precision::float32;
     Method method = Method::direct;            ///< of the last surface

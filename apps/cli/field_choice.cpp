@@ -32,7 +32,7 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
         carried.components.push_back({name, {match->field}, {}});
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
     else if (match_field_name(name, cell))
-        return usage_error(fmt::format("--with got '{}', a component of a cell field, but cell fields are carried whole", name));
+        return usage_error("--with got '{}', a component of a cell field, but cell fields are carried whole", name);
     else if (const std::size_t comma = name.find(','); comma != std::string::npos) {
         if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;
         return add_carried(source, name.substr(comma + 1), carried);
@@ -56,7 +56,7 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
             const std::string there = names.empty()
                                           ? "none; -f x, y or z contours a coordinate"
                                           : fmt::format("{}: {}; -f chooses one", names.size(), quoted_list(names));
-            return usage_error("no field was named, and the grid has " + there);
+            return usage_error("no field was named, and the grid has {}", there);
         }
         found.name = names.front();
     }
@@ -65,7 +65,7 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
     if (found.point.empty() && found.cell.empty() && !is_coordinate(found.name))
         return source.no_such_field(found.name);
     if (choice.cell_field && found.cell.empty()) {
-        return usage_error(fmt::format("--cell-field was asked for, but '{}' is no cell field", found.name));
+        return usage_error("--cell-field was asked for, but '{}' is no cell field", found.name);
     }
     return found;
 }

@@ -181,12 +181,12 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
     }
     constexpr double tolerance = 1e-12; // relative: a time that went through text and back
     if (times.empty()) {
-        return usage_error(fmt::format("time {} was asked for, but the file knows no time", shortest(time)));
+        return usage_error("time {} was asked for, but the file knows no time", shortest(time));
     }
     if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
         return nearest;
-    return usage_error(fmt::format("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
-                             times.size(), list_of(times), shortest(times[nearest])));
+    return usage_error("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
+                       times.size(), list_of(times), shortest(times[nearest]));
 }
 
 } // namespace
@@ -206,8 +206,8 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
     }
     if (options.step) {
         if (*options.step < count) return std::vector<std::size_t>{static_cast<std::size_t>(*options.step)};
-        return usage_error(fmt::format("step {} was asked for, but the file has {} time step{}, numbered from 0",
-                                 *options.step, count, count == 1 ? "" : "s"));
+        return usage_error("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step,
+                           count, count == 1 ? "" : "s");
     }
     if (count > 1) {
         console.note(

@@ -34,7 +34,7 @@ std::string grouped(std::uint64_t count);
 /// "0.034 s".
 std::string seconds_text(double seconds);
 
-/// "2GB", "1.5 GB", "512mb", "1000": decimal units, as format_bytes() writes them; nothing if it is none or does not fit.
+/// "2GB", "1.5 GB", "512mb", "1000": decimal units, as of format_bytes(); nothing if it is none or does not fit.
 std::optional<std::uint64_t> parse_bytes(std::string_view text) noexcept;
 
 /// The whole of `text` as a number, the point as its decimal sign; nothing if it is not one or does not fit.

@@ -34,7 +34,7 @@ double finite_number(const std::string& names, std::string_view text) {
 
 void append_numbers_of_file(const std::string& path, std::vector<double>& numbers) {
     std::ifstream file(path);
-    if (!file) refuse_file(ErrorCode::file, fmt::format("'{}' cannot be read, but numbers shall come from it", path));
+    if (!file) refuse_file(ErrorCode::file, fmt::format("the file of numbers '{}' cannot be read", path));
     const std::size_t before = numbers.size();
     std::string line;
     for (std::size_t number = 1; std::getline(file, line); ++number) {
@@ -52,7 +52,7 @@ void append_numbers_of_file(const std::string& path, std::vector<double>& number
         }
     }
     if (numbers.size() == before)
-        refuse_file(ErrorCode::invalid_data, fmt::format("{} has no number, but numbers shall come from it", path));
+        refuse_file(ErrorCode::invalid_data, fmt::format("{} has no number, but must have at least one", path));
 }
 
 /// An option whose values go to `set`, all at once.
@@ -297,8 +297,8 @@ Result<void> OptionTree::parse(const std::vector<std::string>& words) {
         if (error.get_exit_code() >= first_error_code)
             return Error{static_cast<ErrorCode>(error.get_exit_code() - first_error_code), error.what()};
         const std::string command = parsed_command(*program_), unknown = unknown_option(*program_, describe(command));
-        return usage_error(fmt::format("{} (isotet{}{} --help lists the options)", unknown.empty() ? error.what() : unknown,
-                                 command.empty() ? "" : " ", command));
+        return usage_error("{} (isotet{}{} --help lists the options)", unknown.empty() ? error.what() : unknown,
+                           command.empty() ? "" : " ", command);
     }
     line_->command = parsed_command(*program_);
     return {};

@@ -91,8 +91,8 @@ public:
     Option add_count(const std::string& names, CountLimits limits, std::function<void(std::uint64_t)> set,
                      const std::string& type, const std::string& description) const;
 
-    /// Finite numbers separated by commas, or "@FILE": a file of numbers separated by blanks, commas or line ends, where
-    /// # begins a comment. The option may be repeated.
+    /// Finite numbers separated by commas, or "@FILE": a file of numbers separated by blanks, commas or line ends; #
+    /// begins a comment. The option may be repeated.
     Option add_numbers(const std::string& names, std::vector<double>& target, const std::string& type,
                        const std::string& description) const;
 

@@ -170,7 +170,7 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "help", "docs" or none
+    std::string command; ///< its word, such as "extract"; empty for none
     bool help = false;
     bool version = false;
     InfoCommand info;

@@ -66,8 +66,8 @@ Result<void> check_placeholders(const std::string& out, const std::vector<std::s
         if (close == std::string::npos) break;
         const std::string mark = out.substr(open, close - open + 1);
         if (std::find(known.begin(), known.end(), mark) != known.end()) continue;
-        return usage_error(fmt::format("OUT, '{}', has {}, but here only {} can stand for something", out, mark,
-                                 fmt::join(known, " and ")));
+        return usage_error("OUT, '{}', has {}, but here only {} can stand for something", out, mark,
+                           fmt::join(known, " and "));
     }
     return {};
 }
@@ -88,7 +88,7 @@ Result<Format> format_for_writing(const std::string& path, Writes what) {
             return format;
         for (const std::string& other : format.extensions) endings += (endings.empty() ? "" : ", ") + other;
     }
-    return usage_error(fmt::format("the name of the output is '{}', but it must end in one of {}", path, endings));
+    return usage_error("the name of the output is '{}', but it must end in one of {}", path, endings);
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -106,11 +106,11 @@ Result<void> check_output_paths(const std::vector<std::string>& inputs, const st
         if (output.empty() || output == "-") continue;
         for (const std::string& input : inputs) {
             if (!input.empty() && same_file(input, output))
-                return usage_error(fmt::format("the output '{}' is the input '{}': it would be overwritten", output, input));
+                return usage_error("the output '{}' is the input '{}': it would be overwritten", output, input);
         }
         for (std::size_t j = 0; j < i; ++j) {
             if (!outputs[j].empty() && same_file(outputs[j], output))
-                return usage_error(fmt::format("two outputs are the same file, '{}'", output));
+                return usage_error("two outputs are the same file, '{}'", output);
         }
         if (auto writable = check_writable(output); !writable) return writable; // before hours of work
     }

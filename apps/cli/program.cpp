@@ -31,8 +31,8 @@ Result<void> complete_bare_file(std::vector<std::string>& words, const OptionTre
         if (words[1] == own) return {};
     }
     if (looks_like_command(words[1])) {
-        return usage_error(fmt::format("'{}' is neither a command nor a file; commands are {}",
-                                                              words[1], fmt::join(tree.words(), ", ")));
+        return usage_error("'{}' is neither a command nor a file; commands are {}", words[1],
+                           fmt::join(tree.words(), ", "));
     }
     words.insert(words.begin() + 1, "info");
     return {};
@@ -56,8 +56,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "help") {
         if (line.topic.topic.empty() || tree.has_command(line.topic.topic))
             return say(help_text(tree.describe(line.topic.topic), tree.describe_all()));
-        return usage_error(fmt::format("'{}' is no command; commands are {}", line.topic.topic,
-                                                              fmt::join(tree.words(), ", ")));
+        return usage_error("'{}' is no command; commands are {}", line.topic.topic, fmt::join(tree.words(), ", "));
     }
     if (line.command == "docs") return run_docs(line.docs, tree.describe_all());
     if (line.version) return say(version_text());

@@ -44,8 +44,8 @@ void widen(ColorScale& scale) {
 
 Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Console& console) {
     if (field.values.components() != 1) {
-        return usage_error(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
-                                 field.values.components(), field.name));
+        return usage_error("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
+                           field.values.components(), field.name);
     }
     field.scale = command.scale;
     const Seen seen = look_at(field.values, command.scale.logarithmic);
@@ -66,8 +66,7 @@ Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Co
     if (command.range.size() != 2 || !(command.range[0] < command.range[1]))
         return usage_error("--range takes two numbers, the smaller one first, such as 0,100");
     if (command.scale.logarithmic && command.range[0] <= 0)
-        return usage_error(
-            fmt::format("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0])));
+        return usage_error("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0]));
     field.scale.lower = command.range[0];
     field.scale.upper = command.range[1];
     return field;
@@ -106,9 +105,8 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
         if (field.name == command.color_by)
             return with_scale({field.name, field.values, Association::cell, {}, false}, command, console);
     }
-    return usage_error(fmt::format("--color-by names '{}', but the surface has {}", command.color_by,
-                                        names.empty() ? "no fields"
-                                                      : quoted_list(nearest_first(command.color_by, names))));
+    return usage_error("--color-by names '{}', but the surface has {}", command.color_by,
+                       names.empty() ? "no fields" : quoted_list(nearest_first(command.color_by, names)));
 }
 
 } // namespace isotet::cli

@@ -21,13 +21,12 @@ Result<std::size_t> count_frames(const RenderCommand& command) {
     if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
     if (command.sweep.empty()) return std::size_t{1};
     if (command.sweep.size() != 3)
-        return usage_error(fmt::format(
-            "--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such as 0,1,50",
-            command.sweep.size()));
+        return usage_error("--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such "
+                           "as 0,1,50", command.sweep.size());
     const double count = command.sweep[2];
     if (count < 2 || count > max_frames || count != std::floor(count))
-        return usage_error(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
-                                 shortest(max_frames)));
+        return usage_error("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
+                           shortest(max_frames));
     return static_cast<std::size_t>(count);
 }
 
@@ -50,10 +49,10 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     const bool numbered = out.find(number_mark) != std::string::npos;
     if (pictures == 1) {
         if (!out.ends_with(".png"))
-            return usage_error(fmt::format("the name of the output is '{}', but it must end in .png", out));
+            return usage_error("the name of the output is '{}', but it must end in .png", out);
         if (numbered)
-            return usage_error(fmt::format(
-                "the name of the output is '{}', but only pictures of --sweep and --orbit have numbers", out));
+            return usage_error("the name of the output is '{}', but only pictures of --sweep and --orbit have numbers",
+                               out);
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {
@@ -63,9 +62,8 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return usage_error(fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
-                             "holds {} and ends in .png",
-                             out, pictures, number_mark));
+    return usage_error("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} "
+                       "and ends in .png", out, pictures, number_mark);
 }
 
 std::string PictureFiles::name(std::size_t picture) const {

@@ -31,9 +31,8 @@ Result<RenderInput> take_surface(const RenderCommand& command, const Device& dev
                                  Console& console) {
     if (!command.isovalues.empty() || !command.sweep.empty() || command.levels > 0 || !command.field.name.empty() ||
         command.boundary || command.method.draw || command.method.extract) {
-        return usage_error(fmt::format("{} is a surface: it has no isovalues, no field to contour (--color-by colours it), "
-                                 "no boundary and no tets",
-                                 command.grid.file));
+        return usage_error("{} is a surface: it has no isovalues, no field to contour (--color-by colours it), no "
+                           "boundary and no tets", command.grid.file);
     }
     RenderInput input;
     input.is_surface = true;

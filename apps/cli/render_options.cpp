@@ -10,12 +10,13 @@ constexpr const char* render_details = R"(
 FILE is a grid or a surface. With nothing but FILE the field that varies most is taken, with three isovalues between the
 ends of its range (rare values at the ends aside), each in its own colour. FIELD is found as by isotet extract.
 
-The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png; without
-it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1 where
-{frame} stands in OUT, or go into one animated file when OUT ends in .webp.
+The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png;
+without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1
+where {frame} stands in OUT, or go into one animated file when OUT ends in .webp.
 
-A graphics card draws, if there is one; otherwise, or with --device software, a software device, with a note. If
-there is neither, nothing can be drawn: on Debian the package mesa-vulkan-drivers has a software device. On one device the same command gives the same bytes.
+A graphics card draws, if there is one; otherwise, or with --device software, a software device, with a note. If there
+is neither, nothing can be drawn: on Debian the package mesa-vulkan-drivers has a software device. On one device the same
+command gives the same bytes.
 
 Examples:
   isotet render grid.vtu
@@ -118,13 +119,13 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         {"auto", {}}, {"direct", {Method::direct, {}}}, {"clusters", {Method::clusters, {}}}};
     for (const DrawMethod method : all_draw_methods) methods.push_back({std::string(name_of(method)), {{}, method}});
     command.add_choice("--method", render.method, methods,
-                       "How: auto, direct and clusters extract surfaces, as isotet extract does; the others are earlier "
-                       "methods that draw tets and make no surface, to be compared with; without it auto");
+                       "How: auto, direct and clusters extract surfaces, as isotet extract does; the others are "
+                       "earlier methods that draw tets and make no surface, to be compared with; without it auto");
     std::vector<std::pair<std::string, std::optional<SearchIndex>>> indexes;
     for (const SearchIndex index : all_search_indexes) indexes.emplace_back(name_of(index), index);
     command.add_choice("--index", render.index, indexes,
-                       "Search index that finds the active tets for a method that draws tets, none: it draws all; without "
-                       "it cluster_ranges");
+                       "Search index that finds the active tets for a method that draws tets, none: it draws all; "
+                       "without it cluster_ranges");
     command.add_text("--color-by", render.color_by, "FIELD",
                      "Colour by this point or cell field; without it each isovalue has its colour");
     command.add_choice<ColorMap>("--colormap", render.scale.map,

@@ -63,7 +63,7 @@ void note_empty_surfaces(const RenderInput& input, Console& console) {
     const auto& [field, store] = std::tie(input.scene->report().field, input.scene->report().store);
     for (const ShownSurface& surface : input.scene->surfaces()) {
         if (!surface.isovalue) continue;
-        // Of tets it is not known before they are drawn; values on both sides of the isovalue make a surface, as a rule.
+        // Of tets it is not known before they are drawn; values on both sides of the isovalue make a surface mostly.
         const bool shown = store ? field.lower < *surface.isovalue && *surface.isovalue <= field.upper
                                  : surface.triangles > 0;
         if (shown) continue;

@@ -100,8 +100,8 @@ public:
     ~IsosurfaceScene();
 
     /// Makes the scene that of these isovalues; what was shown before goes.
-    /// Errors   as Contour::extract(), DeviceMesh::upload() and DeviceColors; a device that fails is replaced by the CPU
-    ///          with a note, unless it is required
+    /// Errors   as Contour::extract(), DeviceMesh::upload() and DeviceColors; the CPU replaces a
+    ///          device that fails, with a note, unless it is required
     Result<void> show(std::span<const double> isovalues, const Run& run = {});
 
     /// Points a camera at the whole grid or surface: the same for all isovalues, and with `orbit` from all sides at one

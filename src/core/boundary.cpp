@@ -169,9 +169,11 @@ Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
     const std::uint64_t memory = std::max(free_memory() / 4, enough_for_small_grids);
     const auto faces = find_boundary_faces(grid, *cells, tets, {.memory = memory}, progress);
     if (!faces) return faces.error();
-    if (3 * faces->size() > std::numeric_limits<std::uint32_t>::max() && grid.points.tuples() > std::numeric_limits<std::uint32_t>::max())
-        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but {} are the most for a grid of more than 2^32 points",
-                                                          faces->size(), std::numeric_limits<std::uint32_t>::max() / 3)};
+    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
+    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
+        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
+                                                          "points it must have at most {}",
+                                                          faces->size(), max_numbers / 3)};
     return surface_of(grid.points, *faces);
 }
 

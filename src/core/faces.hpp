@@ -51,8 +51,8 @@ struct BoundaryFace {
     bool mirrored = false;
 };
 
-/// The faces that survey_faces() counts, each once, ascending within ranges of their lowest points; the same guarantees,
-/// cost and errors, and 32 bytes a face.
+/// The faces that survey_faces() counts, each once, ascending within ranges of their lowest points; the same
+/// guarantees, cost and errors, and 32 bytes a face.
 Result<std::vector<BoundaryFace>> find_boundary_faces(const Grid& grid, const CellReader& cells,
                                                       const TetSurvey& survey, const FaceSurveyOptions& options,
                                                       const Progress& progress);

@@ -67,6 +67,11 @@ TEST_F(ProgramWithTimes, AllStepsMakeOneFileEachAndEqualThoseOfSingleSteps) {
     }
 }
 
+TEST_F(ProgramWithTimes, TheRangeOfASeriesIsThatOfTheLastStep) {
+    const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "1", "--all-steps"});
+    EXPECT_NE(run.out.find("p, 0 to 8 in the last time step"), std::string::npos) << run.out;
+}
+
 TEST_F(ProgramWithTimes, AllStepsIntoOneFileAreRefused) {
     const RunResult run = isotet({"extract", grid, path("s.vtp"), "-f", "p", "-i", "1", "--all-steps"});
     EXPECT_EQ(run.status, 2);
