@@ -15,9 +15,10 @@ foreach(component ${ISOTET_COMPONENTS})
     install(EXPORT isotet-${component} NAMESPACE isotet:: DESTINATION ${package_dir} FILE isotet-${component}.cmake)
 endforeach()
 
-# search.hpp belongs to a library that is not installed.
+# What belongs to isotet_extras, which is not installed, stays here.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/isotet DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-    FILES_MATCHING PATTERN "*.hpp" PATTERN search.hpp EXCLUDE)
+    FILES_MATCHING PATTERN "*.hpp"
+    PATTERN search.hpp EXCLUDE PATTERN grid_bench.hpp EXCLUDE PATTERN isosurface_scene.hpp EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/include/isotet/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isotet)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/isotet-config.cmake.in ${PROJECT_BINARY_DIR}/isotet-config.cmake

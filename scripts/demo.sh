@@ -76,6 +76,7 @@ Checked: every edge of the surfaces that does not lie on the boundary of the gri
 directions. Open the files in ParaView, ${look}or try:
 NEXT
     if [[ $called_from != "$root" ]]; then echo "  cd $root"; fi
+    if [[ -e $build/mesa/env.sh ]]; then echo "  source $build/mesa/env.sh    # the software device, for render"; fi
     cat <<NEXT
   $program $grid
   $program render $grid -f p -o pressure.png

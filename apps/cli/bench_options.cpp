@@ -1,35 +1,34 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "bench_options.hpp"
-
 #include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "option_tree.hpp"
+#include "command_options.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
 constexpr const char* bench_details = R"(
-Each method gets every isovalue in every round. With a device each isovalue ends as a picture of it, shaded by faces; without
-one (--device none) surfaces are extracted and that is all. Prepare is what happens once: packing, building the filter,
-uploading. Ask is the filter's search; extract is making triangles, and sending them or the list of tets to the device; draw
-is the rest of the way to the picture. Medians; the best round in JSON and CSV.
+Each method gets every isovalue in every round; without one three are taken. With a device each isovalue ends as a
+picture of it, shaded by faces; without one (--device none) surfaces are extracted and that is all. Prepare is what
+happens once: packing, building the search index, uploading. Search is the index's; extract is making triangles, and
+sending them or the list of tets to the device; draw is the rest of the way to the picture. Medians; the best round in
+JSON.
 
 Methods: direct and clusters (CPU), clusters_vulkan (device); and those that draw without making a surface: registers,
-registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh shaders. The last four
-draw the tets that a filter finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
+registers_instanced and textures of Buatois, Caumon and Levy (2006), and mesh, where the device has mesh shaders. The
+last four draw the tets that a search index finds: none, interval_tree, octree, seed_set, span_space, cluster_ranges.
 
---paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the interval
-tree gains. --device-memory makes grids that do not fit visible at sizes that one can run.
+--paper measures that paper's Figure 4 on this machine: tets a second against the size of the grid, and what the
+interval tree gains. --device-memory makes grids that do not fit visible at sizes that one can run.
 
 Examples:
   isotet bench grid.vtu -f pressure -i 0.5
-  isotet bench grid.vtu -f pressure --methods clusters,textures --filters none,interval_tree
-  isotet bench --paper --device software --max-tets 1000000 --svg figure4.svg --csv figure4.csv
-  isotet bench --paper --device-memory 256MB --svg figure4.svg
+  isotet bench grid.vtu -f pressure --methods clusters,textures --indexes none,interval_tree
+  isotet bench --paper --device software --max-tets 1000000 --json figure4.json
+  isotet bench --paper --device-memory 256MB --json figure4.json
 )";
 
 /// Words separated by commas, each one of `all` by its name.
@@ -53,44 +52,9 @@ void add_list(const Command& command, const std::string& option, std::vector<Val
 
 } // namespace
 
-const char* name_of(BenchMethod method) noexcept {
-    switch (method) {
-    case BenchMethod::direct: return "direct";
-    case BenchMethod::clusters: return "clusters";
-    case BenchMethod::clusters_vulkan: return "clusters_vulkan";
-    case BenchMethod::registers: return "registers";
-    case BenchMethod::registers_instanced: return "registers_instanced";
-    case BenchMethod::textures: return "textures";
-    case BenchMethod::mesh: return "mesh";
-    }
-    return "";
-}
-
-std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept { return parse_draw_method(name_of(method)); }
-
-bool needs_device(BenchMethod method) noexcept {
-    return method != BenchMethod::direct && method != BenchMethod::clusters;
-}
-
-std::string BenchPair::name() const {
-    std::string name = name_of(method);
-    if (draw_method_of(method) && filter != SearchIndex::none) name += fmt::format(" + {}", name_of(filter));
-    return name;
-}
-
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& filters) {
-    std::vector<BenchPair> pairs;
-    for (const BenchMethod method : methods) {
-        if (!draw_method_of(method)) pairs.push_back({method});
-        else
-            for (const SearchIndex filter : filters) pairs.push_back({method, filter});
-    }
-    return pairs;
-}
-
 Command add_bench_command(const Command& program, BenchCommand& bench) {
     const Command command =
-        program.add_command("bench", "Measure methods and filters on a grid, and say which to take");
+        program.add_command("bench", "Measure methods and search indexes on a grid, and tell the fastest");
     const Option file =
         command.add_file("FILE", bench.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]");
     const Option paper = command.add_flag(
@@ -98,27 +62,18 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
     paper.excludes(file);
     command
         .add_count(
-            "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.most_tets = n; }, "N",
+            "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.max_tets = n; }, "N",
             "Largest grid of --paper; without it 5000000")
         .needs(paper);
-    command
-        .add_text("-f,--field", bench.field.name, "FIELD", "The field to contour; without it the one that varies most")
-        .excludes(paper);
-    command.add_flag("--cell-field", bench.field.cell_field,
-                     "Of a name that is both a point and a cell field, the cell field");
-    command
-        .add_numbers("-i,--isovalue", bench.isovalues, "V[,W...]", "Isovalues, separated by commas; without it three")
-        .excludes(paper);
+    add_field(command, bench.field, "The field to contour; without it the one that varies most").excludes(paper);
+    add_isovalues(command, bench.isovalues).excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,
              "Methods, separated by commas; without it all that this machine can");
-    add_list(command, "--filters", bench.filters, all_search_indexes,
-             "Filters, separated by commas; without it none and interval_tree");
+    add_list(command, "--indexes", bench.indexes, all_search_indexes,
+             "Search indexes, separated by commas; without it none and interval_tree");
     command.add_count(
         "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",
         "How often everything is measured; without it 5");
-    command.add_file("--csv", bench.csv, "OUT_FILE", "Write all rows as comma-separated values");
-    command.add_file("--svg", bench.svg, "OUT_FILE",
-                     "Draw a chart: with --paper tets a second against tets, else time against surfaces");
     command.set_details(bench_details);
     return command;
 }

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "bench_advice.hpp"
 #include "number_format.hpp"
 #include "report.hpp"
 
@@ -24,7 +23,7 @@ Table rows_table(const BenchNumbers& numbers) {
     using enum Table::Align;
     Table table({left, right, right, right, right, right, right, right, right, right, right, right, right});
     table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut",
-               "triangles", "bytes sent", "ask, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms",
+               "triangles", "bytes sent", "search, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms",
                "best, ms", "tets a second"});
     for (const BenchRow& row : numbers.rows) {
         const std::string name =
@@ -33,10 +32,10 @@ Table rows_table(const BenchNumbers& numbers) {
             table.row({name, "not measured"});
             continue;
         }
-        table.row({name, seconds_text(row.costs.prepare_seconds), bytes_text(row.costs.host_bytes),
-                   bytes_text(row.costs.device_bytes), count_or_nothing(row.outcome.tets_looked_at),
+        table.row({name, seconds_text(row.costs.prepare_seconds), format_bytes(row.costs.host_bytes),
+                   format_bytes(row.costs.device_bytes), count_or_nothing(row.outcome.tets_looked_at),
                    count_or_nothing(row.outcome.triangles), grouped(row.outcome.sent_bytes + row.costs.crossing_bytes),
-                   milliseconds(row.median.ask), milliseconds(row.median.extract),
+                   milliseconds(row.median.search), milliseconds(row.median.extract),
                    numbers.device ? milliseconds(row.median.draw) : "", milliseconds(row.median.total()),
                    milliseconds(row.best.total()), grouped(static_cast<std::uint64_t>(row.tets_per_second()))});
     }
@@ -55,7 +54,7 @@ std::string missing_text(const BenchNumbers& numbers) {
 std::string advice_text(const BenchNumbers& numbers) {
     std::string text;
     double from = 1;
-    for (const Advice& one : advice_of(numbers.rows)) {
+    for (const BenchAdvice& one : advice_of(numbers.rows)) {
         const std::string range = std::isinf(one.upto)
                                       ? fmt::format("from {:.0f} surface{} on", from, from == 1 ? "" : "s")
                                       : fmt::format("up to {:.0f} surface{}", one.upto, one.upto == 1 ? "" : "s");
@@ -74,7 +73,7 @@ std::string gains_text(const std::vector<BenchRow>& rows) {
 }
 
 Json json_of(const BenchTimes& times) {
-    return {{"ask", times.ask}, {"extract", times.extract}, {"draw", times.draw}, {"all", times.total()}};
+    return {{"search", times.search}, {"extract", times.extract}, {"draw", times.draw}, {"all", times.total()}};
 }
 
 } // namespace
@@ -84,7 +83,10 @@ std::string bench_table(const BenchNumbers& numbers) {
     if (numbers.command->paper) table.row({"grids", "regular, six tets a cube (make:kuhn), field gyroid"});
     else if (!numbers.rows.empty()) {
         table.row({"grid", numbers.rows.front().grid});
-        table.row({"tets", grouped(numbers.rows.front().tets)});
+        const BenchRow& first = numbers.rows.front();
+        table.row({"tets", first.dropped_tets == 0 ? grouped(first.tets)
+                                                   : fmt::format("{}, {} repeated or collapsed ones dropped",
+                                                                 grouped(first.tets), grouped(first.dropped_tets))});
         table.row({"field", numbers.field});
     }
     std::string isovalues;
@@ -117,9 +119,10 @@ Json bench_json(const BenchNumbers& numbers) {
     for (const BenchRow& row : numbers.rows) {
         Json one = {{"grid", json_text(row.grid)},
                     {"tets", row.tets},
+                    {"dropped_tets", row.dropped_tets},
                     {"points", row.points},
                     {"method", name_of(row.pair.method)},
-                    {"filter", draw_method_of(row.pair.method) ? Json(name_of(row.pair.filter)) : Json(nullptr)}};
+                    {"index", draw_method_of(row.pair.method) ? Json(name_of(row.pair.index)) : Json(nullptr)}};
         one["missing"] = row.missing.empty() ? Json(nullptr) : json_text(row.missing);
         if (row.missing.empty()) {
             one["prepare_seconds"] = row.costs.prepare_seconds;
@@ -138,7 +141,7 @@ Json bench_json(const BenchNumbers& numbers) {
     report["rows"] = std::move(rows);
     Json advice = Json::array();
     if (!numbers.command->paper)
-        for (const Advice& one : advice_of(numbers.rows))
+        for (const BenchAdvice& one : advice_of(numbers.rows))
             advice.push_back(
                 {{"row", one.row}, {"up_to_surfaces", std::isinf(one.upto) ? Json(nullptr) : Json(one.upto)}});
     report["advice"] = std::move(advice);
@@ -148,32 +151,6 @@ Json bench_json(const BenchNumbers& numbers) {
             gains[name_of(method)] = *gain;
     report["gain_of_interval_tree"] = std::move(gains);
     return report;
-}
-
-std::string bench_csv(const BenchNumbers& numbers) {
-    std::string text = "grid,tets,points,method,filter,prepare_s,host_bytes,device_bytes,crossing_bytes,sent_bytes,"
-                       "tets_looked_at,triangles,"
-                       "ask_s,extract_s,draw_s,all_s,best_all_s,tets_per_s,missing\n";
-    const auto quoted = [](std::string word) {
-        std::string out = "\"";
-        for (const char c : word) out += c == '"' ? "\"\"" : std::string(1, c);
-        return out + "\"";
-    };
-    for (const BenchRow& row : numbers.rows) {
-        text += fmt::format("{},{},{},{},{},", quoted(row.grid), row.tets, row.points, name_of(row.pair.method),
-                            draw_method_of(row.pair.method) ? name_of(row.pair.filter) : "");
-        if (!row.missing.empty()) {
-            text += ",,,,,,,,,,,,," + quoted(row.missing) + "\n";
-            continue;
-        }
-        const auto count = [](std::optional<std::uint64_t> known) { return known ? std::to_string(*known) : ""; };
-        text += fmt::format("{},{},{},{},{},{},{},", row.costs.prepare_seconds, row.costs.host_bytes,
-                            row.costs.device_bytes, row.costs.crossing_bytes, row.outcome.sent_bytes,
-                            count(row.outcome.tets_looked_at), count(row.outcome.triangles));
-        text += fmt::format("{},{},{},{},{},{},\n", row.median.ask, row.median.extract, row.median.draw,
-                            row.median.total(), row.best.total(), row.tets_per_second());
-    }
-    return text;
 }
 
 } // namespace isotet::cli

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <isotet/device.hpp>
+#include <isotet/grid_bench.hpp>
 
-#include "bench_run.hpp"
 #include "json_output.hpp"
+#include "options.hpp"
 
 namespace isotet::cli {
 
@@ -24,7 +24,5 @@ struct BenchNumbers {
 
 std::string bench_table(const BenchNumbers& numbers);
 Json bench_json(const BenchNumbers& numbers);
-std::string bench_csv(const BenchNumbers& numbers);
-std::string bench_svg(const BenchNumbers& numbers);
 
 } // namespace isotet::cli

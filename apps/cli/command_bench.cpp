@@ -1,32 +1,31 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// `isotet bench`: methods and filters against each other, on a grid of the user or on those of the paper's Figure 4.
+// `isotet bench`: methods and search indexes against each other, on the user's grid or on those of the
+// paper's Figure 4.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <isotet/field_statistics.hpp>
+#include <isotet/levels.hpp>
 #include <isotet/make.hpp>
-#include <isotet/plan.hpp>
 
 #include "bench_report.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "device_choice.hpp"
+#include "field_choice.hpp"
 #include "grid_source.hpp"
 #include "json_output.hpp"
-#include "output_paths.hpp"
-#include "read_field.hpp"
+#include "output_names.hpp"
 #include "thread_count.hpp"
-#include "text_file.hpp"
-#include "varied_field.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
 constexpr double isovalue_of_paper = 0.25; ///< of the gyroid: near its middle, where the surface is large
-constexpr std::uint64_t levels_without_a_word = 3;
 
 class BenchRun {
 public:
@@ -71,57 +70,44 @@ Result<void> BenchRun::choose_pairs() {
             if (device_ || !needs_device(method)) methods.push_back(method);
     for (const BenchMethod method : methods)
         if (needs_device(method) && !device_)
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("--methods has {}, which needs a device, but there is none", name_of(method))};
-    const std::vector<SearchIndex> filters =
-        command_.filters.empty() ? std::vector{SearchIndex::none, SearchIndex::interval_tree} : command_.filters;
-    if (!command_.filters.empty() &&
+            return usage_error("--methods has {}, which needs a device, but there is none", name_of(method));
+    const std::vector<SearchIndex> indexes =
+        command_.indexes.empty() ? std::vector{SearchIndex::none, SearchIndex::interval_tree} : command_.indexes;
+    if (!command_.indexes.empty() &&
         std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
-        return Error{ErrorCode::invalid_argument,
-                     "--filters was given, but none of the methods takes lists of tets: registers, "
-                     "registers_instanced, textures and mesh do"};
-    pairs_ = pairs_of(methods, filters);
+        return usage_error("--indexes was given, but none of the methods takes lists of tets: registers, "
+                     "registers_instanced, textures and mesh do");
+    pairs_ = pairs_of(methods, indexes);
     return {};
 }
 
 Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
-    BenchBed bed{.grid = grid,
-                 .field = field,
-                 .run = console_.run(),
-                 .device = device_,
-                 .renderer = {},
-                 .packed = {},
-                 .pack_seconds = 0};
-    if (device_) {
-        Result<Renderer> renderer = Renderer::create(*device_);
-        if (!renderer) return renderer.error();
-        bed.renderer = *std::move(renderer);
-    }
-    const Result<FieldSample> sample = FieldSample::create(grid, field);
-    if (!sample) return sample.error();
+    Result<GridBench> bench = GridBench::create(grid, field, device_);
+    if (!bench) return bench.error();
     for (const BenchPair& pair : pairs_) {
         console_.detail(fmt::format("measuring {}: {}", name, pair.name()));
-        Result<BenchRow> row = measure(pair, bed, numbers_.isovalues, command_.rounds);
+        Result<BenchRow> row = bench->measure(pair, numbers_.isovalues, command_.rounds, console_.run());
         if (!row) return row.error();
         row->grid = name;
-        row->tets = bed.packed ? bed.packed->report().tets : sample->tets();
-        row->points = grid.points.tuples();
         numbers_.rows.push_back(*std::move(row));
     }
     return {};
 }
 
 Result<void> BenchRun::run_file() {
-    const Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
+    const Result<GridSource> source = GridSource::open(command_.grid, console_);
     if (!source) return source.error();
     const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
     if (!steps) return steps.error();
     Grid grid;
     const Result<PointField> field =
-        read_field(*source, steps->front(), command_.field, {}, command_.common.threads, console_, grid);
+        read_field(*source, steps->front(), command_.field, {}, console_, grid);
     if (!field) return field.error();
     numbers_.field = field->name;
-    numbers_.isovalues = command_.isovalues.empty() ? levels_within(*field, levels_without_a_word) : command_.isovalues;
+    const ValueRange range = typical_range(field->values);
+    numbers_.isovalues = command_.isovalues.empty() ? evenly_spaced_levels(range.lower, range.upper, default_levels,
+                                                                           LevelRounding::short_decimals)
+                                                    : command_.isovalues;
     if (numbers_.isovalues.empty())
         return Error{ErrorCode::invalid_data,
                      fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};
@@ -154,7 +140,7 @@ std::vector<std::uint64_t> sides_of_paper(std::uint64_t most) {
 Result<void> BenchRun::run_paper() {
     numbers_.field = "gyroid";
     numbers_.isovalues = {isovalue_of_paper};
-    for (const std::uint64_t side : sides_of_paper(command_.most_tets)) {
+    for (const std::uint64_t side : sides_of_paper(command_.max_tets)) {
         MakeOptions options;
         options.side = side;
         options.fields = {numbers_.field};
@@ -170,15 +156,11 @@ Result<void> BenchRun::run_paper() {
 
 Result<void> BenchRun::run() {
     if (command_.paper == !command_.grid.file.empty())
-        return Error{ErrorCode::invalid_argument, "isotet bench takes a FILE, or --paper"};
+        return usage_error("isotet bench takes a FILE, or --paper");
     if (command_.device.name == "none" && command_.device.memory)
-        return Error{ErrorCode::invalid_argument, "--device-memory is given, but --device is none"};
-    for (const auto& [option, path] : {std::pair("--csv", &command_.csv), {"--svg", &command_.svg}})
-        if (*path == "-")
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("{} got '-', but it writes a file; --json - writes to standard output", option)};
+        return usage_error("--device-memory is given, but --device is none");
     if (Result<void> paths =
-            check_output_paths({command_.grid.file}, {command_.csv, command_.svg, command_.common.json});
+            check_output_paths({command_.grid.file}, {command_.common.json});
         !paths)
         return paths;
     numbers_.command = &command_;
@@ -194,19 +176,13 @@ Result<ExitCode> run_bench(const BenchCommand& command) {
     Console console(command.common);
     BenchRun run(command, console);
     if (Result<void> done = run.run(); !done) return done.error();
-    if (Result<void> printed = console.print(bench_table(run.numbers())); !printed) return printed.error();
-    for (const auto& [path, text] : {std::pair(command.csv, &bench_csv), {command.svg, &bench_svg}})
-        if (!path.empty())
-            if (Result<void> written = write_text_file(path, text(run.numbers()), console.run().progress); !written)
-                return written.error();
-    Json report = bench_json(run.numbers());
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
-        return written.error();
+    const Result<ExitCode> told =
+        finish(console, command.common, bench_table(run.numbers()), bench_json(run.numbers()));
+    if (!told) return told;
     const bool nothing =
         std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
     if (nothing) return Error{ErrorCode::system, "nothing could be measured: " + run.numbers().rows.front().missing};
-    return ExitCode::done;
+    return told;
 }
 
 } // namespace isotet::cli

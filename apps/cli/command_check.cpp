@@ -13,7 +13,7 @@
 #include "grid_source.hpp"
 #include "json_output.hpp"
 #include "number_format.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -27,7 +27,7 @@ struct Origin {
 };
 
 Result<Origin> read_origin(const CheckCommand& command, Console& console) {
-    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
@@ -46,10 +46,8 @@ Result<Origin> read_origin(const CheckCommand& command, Console& console) {
     if (!grid) return grid.error();
     Origin origin{*std::move(grid), std::nullopt};
     if (!found) return origin;
-    const auto prefer = command.field.cell_field ? Association::cell : Association::point;
-    Result<PointField> field = find_field(origin.grid, found->name, {prefer}, {command.common.threads, {}});
+    Result<PointField> field = find_chosen(origin.grid, found->name, command.field, console);
     if (!field) return field.error();
-    console.note(field->note);
     origin.field = *std::move(field);
     return origin;
 }
@@ -91,7 +89,7 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     count("coincident vertices", report.coincident_vertices);
     if (report.unused_vertices > 0) count("unused vertices", report.unused_vertices);
     if (report.collapsed_by_welding > 0)
-        count("collapsed by welding", report.collapsed_by_welding, "counted, not blamed");
+        count("collapsed by welding", report.collapsed_by_welding, "counted, no defect");
     count("components", report.components);
     table.row({"Euler characteristic", std::to_string(report.euler)});
     table.row({"genus", genus_text(report.genus)});
@@ -102,13 +100,13 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     return table.text();
 }
 
-std::string findings_table(const std::vector<Finding>& findings) {
+std::string findings_table(const std::vector<Finding>& findings, bool sound) {
     Table table = facts();
     for (const Finding& finding : findings) {
         table.row({finding.what, fmt::format("at {}, {}, {}", shortest(finding.where[0]), shortest(finding.where[1]),
                                              shortest(finding.where[2]))});
     }
-    return table.empty() ? "" : fmt::format("\n{}", table.text());
+    return table.empty() ? "" : fmt::format("\n{}\n{}", sound ? "for information:" : "found:", table.text());
 }
 
 Json check_json(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {
@@ -160,12 +158,8 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     std::optional<Origin> origin;
     if (!command.grid.file.empty()) {
         if (file->surface.edge_ends.empty()) {
-            return Error{
-                ErrorCode::invalid_argument,
-                fmt::format(
-                    "{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends writes it "
-                    "into .vtp and .vtk",
-                    command.surface)};
+            return usage_error("{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends "
+                               "writes it into .vtp and .vtk", command.surface);
         }
         Result<Origin> read = read_origin(command, console);
         if (!read) return read.error();
@@ -176,13 +170,10 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     const Result<SurfaceReport> report = check(file->surface, options, console.run());
     if (!report) return report.error();
 
-    const std::string text = check_table(*report, *file, command) + findings_table(report->findings);
-    if (Result<void> printed = console.print(text); !printed) return printed.error();
-    Json json = check_json(*report, *file, command);
-    json["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(json, command.common.json, console.run().progress); !written)
-        return written.error();
-    return report->sound && (report->clean || !command.strict) ? ExitCode::done : ExitCode::check_says_no;
+    const bool passed = report->sound && (report->clean || !command.strict);
+    const std::string text = check_table(*report, *file, command) + findings_table(report->findings, passed);
+    return finish(console, command.common, text, check_json(*report, *file, command),
+                  passed ? ExitCode::done : ExitCode::check_failed);
 }
 
 } // namespace isotet::cli

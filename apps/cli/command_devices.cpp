@@ -9,7 +9,7 @@
 #include "device_choice.hpp"
 #include "json_output.hpp"
 #include "number_format.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -24,8 +24,8 @@ std::string use_text(const DeviceInfo& device, const DeviceList& list) {
 }
 
 std::string memory_text(const DeviceInfo& device) {
-    return fmt::format("{}{}{}", bytes_text(device.memory),
-                       device.memory_free_known ? fmt::format(", {} free", bytes_text(device.memory_free)) : "",
+    return fmt::format("{}{}{}", format_bytes(device.memory),
+                       device.memory_free_known ? fmt::format(", {} free", format_bytes(device.memory_free)) : "",
                        device.unified_memory ? ", shared with the processor" : "");
 }
 
@@ -36,11 +36,11 @@ void add_rows(Table& table, const DeviceInfo& device, const DeviceList& list) {
     table.row({"Vulkan", device.api});
     if (device.memory == 0) return; // nothing more is known of devices before Vulkan 1.2
     table.row({"memory", memory_text(device)});
-    table.row({"largest buffer", bytes_text(device.allocation_limit)});
+    table.row({"largest buffer", format_bytes(device.allocation_limit)});
     table.row({"workgroups",
                fmt::format("{} x {} x {} of up to {}", grouped(device.workgroups[0]), grouped(device.workgroups[1]),
                            grouped(device.workgroups[2]), grouped(device.workgroup_size))});
-    table.row({"shared memory", fmt::format("{} a workgroup", bytes_text(device.shared_memory))});
+    table.row({"shared memory", fmt::format("{} a workgroup", format_bytes(device.shared_memory))});
     table.row({"subgroup", grouped(device.subgroup_size)});
     table.row({"copies", device.transfer_queue ? "on a queue of their own" : "on the queue of the kernels"});
     if (!device.timestamps) table.row({"times", "of single passes cannot be measured"});
@@ -75,7 +75,7 @@ Result<Tested> test_chosen(const DeviceChoice& choice, DeviceList& list, Console
     if (choice.name.empty()) return Tested{};
     const Result<std::optional<Device>> device = open_device(choice, console);
     if (!device) return device.error();
-    if (!*device) return Error{ErrorCode::invalid_argument, "--device none is no device that could be opened"};
+    if (!*device) return usage_error("--device none is no device that could be opened");
     list.devices = {(*device)->info()};
     return Tested{true, (*device)->notices().empty()};
 }
@@ -99,7 +99,6 @@ Result<ExitCode> run_devices(const DevicesCommand& command) {
     if (!list->unavailable.empty()) console.note(list->unavailable + "; isotet works on the CPU");
     else if (!list->best && !tested->opened)
         console.note("there is no graphics card that can be used; isotet works on the CPU");
-    if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
 
     Json report = json_report("devices");
     report["unavailable"] = list->unavailable.empty() ? Json(nullptr) : Json(json_text(list->unavailable));
@@ -108,10 +107,7 @@ Result<ExitCode> run_devices(const DevicesCommand& command) {
     for (const DeviceInfo& device : list->devices) devices.push_back(json_of(device));
     report["devices"] = std::move(devices);
     report["exact"] = tested->opened ? Json(tested->exact) : Json(nullptr);
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
-        return written.error();
-    return ExitCode::done;
+    return finish(console, command.common, table.text(), std::move(report));
 }
 
 } // namespace isotet::cli

@@ -14,8 +14,7 @@ Result<ExitCode> run_docs(const DocsCommand& command, const std::vector<CommandT
     else if (command.kind == "completion") text = bash_completion(commands);
     else if (command.kind == "markdown") text = markdown(commands);
     else {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("docs got '{}', but it takes man, completion or markdown", command.kind)};
+        return usage_error("docs got '{}', but it takes man, completion or markdown", command.kind);
     }
     if (Result<void> written = write_to_stdout(text); !written) return written.error();
     return ExitCode::done;

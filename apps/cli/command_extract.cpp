@@ -1,23 +1,24 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet extract`: from a grid file to surface files.
 #include <algorithm>
+#include <filesystem>
 #include <span>
 
 #include <fmt/format.h>
 
 #include <isotet/contour.hpp>
 #include <isotet/device_grid.hpp>
+#include <isotet/levels.hpp>
+#include <isotet/process_memory.hpp>
 #include <isotet/write.hpp>
+#include <isotet/write_file.hpp>
 
-#include "cells_left_out.hpp"
 #include "commands.hpp"
 #include "console.hpp"
-#include "core/memory.hpp"
 #include "device_choice.hpp"
 #include "extract_plan.hpp"
 #include "extract_report.hpp"
 #include "number_format.hpp"
-#include "output_paths.hpp"
 #include "stopwatch.hpp"
 #include "thread_count.hpp"
 
@@ -45,8 +46,10 @@ private:
     std::size_t isovalues_together(std::size_t isovalues) const;
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
-    Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::optional<double> time);
+    Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::size_t step);
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
+    OutputKey key(double isovalue, std::size_t step) const;
+    std::string why_empty(double isovalue) const;
     void note_what_the_step_holds();
     void note_what_extracting_found(const SurfaceNumbers& surface);
 
@@ -56,11 +59,12 @@ private:
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
-    Grid grid_;                                    ///< of the step at hand
-    Array field_;                                  ///< its values
+    Grid grid_;         ///< of the step at hand
+    Array field_;       ///< its values
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
+    std::vector<CollectionEntry> series_;          ///< files so far
     ExtractNumbers numbers_;
 };
 
@@ -69,14 +73,13 @@ Result<void> ExtractRun::open_device() {
     const bool required = command_.engine == EngineChoice::vulkan;
     const bool named = !command_.device.name.empty() || command_.device.memory;
     if (named && (command_.engine == EngineChoice::cpu || command_.engine == EngineChoice::reference))
-        return Error{ErrorCode::invalid_argument, "a device is asked for, but only --engine vulkan and auto use one"};
+        return usage_error("a device is asked for, but only --engine vulkan and auto use one");
     const bool wanted = required || (!command_.device.name.empty() && command_.device.name != "none");
     if (!wanted) return {};
     if (command_.method == Method::direct)
-        return Error{ErrorCode::invalid_argument,
-                     "--method direct was asked for, but devices take packed grids only: clusters"};
+        return usage_error("--method direct was asked for, but devices take packed grids only: clusters");
     if (command_.device.name == "none")
-        return Error{ErrorCode::invalid_argument, "--engine vulkan needs a device, but --device is none"};
+        return usage_error("--engine vulkan needs a device, but --device is none");
     Result<std::optional<Device>> device = isotet::cli::open_device(command_.device, console_);
     if (device) {
         device_ = vulkan_engine(**device);
@@ -90,16 +93,14 @@ Result<void> ExtractRun::open_device() {
 
 Result<void> ExtractRun::open() {
     const Stopwatch reading;
-    const OutputNames names(command_.out);
-    const bool fixed_name = !names.by_value() && !names.by_time();
-    if (Result<void> paths =
-            check_output_paths({command_.grid.file}, {fixed_name ? command_.out : "", command_.common.json});
-        !paths) {
+    if (auto known = check_placeholders(command_.out, {"{value}", "{time}", "{step}"}); !known) return known;
+    const bool fixed_name = OutputNames(command_.out).fixed();
+    if (auto paths = check_output_paths({command_.grid.file}, {fixed_name ? command_.out : "", command_.common.json});
+        !paths)
         return paths;
-    }
     if (Result<void> opened = open_device(); !opened) return opened;
     console_.detail("looking at " + command_.grid.file);
-    Result<GridSource> source = GridSource::open(command_.grid, command_.common, console_);
+    Result<GridSource> source = GridSource::open(command_.grid, console_);
     if (!source) return source.error();
     source_ = *std::move(source);
     Result<ExtractPlan> plan = plan_extract(command_, *source_, console_);
@@ -107,6 +108,7 @@ Result<void> ExtractRun::open() {
     plan_ = *std::move(plan);
     numbers_.grid = command_.grid.file;
     numbers_.format = source_->info().format;
+    numbers_.steps = plan_.steps.size();
     numbers_.precision = command_.precision;
     numbers_.threads = thread_count(command_.common.threads);
     numbers_.read_seconds = reading.seconds();
@@ -131,8 +133,8 @@ Result<Contour> ExtractRun::start(ContourInput input) {
                    : options.method ? "asked for"
                                     : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
     predict(input);
-    numbers_.peak_before = core::peak_resident_memory().value_or(0);
-    if (core::forget_peak_memory()) resident_before_ = core::resident_memory();
+    numbers_.peak_before = peak_resident_memory().value_or(0);
+    if (reset_peak_memory()) resident_before_ = resident_memory();
     return Contour::create(std::move(input), options);
 }
 
@@ -142,7 +144,7 @@ void ExtractRun::predict(const ContourInput& input) {
     const Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
     if (!sample) return; // an error that Contour::create() gives, too
     const std::vector<double> levels =
-        levels_of(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
+        evenly_spaced_levels(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
     const std::vector<double>& isovalues = command_.isovalues.empty() ? levels : command_.isovalues;
     const std::size_t together = isovalues_together(isovalues.size());
     double all = 0;
@@ -160,7 +162,8 @@ void ExtractRun::predict(const ContourInput& input) {
     work.gradients = command_.normals == Normals::gradient;
     work.find_range = command_.isovalues.empty();
     work.triangles = all / static_cast<double>(isovalues.size());
-    const Method method = command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
+    const Method method =
+        command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
     numbers_.predicted = estimate(method, work);
 }
 
@@ -171,11 +174,10 @@ Result<void> ExtractRun::load(std::size_t step) {
     grid_ = {};
     Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
-    const auto prefer = command_.field.cell_field ? Association::cell : Association::point;
-    Result<PointField> field = find_field(*grid, plan_.field.name, {prefer}, console_.run());
+    Result<PointField> field =
+        find_chosen(*grid, plan_.field.name, command_.field, console_);
     if (!field) return field.error();
-    console_.note(field->note);
-    Result<StepFields> fields = carried_fields(plan_, *grid, command_.common.threads);
+    Result<StepFields> fields = carried_fields(plan_, *grid, console_.run());
     if (!fields) return fields.error();
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = grid->cells.count();
@@ -191,7 +193,8 @@ Result<void> ExtractRun::load(std::size_t step) {
     } else {
         const Result<ContourUpdate> update = contour_->set(std::move(input), console_.run());
         if (!update) return update.error();
-        if (*update != ContourUpdate::grid) console_.detail("the cells are those of the step before: not packed again");
+        if (*update != ContourUpdate::grid)
+            console_.detail("the cells are those of the step before: not packed again");
     }
     if (contour_->method() == Method::clusters) {
         console_.detail("packing");
@@ -213,10 +216,10 @@ Result<void> ExtractRun::choose_values(std::size_t step) {
     Result<std::vector<double>> isovalues = choose_isovalues(command_, field_, numbers_.field, console_);
     if (!isovalues) return isovalues.error();
     isovalues_ = *std::move(isovalues);
-    if (!plan_.names.by_value() && !plan_.names.by_time()) return {};
+    if (plan_.names.fixed()) return {};
     for (const double isovalue : isovalues_) {
-        const std::string name = plan_.names.name(isovalue, time_of(source_->info(), step));
-        if (Result<void> path = check_output_paths({command_.grid.file, command_.common.json}, {name}); !path)
+        const std::string name = plan_.names.name(key(isovalue, step));
+        if (auto path = check_output_paths({command_.grid.file, command_.common.json, plan_.collection}, {name}); !path)
             return path;
         if (!plan_.names.by_value()) break; // all values go into the same file
     }
@@ -234,25 +237,36 @@ void ExtractRun::note_what_the_step_holds() {
     if (numbers_.pack && numbers_.pack->coarse_clusters > 0)
         where = fmt::format("in {} of {} clusters", grouped(numbers_.pack->coarse_clusters),
                             grouped(numbers_.pack->clusters));
-    else if (coarse_tets_ > 0) where = fmt::format("in {} cut tets", grouped(coarse_tets_));
+    else if (coarse_tets_ > 0) where = fmt::format("in {} active tets", grouped(coarse_tets_));
     if (where.empty()) return;
     console_.note(
         where +
         " rounding to float32 moves points by over a thousandth of the shortest edge; --precision double keeps them");
 }
 
+std::string ExtractRun::why_empty(double isovalue) const {
+    const FieldReport& field = numbers_.field;
+    const std::string value = shortest(isovalue);
+    if (!(field.lower <= field.upper))
+        return fmt::format("isovalue {} gives no surface: field '{}' has no finite value", value, field.name);
+    if (isovalue == field.lower)
+        return fmt::format("{} is the smallest value of '{}': nothing is below it, the surface is empty", value,
+                           field.name);
+    const std::string range = fmt::format("the range of '{}', {} to {}", field.name, shortest(field.lower),
+                                          shortest(field.upper));
+    if (isovalue < field.lower || isovalue > field.upper)
+        return fmt::format("isovalue {} is outside {}: the surface is empty", value, range);
+    return fmt::format("isovalue {} is within {}, but no tet has values on both sides of it: the surface is empty",
+                       value, range);
+}
+
+OutputKey ExtractRun::key(double isovalue, std::size_t step) const {
+    return {isovalue, time_of(source_->info(), step), step, std::max<std::size_t>(source_->info().times.size(), 1)};
+}
+
 void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
     const FieldReport& field = numbers_.field;
-    if (!(field.lower <= field.upper)) {
-        console_.note(fmt::format("isovalue {} gives no surface: field '{}' has no finite value",
-                                  shortest(surface.isovalue), field.name));
-    } else if (surface.triangles == 0) {
-        const bool outside = surface.isovalue < field.lower || surface.isovalue > field.upper;
-        console_.note(fmt::format("isovalue {} {}: the surface is empty; the range of '{}' is {} to {}",
-                                  shortest(surface.isovalue),
-                                  outside ? "is outside the range" : "has nothing below it or is cut by no tet",
-                                  field.name, shortest(field.lower), shortest(field.upper)));
-    }
+    if (surface.triangles == 0) console_.note(why_empty(surface.isovalue));
     if (const std::uint64_t ties = surface.report.false_ties.value_or(0); ties > 0) {
         const bool double_helps = command_.precision == Precision::float32 && !field.unchanged;
         console_.note(fmt::format("isovalue {}: {} point{} tied (equal to it) only by rounding{}",
@@ -267,7 +281,7 @@ void ExtractRun::note_what_extracting_found(const SurfaceNumbers& surface) {
     }
 }
 
-Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::optional<double> time) {
+Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::size_t step) {
     for (const double isovalue : isovalues) console_.detail("extracting " + shortest(isovalue));
     Result<ContourResult> result = contour_->extract(isovalues, console_.run());
     if (!result) return result.error();
@@ -287,13 +301,15 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         numbers.extract_seconds = seconds;
         if (result->engine == "vulkan") numbers.device = result->work;
         numbers.isovalue = isovalues[i];
-        numbers.time = time;
+        numbers.time = time_of(source_->info(), step);
         numbers.report = result->surfaces[i].report;
         numbers.vertices = surface.vertex_count();
         numbers.triangles = surface.triangle_count();
         const Stopwatch measuring;
         numbers.area = area(surface);
         numbers_.measure_seconds += measuring.seconds();
+        if (numbers.triangles == 0 && command_.fail_if_empty)
+            return Error{ErrorCode::invalid_data, "--fail-if-empty: " + why_empty(isovalues[i])};
         note_what_extracting_found(numbers);
     }
     return surfaces;
@@ -302,21 +318,26 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
 Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
     const Stopwatch writing;
     console_.detail("writing " + numbers.file);
+    std::error_code ignored;
+    const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
     const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.run());
     if (!written) return written.error();
     console_.notes(written->notes);
+    if (replaces) console_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));
     numbers.write_seconds = writing.seconds();
+    const double time = numbers.time.value_or(static_cast<double>(series_.size()));
+    const auto same_time = std::ranges::count(series_, time, &CollectionEntry::time);
+    series_.push_back({time, static_cast<std::size_t>(same_time), numbers.file});
     return {};
 }
 
 Result<void> ExtractRun::extract_step(std::size_t step) {
-    const std::optional<double> time = time_of(source_->info(), step);
     const bool one_file = goes_into_one_file();
     std::size_t at_once = contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));
-        Result<std::vector<Surface>> surfaces = extract_pass(pass, time);
+        Result<std::vector<Surface>> surfaces = extract_pass(pass, step);
         if (!surfaces && surfaces.error().code == ErrorCode::out_of_memory && pass.size() > 1 && !one_file) {
             at_once = pass.size() / 2;
             continue;
@@ -326,7 +347,7 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
         const std::size_t first = numbers_.surfaces.size() - pass.size();
         for (std::size_t i = 0; i < pass.size() && !plan_.names.none(); ++i) {
             SurfaceNumbers& numbers = numbers_.surfaces[first + i];
-            numbers.file = plan_.names.name(pass[i], time);
+            numbers.file = plan_.names.name(key(pass[i], step));
             if (one_file) joined.push_back(std::move((*surfaces)[i]));
             else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
         }
@@ -343,9 +364,11 @@ Result<void> ExtractRun::run() {
         if (Result<void> loaded = load(step); !loaded) return loaded;
         if (Result<void> extracted = extract_step(step); !extracted) return extracted;
     }
-    if (const auto peak = core::peak_resident_memory(); peak && resident_before_)
+    if (const auto peak = peak_resident_memory(); peak && resident_before_)
         numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
-    return {};
+    if (plan_.collection.empty()) return {};
+    numbers_.collection = plan_.collection;
+    return write_collection(series_, plan_.collection, console_.run());
 }
 
 } // namespace
@@ -354,12 +377,8 @@ Result<ExitCode> run_extract(const ExtractCommand& command) {
     Console console(command.common);
     ExtractRun run(command, console);
     if (Result<void> done = run.run(); !done) return done.error();
-    if (Result<void> printed = console.print(extract_table(run.numbers())); !printed) return printed.error();
-    Json report = extract_json(run.numbers());
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
-        return written.error();
-    return ExitCode::done;
+    return finish(console, command.common, extract_table(run.numbers(), command.common.verbose),
+                  extract_json(run.numbers()));
 }
 
 } // namespace isotet::cli

@@ -5,7 +5,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "json_output.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -44,12 +44,9 @@ Result<ExitCode> run_formats(const FormatsCommand& command) {
                         {"writes_surface", format.writes_surface},
                         {"needs_vtk", format.needs_vtk}});
     }
-    if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
     Json report = json_report("formats");
     report["formats"] = std::move(list);
-    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
-        return written.error();
-    return ExitCode::done;
+    return finish(console, command.common, table.text(), std::move(report));
 }
 
 } // namespace isotet::cli

@@ -2,16 +2,15 @@
 // `isotet info`: what a grid file holds.
 #include <fmt/format.h>
 
+#include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "core/parallel.hpp"
-#include "field_statistics.hpp"
 #include "grid_source.hpp"
 #include "json_output.hpp"
 #include "number_format.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -33,23 +32,22 @@ struct DescribedField {
     std::vector<ComponentStatistics> components;
 };
 
-std::vector<DescribedField> describe_fields(const Grid& grid, int threads, const Progress& progress) {
+Result<std::vector<DescribedField>> describe_fields(const Grid& grid, const Run& run) {
     std::vector<DescribedField> described;
     for (const Field& field : grid.point_fields) described.push_back({field, "point", {}});
     for (const Field& field : grid.cell_fields) described.push_back({field, "cell", {}});
-    std::vector<Array> arrays;
-    for (const DescribedField& one : described) arrays.push_back(one.field.values);
-    core::with_threads(threads, [&] {
-        auto all = statistics(arrays, progress);
-        for (std::size_t i = 0; i < all.size(); ++i) described[i].components = std::move(all[i]);
-    });
+    for (DescribedField& one : described) {
+        auto components = statistics_of(one.field.values, run);
+        if (!components) return components.error();
+        one.components = *std::move(components);
+    }
     return described;
 }
 
 /// "75, 0 to 7.4", or each of a few.
 std::string times_text(const std::vector<double>& times) {
-    constexpr std::size_t most = 10;
-    if (times.size() > most)
+    constexpr std::size_t max_shown = 10;
+    if (times.size() > max_shown)
         return fmt::format("{}, times {} to {}", times.size(), shortest(times.front()), shortest(times.back()));
     std::string list;
     for (const double time : times) list += (list.empty() ? "" : ", ") + shortest(time);
@@ -184,26 +182,21 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     Console console(command.common);
     const std::string& path = command.grid.file;
     if (Result<void> paths = check_output_paths({path}, {command.common.json}); !paths) return paths.error();
-    const Result<GridSource> source = GridSource::open(command.grid, command.common, console);
+    const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
     const Result<Grid> grid = source->read({}, steps->front(), console);
     if (!grid) return grid.error();
-    Result<GridReport> surveyed = survey(*grid, {.faces = command.survey}, console.run());
+    Result<GridReport> surveyed =
+        survey(*grid, {.faces = command.survey}, console.run());
     if (!surveyed) return surveyed.error();
     const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
-    const std::vector<DescribedField> fields = describe_fields(*grid, console.run().threads, console.run().progress);
-    if (console.cancelled()) return Error{ErrorCode::cancelled, "describing the fields was cancelled"};
-
-    if (Result<void> printed = console.print(grid_table(found, path) + field_table(fields)); !printed)
-        return printed.error();
+    const auto fields = describe_fields(*grid, console.run());
+    if (!fields) return fields.error();
     Json report = json_of(found, path);
-    report["fields"] = json_of(fields);
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
-        return written.error();
-    return ExitCode::done;
+    report["fields"] = json_of(*fields);
+    return finish(console, command.common, grid_table(found, path) + field_table(*fields), std::move(report));
 }
 
 } // namespace isotet::cli

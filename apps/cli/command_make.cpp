@@ -9,7 +9,7 @@
 #include "console.hpp"
 #include "json_output.hpp"
 #include "number_format.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
 
@@ -42,8 +42,7 @@ Result<ExitCode> run_make(const MakeCommand& command) {
         table.row({"field", fmt::format("{} ({})", field.name, name_of(field.values.type()))});
     }
     table.row({"time", fmt::format("make {}, write {}", seconds_text(make_seconds), seconds_text(write_seconds))});
-    table.row({"file", fmt::format("{} ({})", command.out, bytes_text(written->bytes))});
-    if (Result<void> printed = console.print(table.text()); !printed) return printed.error();
+    table.row({"file", fmt::format("{} ({})", command.out, format_bytes(written->bytes))});
 
     Json report = json_report("make");
     report["shape"] = options.shape;
@@ -55,9 +54,7 @@ Result<ExitCode> run_make(const MakeCommand& command) {
     report["seconds"] = {{"make", make_seconds}, {"write", write_seconds}};
     report["file"] = json_text(command.out);
     report["bytes"] = written->bytes;
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> done = write_json(report, command.common.json, console.run().progress); !done) return done.error();
-    return ExitCode::done;
+    return finish(console, command.common, table.text(), std::move(report));
 }
 
 } // namespace isotet::cli

@@ -1,11 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "command_options.hpp"
 
-#include "bench_options.hpp"
-#include "device_choice.hpp"
-#include "option_tree.hpp"
-#include "options.hpp"
-#include "render_options.hpp"
+#include "number_format.hpp"
 
 namespace isotet::cli {
 
@@ -20,11 +16,11 @@ written file; a second Ctrl-C ends the program at once.
 
 Exit status:
   0    done
-  1    a check says no
+  1    a check failed
   2    usage: an option or a name is wrong
   3    a file, or the data in it
   4    the machine: memory, disk, device, standard output
-  5    a fault of isotet: please report it
+  5    a bug of isotet: please report it
   130  interrupted
 )";
 
@@ -37,28 +33,30 @@ boundary faces are those that the tets do not use equally often in both directio
 constexpr const char* extract_details = R"(
 FIELD is taken whole first; only if no field has that name is the part after the last colon a component: x, y, z, mag,
 or a number from 0. x, y and z alone are the coordinates, unless fields are called so. A cell field is averaged to the
-points, weighted by volume.
+points, weighted by volume (ParaView's Cell Data to Point Data takes the plain mean).
 
 OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
-isovalue; with {value} or {time} in OUT there is one file each, named by the shortest decimal that reads back. Files
-that were complete when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of
-the range is taken.
+isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that
+read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is
+written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times. Files that were complete
+when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of the range is taken.
 
-A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give the
-same vertices and triangles in a different order. auto chooses by a fixed rule: clusters from 32 surfaces on (isovalues
-times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the same bytes on
-every machine, unless packing finds too little memory: direct is taken instead, with a note.
+A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
+the same vertices and triangles in a different order. auto chooses by a fixed rule: clusters from 32 surfaces on
+(isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the
+same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a note.
 
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
   isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
-  isotet extract run.pvd 'front-{time}.vtp' -f c -i 0.5 --all-steps
+  isotet extract run.pvd 'front-{step}.vtp' -f c -i 0.5 --all-steps
+  isotet extract grid.vtu surface.vtp -f pressure -i @isovalues.txt --with pressure,velocity
   isotet extract make:kuhn:64:gyroid -i 0
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5 --engine vulkan
 )";
 
 constexpr const char* check_details = R"(
-Says no (exit status 1) when the surface has: an edge that is used unequally often in the two directions where it must
+Fails (exit status 1) if the surface has: an edge that is used unequally often in the two directions where it must
 not be; a triangle with two equal corners; a triangle that occurs twice in the same direction.
 
 Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
@@ -66,12 +64,12 @@ points all lie in one boundary face of the grid's valid tets; with neither they 
 point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
 a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points.
 
-With --strict it also says no to: triangles of zero area, edges with more than two triangles, double sheets (two
+With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
 vertices.
 
-STL has no vertex numbers: its triangles are welded by exact coordinates first. What that collapses is counted, not
-blamed.
+STL has no vertex numbers: its vertices are merged by exact coordinates first. What that collapses is counted, and no
+defect.
 )";
 
 constexpr const char* make_details = R"(
@@ -91,11 +89,12 @@ constexpr const char* formats_details = R"(--format takes the names in the first
 
 constexpr const char* devices_details = R"(
 A device can be used when it has Vulkan 1.2 and what the engine needs; of one that cannot, the reason is told. Software
-devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the CPU.
+devices are used only when asked for, by --device software. Without Vulkan, or without a device, isotet works on the
+CPU.
 
 With --device that device is opened, and its arithmetic is compared with the processor's, bit by bit: in a few thousand
-cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every command
-that uses the device says so.
+cases that are hard to round. Where they differ, surfaces may differ from the CPU's in their last bits, and every
+command that uses the device says so.
 )";
 
 void add_common(const Command& command, CommonOptions& common) {
@@ -123,13 +122,23 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
     command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
-        "Weld points closer than this; 0: exactly equal coordinates");
+        "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
     command.add_flag("--merge-pieces", grid.merge_pieces, "Join pieces without global ids by exact coordinates");
-    command.add_flag("--allow-outside", grid.allow_outside, "Index files may name files outside their own folder");
+    command.add_flag("--allow-outside", grid.allow_outside,
+                     "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
+}
+
+/// Which device, which grid, and what every command has.
+void add_machine_and_input(const Command& command, DeviceChoice& device, GridOptions& grid, CommonOptions& common) {
+    add_device(command, device);
+    add_device_memory(command, device);
+    add_time(command, grid);
+    add_reading(command, grid, "--format");
+    add_common(command, common);
 }
 
 void add_info(const Command& program, InfoCommand& info) {
-    const Command command = program.add_command("info", "Tell what a grid file holds");
+    const Command command = program.add_command("info", "Show what is in a grid file");
     command.add_file("FILE", info.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     add_time(command, info.grid);
     add_reading(command, info.grid, "--format");
@@ -140,9 +149,8 @@ void add_info(const Command& program, InfoCommand& info) {
     command.set_details(info_details);
 }
 
-void add_isovalues(const Command& command, ExtractCommand& extract) {
-    const Option isovalues = command.add_numbers("-i,--isovalue", extract.isovalues, "V[,W...]",
-                                                 "Isovalues, separated by commas; may be repeated");
+void add_levels(const Command& command, ExtractCommand& extract) {
+    const Option isovalues = add_isovalues(command, extract.isovalues);
     command
         .add_count(
             "--levels", {1, 1'000'000}, [&](std::uint64_t n) { extract.levels = n; }, "N",
@@ -158,9 +166,9 @@ void add_surface_arrays(const Command& command, ExtractCommand& extract) {
                                 {{"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}},
                                 "Normals: of the field's gradient, a vertex; of the triangles, a face");
     command.add_texts(
-        "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD",
-        "Carry this point or cell field onto the surface; may be repeated; an empty name carries none. Without it: "
-        "point fields that the format can hold");
+        "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
+        "Carry these point and cell fields onto the surface, separated by commas; may be repeated; an empty name "
+        "carries none. Without it: point fields that the format can hold");
     command.add_flag(
         "--edge-ends", extract.edge_ends,
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
@@ -173,25 +181,24 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_file("FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
     const Option out = command.add_file("OUT", extract.out, "OUT_FILE", "The surface, as -o");
     command.add_file("-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
-    command.add_text("-f,--field", extract.field.name, "FIELD",
-                     "The field to contour; may be left out where there is only one");
-    command.add_flag("--cell-field", extract.field.cell_field,
-                     "Of a name that is both a point and a cell field, the cell field");
-    add_isovalues(command, extract);
+    add_field(command, extract.field, "The field to contour; may be left out where there is only one");
+    add_levels(command, extract);
     add_time(command, extract.grid);
-    command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {time}")
+    command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {step} or {time}")
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
     add_surface_arrays(command, extract);
     command.add_flag("--keep-degenerate", extract.keep_degenerate,
-                     "One vertex for every crossed edge and one or two triangles for every cut tet, ties or not");
+                     "One vertex for every active edge and one or two triangles for every active tet, ties or not");
+    command.add_flag("--fail-if-empty", extract.fail_if_empty,
+                     "An empty surface is an error, exit status 3, and is not written");
     command.add_choice<Precision>("--precision", extract.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
     command.add_choice<std::optional<Method>>(
         "--method", extract.method,
         {{"auto", std::nullopt}, {"clusters", Method::clusters}, {"direct", Method::direct}},
-        "How: clusters packs the grid first, which pays for many surfaces; direct goes through all cells for each "
+        "How: clusters packs the grid once, which pays for many surfaces; direct goes through all cells for each "
         "surface; auto chooses by their number");
     command.add_choice<EngineChoice>(
         "--engine", extract.engine,
@@ -210,43 +217,28 @@ void add_extract(const Command& program, ExtractCommand& extract) {
 }
 
 void add_render(const Command& program, RenderCommand& render) {
-    const Command command = add_render_command(program, render);
-    add_device(command, render.device);
-    add_device_memory(command, render.device);
-    add_time(command, render.grid);
-    add_reading(command, render.grid, "--format");
-    add_common(command, render.common);
+    add_machine_and_input(add_render_command(program, render), render.device, render.grid, render.common);
 }
 
 void add_bench(const Command& program, BenchCommand& bench) {
     const Command command = add_bench_command(program, bench);
-    add_device(command, bench.device);
-    add_device_memory(command, bench.device);
-    add_time(command, bench.grid);
-    add_reading(command, bench.grid, "--format");
+    add_machine_and_input(command, bench.device, bench.grid, bench.common);
     for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces",
                              "--allow-outside", "--cell-field"})
         command.option(name).excludes(command.option("--paper"));
-    add_common(command, bench.common);
 }
 
 void add_check(const Command& program, CheckCommand& check) {
-    const Command command = program.add_command("check", "Measure a surface and look for what should not be there");
+    const Command command = program.add_command("check", "Measure a surface and check it for defects");
     command.add_file("SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
         .required();
-    command.add_flag("--closed", check.closed, "Blame every edge that is used unequally often in the two directions");
+    command.add_flag("--closed", check.closed, "Report every edge that is used unequally often in the two directions");
     const Option grid = command.add_file("--grid", check.grid.file, "FILE",
-                                         "Blame such edges unless they lie in one boundary face of this grid");
-    command
-        .add_text("-f,--field", check.field.name, "FIELD",
-                  "The field that was contoured: tets without a value do not count")
-        .needs(grid);
-    command
-        .add_flag("--cell-field", check.field.cell_field,
-                  "Of a name that is both a point and a cell field, the cell field")
-        .needs(grid);
+                                         "Report such edges unless they lie in one boundary face of this grid");
+    add_field(command, check.field, "The field that was contoured: tets without a value do not count").needs(grid);
+    command.option("--cell-field").needs(grid);
     add_time(command, check.grid);
-    command.add_flag("--strict", check.strict, "Say no to more: see below");
+    command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; without it the name decides");
     add_reading(command, check.grid, "--grid-format");
     for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--merge-pieces"}) {
@@ -287,6 +279,11 @@ void add_devices(const Command& program, DevicesCommand& devices) {
     command.set_details(devices_details);
 }
 
+void add_help(const Command& program, HelpCommand& help) {
+    const Command command = program.add_command("help", "Show the help of a command, or this list");
+    command.add_text("COMMAND", help.topic, "COMMAND", "A command, such as extract");
+}
+
 void add_docs(const Command& program, DocsCommand& docs) {
     const Command command =
         program.add_command("docs", "Print the man page, the bash completion or docs/command-line.md");
@@ -295,6 +292,40 @@ void add_docs(const Command& program, DocsCommand& docs) {
 }
 
 } // namespace
+
+Option add_field(const Command& command, FieldChoice& field, const std::string& description) {
+    const Option name = command.add_text("-f,--field", field.name, "FIELD", description);
+    command.add_flag("--cell-field", field.cell_field, "Use the cell field if a point field has the same name");
+    return name;
+}
+
+Option add_isovalues(const Command& command, std::vector<double>& isovalues) {
+    return command.add_numbers("-i,--isovalue", isovalues, "V[,W...]",
+                               "Isovalues, separated by commas, or @NAME: from that file, separated by blanks, commas "
+                               "or line ends, # begins a comment; may be repeated");
+}
+
+void add_device(const Command& command, DeviceChoice& choice) {
+    command.add_value(
+        "--device",
+        [&choice](const std::string& name) {
+            if (name.empty()) refuse_value("--device", name, "a device of isotet devices, software or none");
+            choice.name = name;
+        },
+        "DEVICE",
+        "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
+        "graphics card");
+}
+
+void add_device_memory(const Command& command, DeviceChoice& choice) {
+    command.add_value(
+        "--device-memory",
+        [&choice](const std::string& text) {
+            choice.memory = parse_bytes(text);
+            if (!choice.memory || *choice.memory == 0) refuse_value("--device-memory", text, "bytes, such as 2GB");
+        },
+        "BYTES", "Memory of the device to take at most, such as 2GB; without it what is free");
+}
 
 void add_commands(const Command& program, CommandLine& line) {
     program.set_details(program_details);
@@ -307,6 +338,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_make(program, line.make);
     add_formats(program, line.formats);
     add_devices(program, line.devices);
+    add_help(program, line.topic);
     add_docs(program, line.docs);
 }
 

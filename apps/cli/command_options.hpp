@@ -1,13 +1,23 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The commands and options of the program, as --help lists them.
+// The options of every command, written into the option tree once.
 #pragma once
+
+#include <string>
+
+#include "option_tree.hpp"
+#include "options.hpp"
 
 namespace isotet::cli {
 
-class Command;
-struct CommandLine;
-
-/// Adds them all; `line` is filled when the command line is parsed.
 void add_commands(const Command& program, CommandLine& line);
+
+Command add_render_command(const Command& program, RenderCommand& render);
+Command add_bench_command(const Command& program, BenchCommand& bench);
+
+// Options that several commands have.
+Option add_field(const Command& command, FieldChoice& field, const std::string& description);
+Option add_isovalues(const Command& command, std::vector<double>& isovalues);
+void add_device(const Command& command, DeviceChoice& device);
+void add_device_memory(const Command& command, DeviceChoice& device);
 
 } // namespace isotet::cli

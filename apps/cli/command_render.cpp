@@ -14,12 +14,10 @@
 #include "console.hpp"
 #include "device_choice.hpp"
 #include "json_output.hpp"
-#include "output_paths.hpp"
+#include "output_names.hpp"
 #include "render_frames.hpp"
 #include "render_input.hpp"
 #include "render_report.hpp"
-#include "render_scene.hpp"
-#include "render_tets.hpp"
 #include "stopwatch.hpp"
 
 namespace isotet::cli {
@@ -36,13 +34,13 @@ std::string name_of_picture(const RenderCommand& command) {
 }
 
 /// Draws the scene, and writes beside it what belongs to it.
-Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, const RenderCommand& command,
+Result<Picture> draw_annotated(Renderer& renderer, const RenderInput& input, const RenderCommand& command,
                                double azimuth, Console& console) {
     PictureOptions options = command.picture;
     options.camera = camera_of(command.view, command.parallel ? Projection::parallel : Projection::perspective);
     const PictureSize whole{options.width, options.height};
     options.camera.orbit(azimuth, 0);
-    const Annotation annotation = scene.annotation();
+    const Annotation annotation = annotation_of(command, input);
     std::optional<PictureSize> room;
     if (!annotation.empty()) {
         const Result<std::optional<PictureSize>> left = room_beside(annotation, whole);
@@ -61,23 +59,27 @@ Result<Picture> draw_annotated(Renderer& renderer, const RenderScene& scene, con
         options.width = room->width;
         options.height = room->height;
     }
-    scene.fit(options.camera, static_cast<double>(options.width) / options.height);
-    Result<Picture> picture = renderer.draw(scene.scene(), options, console.run());
+    input.scene->fit(options.camera, static_cast<double>(options.width) / options.height,
+                     command.orbit > 0 ? IsosurfaceScene::Fit::orbit : IsosurfaceScene::Fit::once);
+    Result<Picture> picture = renderer.draw(input.scene->scene(), options, console.run());
     if (!picture || !room) return picture;
     return annotate(*picture, annotation, whole, options.background);
 }
 
 /// Extracts, draws and writes one picture after another; returns the last one.
 Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Renderer& renderer,
-                            RenderScene& scene, PictureFiles& files, PictureNumbers& numbers, Console& console) {
+                            RenderInput& input, PictureFiles& files, PictureNumbers& numbers, Console& console) {
     Result<Picture> picture = Error{};
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (console.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (frames.size() > 1) console.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
-        if (i == 0 || frames[i].isovalues != frames[i - 1].isovalues)
-            if (Result<void> shown = scene.show(frames[i].isovalues); !shown) return shown.error();
+        if (i == 0 || frames[i].isovalues != frames[i - 1].isovalues) {
+            if (auto shown = input.scene->show(frames[i].isovalues, console.run()); !shown) return shown.error();
+            console.notes(input.scene->take_notes());
+            note_empty_surfaces(input, console);
+        }
         const Stopwatch drawing;
-        picture = draw_annotated(renderer, scene, command, frames[i].azimuth, console);
+        picture = draw_annotated(renderer, input, command, frames[i].azimuth, console);
         if (!picture) return picture;
         numbers.draw_seconds += drawing.seconds();
         const Stopwatch writing;
@@ -108,13 +110,28 @@ Result<void> compare(const Picture& picture, const Picture& reference, const Ren
 Result<PictureFiles> open_files(const RenderCommand& command) {
     const Result<std::size_t> pictures = count_frames(command);
     if (!pictures) return pictures.error();
-    Result<PictureFiles> files = PictureFiles::open(name_of_picture(command), *pictures, command.frames_a_second);
+    Result<PictureFiles> files = PictureFiles::open(name_of_picture(command), *pictures, command.frames_per_second);
     if (!files) return files;
     std::vector<std::string> outputs = files->names();
     outputs.push_back(command.common.json);
     if (Result<void> paths = check_output_paths({command.grid.file, command.reference}, outputs); !paths)
         return paths.error();
     return files;
+}
+
+/// Refuses options that say how surfaces are extracted, or coloured, where tets are drawn, and an index without them.
+Result<void> check_method(const RenderCommand& command) {
+    if (!command.method.draw) {
+        if (command.index)
+            return usage_error("--index finds the tets for a method that draws tets, but surfaces are drawn: --method");
+        return {};
+    }
+    const std::string_view name = name_of(*command.method.draw);
+    if (!command.color_by.empty())
+        return usage_error("--color-by colours surfaces, but --method {} makes none", name);
+    if (command.engine != EngineChoice::automatic)
+        return usage_error("--engine says what extracts, but --method {} extracts nothing", name);
+    return {};
 }
 
 } // namespace
@@ -134,28 +151,23 @@ Result<ExitCode> run_render(const RenderCommand& command) {
     if (!device) return device.error();
     Result<Renderer> renderer = Renderer::create(*device);
     if (!renderer) return renderer.error();
-    const Result<RenderInput> input = read_render_input(command, console);
+    Result<RenderInput> input = read_render_input(command, *device, console);
     if (!input) return input.error();
     const Result<std::vector<RenderFrame>> frames = frames_of(command, input->isovalues);
     if (!frames) return frames.error();
-    RenderScene scene(command, *input, *device, console);
-    if (Result<void> loaded = scene.load(); !loaded) return loaded.error();
 
     PictureNumbers numbers;
     numbers.file = files->out();
     numbers.pictures = frames->size();
-    const Result<Picture> last = draw_frames(*frames, command, *renderer, scene, *files, numbers, console);
+    const Result<Picture> last = draw_frames(*frames, command, *renderer, *input, *files, numbers, console);
     if (!last) return last.error();
     if (reference)
         if (Result<void> compared = compare(*last, *reference, command, numbers, console); !compared)
             return compared.error();
-    if (Result<void> printed = console.print(render_table(command, *input, scene, *device, numbers)); !printed)
-        return printed.error();
-    Json report = render_json(command, *input, scene, *device, numbers);
-    report["notes"] = json_texts(console.noted());
-    if (Result<void> written = write_json(report, command.common.json, console.run().progress); !written)
-        return written.error();
-    return numbers.differs.value_or(0) > command.threshold ? ExitCode::check_says_no : ExitCode::done;
+    const bool differs = numbers.differs.value_or(0) > command.threshold;
+    return finish(console, command.common, render_table(command, *input, *device, numbers),
+                  render_json(command, *input, *device, numbers),
+                  differs ? ExitCode::check_failed : ExitCode::done);
 }
 
 } // namespace isotet::cli

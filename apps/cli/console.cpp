@@ -16,7 +16,7 @@ Console::Console(const CommonOptions& options)
       bar_(!options.quiet && stderr_is_terminal()) {
     run_.threads = options.threads;
     run_.progress.report = [this](std::string_view step, double fraction) { bar_.show(step, fraction); };
-    run_.progress.cancel = &interrupted;
+    run_.progress.cancel = &stop_requested;
 }
 
 void Console::note(const std::string& sentence) {

@@ -18,8 +18,7 @@ class Console {
 public:
     explicit Console(const CommonOptions& options);
 
-    /// A sentence for the user, on standard error and in the JSON; said once however often it is noted. Not with
-    /// --quiet.
+    /// A sentence for the user, on standard error and in the JSON; once however often it is noted. Not with --quiet.
     void note(const std::string& sentence);
     void notes(const std::vector<std::string>& sentences);
 
@@ -31,7 +30,7 @@ public:
 
     const std::vector<std::string>& noted() const noexcept { return noted_; }
 
-    /// Threads as asked for; progress draws the bar and hears Ctrl-C. The console must outlive it.
+    /// Threads as asked for; progress draws the bar and stops at Ctrl-C. The console must outlive it.
     const Run& run() const noexcept { return run_; }
     bool cancelled() const noexcept { return run_.progress.cancelled(); }
 

@@ -5,32 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "number_format.hpp"
-#include "option_tree.hpp"
-
 namespace isotet::cli {
-
-void add_device(const Command& command, DeviceChoice& choice) {
-    command.add_value(
-        "--device",
-        [&choice](const std::string& name) {
-            if (name.empty()) refuse_value("--device", name, "a device of isotet devices, software or none");
-            choice.name = name;
-        },
-        "DEVICE",
-        "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
-        "graphics card");
-}
-
-void add_device_memory(const Command& command, DeviceChoice& choice) {
-    command.add_value(
-        "--device-memory",
-        [&choice](const std::string& text) {
-            choice.memory = parse_bytes(text);
-            if (!choice.memory || *choice.memory == 0) refuse_value("--device-memory", text, "bytes, such as 2GB");
-        },
-        "BYTES", "Memory of the device to take at most, such as 2GB; without it what is free");
-}
 
 Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console) {
     if (choice.name == "none") return std::optional<Device>();
@@ -42,8 +17,7 @@ Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& c
 }
 
 Result<Device> open_drawing_device(const DeviceChoice& choice, Console& console) {
-    if (choice.name == "none")
-        return Error{ErrorCode::invalid_argument, "--device is none, but only a device can draw"};
+    if (choice.name == "none") return usage_error("--device is none, but only a device can draw");
     Result<std::optional<Device>> device = open_device(choice, console);
     if (!device && choice.name.empty() && is_of_device(device.error().code)) {
         const Result<DeviceList> list = list_devices();

@@ -12,11 +12,6 @@
 
 namespace isotet::cli {
 
-class Command;
-
-void add_device(const Command& command, DeviceChoice& choice);
-void add_device_memory(const Command& command, DeviceChoice& choice);
-
 /// Opens the device that was chosen, and notes what the user should know of it. Nothing for --device none.
 Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console);
 

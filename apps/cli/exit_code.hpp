@@ -2,19 +2,29 @@
 // The exit status of the program: who has to act.
 #pragma once
 
+#include <utility>
+
+#include <fmt/format.h>
+
 #include <isotet/result.hpp>
 
 namespace isotet::cli {
 
 enum class ExitCode : int {
     done = 0,
-    check_says_no = 1, ///< `check` found what the rule asked for does not allow
+    check_failed = 1, ///< `check` found what the rule asked for does not allow
     usage = 2,
     data = 3,    ///< a file, or what is in it
     machine = 4, ///< memory, disk, device
     fault = 5,   ///< of isotet
     interrupted = 130,
 };
+
+/// The error for an option or a name that is wrong.
+template <class... Values>
+Error usage_error(fmt::format_string<Values...> sentence, Values&&... values) {
+    return {ErrorCode::invalid_argument, fmt::format(sentence, std::forward<Values>(values)...)};
+}
 
 inline ExitCode exit_code_of(ErrorCode code) noexcept {
     switch (code) {

@@ -2,13 +2,14 @@
 #include "extract_plan.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <isotet/levels.hpp>
+
 #include "number_format.hpp"
-#include "output_paths.hpp"
 
 namespace isotet::cli {
 
@@ -28,9 +29,7 @@ Result<Holds> holds(const ExtractCommand& command) {
     for (const auto& [asked, option] :
          {std::pair{command.edge_ends, "--edge-ends"}, {command.source_cells, "--source-cells"}}) {
         if (asked && !vtk) {
-            return Error{
-                ErrorCode::invalid_argument,
-                fmt::format("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name)};
+            return usage_error("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name);
         }
     }
     return Holds{format->name != "stl" && format->name != "obj", vtk};
@@ -38,28 +37,34 @@ Result<Holds> holds(const ExtractCommand& command) {
 
 Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan, const FileInfo& info) {
     if (plan.names.none()) return {};
-    if (plan.steps.size() > 1 && !plan.names.by_time()) {
-        return Error{
-            ErrorCode::invalid_argument,
-            fmt::format("--all-steps has {} time steps, but OUT, '{}', has no {{time}}: there is one file a step",
-                        plan.steps.size(), command.out)};
-    }
+    if (plan.steps.size() > 1 && !plan.names.by_step())
+        return usage_error("--all-steps has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
+                           "one file for each step", plan.steps.size(), command.out);
     if (!plan.names.by_time()) return {};
     std::set<double> times;
     for (const std::size_t step : plan.steps) {
         const std::optional<double> time = time_of(info, step);
-        if (!time) {
-            return Error{ErrorCode::invalid_argument,
-                         fmt::format("OUT, '{}', has {{time}}, but the grid knows no time", command.out)};
-        }
-        if (!times.insert(*time).second) {
-            return Error{
-                ErrorCode::invalid_argument,
-                fmt::format("several time steps have the time {}, but each needs a file of its own: choose by --step",
-                            shortest(*time))};
-        }
+        if (!time)
+            return usage_error("OUT, '{}', has {{time}}, but the grid knows no time; {{step}} is its number",
+                               command.out);
+        if (!times.insert(*time).second)
+            return usage_error("several time steps have the time {}, but each needs a file of its own: {{step}} in "
+                               "OUT tells them apart", shortest(*time));
     }
     return {};
+}
+
+/// The collection of a series that ParaView opens; nothing where there is no series.
+Result<std::string> plan_collection(const ExtractCommand& command, const ExtractPlan& plan, Console& console) {
+    if (plan.steps.size() < 2 || ending_of(command.out) != ".vtp") return std::string();
+    std::string collection = plan.names.collection();
+    if (same_file(collection, command.grid.file)) {
+        console.note(fmt::format("no collection of the series is written: '{}' is the input", collection));
+        return std::string();
+    }
+    if (auto paths = check_output_paths({command.grid.file}, {collection, command.common.json}); !paths)
+        return paths.error();
+    return collection;
 }
 
 /// --with, or all point fields that the format can hold; nothing means all.
@@ -94,6 +99,9 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     if (!steps) return steps.error();
     plan.steps = *std::move(steps);
     if (Result<void> names = check_names(command, plan, source.info()); !names) return names.error();
+    Result<std::string> collection = plan_collection(command, plan, console);
+    if (!collection) return collection.error();
+    plan.collection = *std::move(collection);
 
     Result<FoundField> field = choose_field(source, command.field);
     if (!field) return field.error();
@@ -113,17 +121,6 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     return plan;
 }
 
-std::vector<double> levels_of(double lower, double upper, std::uint64_t count) {
-    std::vector<double> levels;
-    for (std::uint64_t k = 1; k <= count; ++k) {
-        const auto part = static_cast<double>(k), parts = static_cast<double>(count + 1);
-        const double level = lower + part * (upper - lower) / parts;
-        // Where max - min is too large for a double, the same sum in another order.
-        levels.push_back(std::isfinite(level) ? level : lower * (1 - part / parts) + upper * (part / parts));
-    }
-    return levels;
-}
-
 Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const Array& field,
                                              const FieldReport& packed, Console& console) {
     std::vector<double> isovalues = command.isovalues;
@@ -135,7 +132,7 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
                             "is nothing to choose one from",
                             packed.name)};
         }
-        isovalues = levels_of(packed.lower, packed.upper, std::max<std::uint64_t>(command.levels, 1));
+        isovalues = evenly_spaced_levels(packed.lower, packed.upper, std::max<std::uint64_t>(command.levels, 1));
         if (command.levels == 0) {
             console.note(fmt::format("no isovalue was given: {}, the middle of the range {} to {}, was taken",
                                      shortest(isovalues.front()), shortest(packed.lower), shortest(packed.upper)));
@@ -156,7 +153,7 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
     return distinct;
 }
 
-Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int threads) {
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run) {
     StepFields fields;
     if (!plan.carried) {
         fields.point = grid.point_fields;
@@ -172,7 +169,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int
         if (has(plan.carried->cell, field)) fields.cell.push_back(field);
     }
     for (const FoundField& component : plan.carried->components) {
-        const Result<PointField> found = find_field(grid, component.name, {}, {threads, {}});
+        const Result<PointField> found = find_field(grid, component.name, {}, run);
         if (!found) return found.error();
         fields.point.push_back({component.name, found->values});
     }

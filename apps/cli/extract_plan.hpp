@@ -21,6 +21,7 @@ namespace isotet::cli {
 
 struct ExtractPlan {
     OutputNames names{""};
+    std::string collection; ///< a .pvd file for the series; empty: none
     std::vector<std::size_t> steps;
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
@@ -31,10 +32,6 @@ struct ExtractPlan {
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
 Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource& source, Console& console);
 
-/// min + k (max - min) / (N + 1), k = 1..N: what --levels asks for, or the middle of the range where nothing is asked
-/// for.
-std::vector<double> levels_of(double lower, double upper, std::uint64_t count);
-
 /// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
 /// Errors   invalid_data: levels of a field without a finite value
 Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const Array& field,
@@ -44,6 +41,6 @@ Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, cons
 struct StepFields {
     std::vector<Field> point, cell;
 };
-Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, int threads);
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run);
 
 } // namespace isotet::cli

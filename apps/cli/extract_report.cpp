@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "core/memory.hpp"
+#include <isotet/process_memory.hpp>
+
 #include "number_format.hpp"
 #include "report.hpp"
 
@@ -27,20 +28,20 @@ namespace {
 
 /// The system's own count is reset when the first grid is there.
 std::uint64_t process_peak_bytes(const ExtractNumbers& numbers) {
-    return std::max(numbers.peak_before, core::peak_resident_memory().value_or(0));
+    return std::max(numbers.peak_before, peak_resident_memory().value_or(0));
 }
 
 std::string memory_text(const ExtractNumbers& numbers) {
-    const std::string rest = fmt::format("extracting {}, whole process {}", bytes_text(numbers.transient_peak()),
-                                         bytes_text(process_peak_bytes(numbers)));
+    const std::string rest = fmt::format("extracting {}, whole process {}", format_bytes(numbers.transient_peak()),
+                                         format_bytes(process_peak_bytes(numbers)));
     if (!numbers.pack) return rest;
     const PackReport& pack = *numbers.pack;
-    std::string text = "packed " + bytes_text(pack.bytes);
+    std::string text = "packed " + format_bytes(pack.bytes);
     if (pack.tets > 0) {
         text += fmt::format(" ({:.1f} bytes a tet)", static_cast<double>(pack.bytes) / static_cast<double>(pack.tets));
     }
-    if (pack.source_bytes > 0) text += ", source cells " + bytes_text(pack.source_bytes);
-    if (pack.gradient_bytes > 0) text += ", gradients " + bytes_text(pack.gradient_bytes);
+    if (pack.source_bytes > 0) text += ", source cells " + format_bytes(pack.source_bytes);
+    if (pack.gradient_bytes > 0) text += ", gradients " + format_bytes(pack.gradient_bytes);
     return text + ", " + rest;
 }
 
@@ -48,6 +49,7 @@ std::string field_text(const ExtractNumbers& numbers) {
     const FieldReport& field = numbers.field;
     std::string text = field.name + (numbers.averaged ? " (cell field, averaged to the points)" : "");
     if (field.lower <= field.upper) text += fmt::format(", {} to {}", shortest(field.lower), shortest(field.upper));
+    if (numbers.steps > 1) text += " in the last time step";
     if (field.no_data > 0) text += fmt::format(", no data at {} points", grouped(field.no_data));
     if (field.infinite > 0) text += fmt::format(", infinite at {}", grouped(field.infinite));
     return text;
@@ -63,7 +65,7 @@ std::string device_text(const ExtractNumbers& numbers) {
         sum.page_loads += surface.device->page_loads;
     }
     return fmt::format("busy {}; up {}, down {}, {} pages loaded again", seconds_text(sum.device_seconds),
-                       bytes_text(sum.uploaded_bytes), bytes_text(sum.downloaded_bytes), grouped(sum.page_loads));
+                       format_bytes(sum.uploaded_bytes), format_bytes(sum.downloaded_bytes), grouped(sum.page_loads));
 }
 
 /// What packing counts.
@@ -88,10 +90,10 @@ std::string time_text(const ExtractNumbers& numbers) {
 
 std::string choice_text(const ExtractNumbers& numbers) {
     std::string text = fmt::format("took {}", seconds_text(numbers.work_seconds()));
-    if (numbers.peak_bytes) text += " and " + bytes_text(*numbers.peak_bytes);
+    if (numbers.peak_bytes) text += " and " + format_bytes(*numbers.peak_bytes);
     if (numbers.predicted)
         text = fmt::format("{} and {} predicted, {}", seconds_text(numbers.predicted->seconds),
-                           bytes_text(numbers.predicted->bytes), text);
+                           format_bytes(numbers.predicted->bytes), text);
     return text;
 }
 
@@ -99,13 +101,14 @@ std::string engine_text(const ExtractNumbers& numbers) {
     return numbers.on_device() ? "vulkan on " + numbers.device : std::string(numbers.engine);
 }
 
-std::string facts_table(const ExtractNumbers& numbers) {
+std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
     Table table = facts();
-    table.row({"grid", fmt::format("{} ({})", numbers.grid, numbers.format)});
-    table.row({"cells", grouped(numbers.cells)});
+    table.row({"grid", fmt::format("{} ({}), {}", numbers.grid, numbers.format, counted(numbers.cells, "cell"))});
     if (numbers.cells_left_out > 0) table.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
-    if (numbers.pack) add_pack_rows(*numbers.pack, table);
     table.row({"field", field_text(numbers)});
+    if (!numbers.collection.empty()) table.row({"series", numbers.collection});
+    if (!verbose) return table.text();
+    if (numbers.pack) add_pack_rows(*numbers.pack, table);
     table.row({"method", fmt::format("{} ({})", name_of(numbers.method), numbers.why)});
     table.row({"", choice_text(numbers)});
     table.row({"engine", fmt::format("{}, {} precision, {} thread{}", engine_text(numbers),
@@ -119,23 +122,26 @@ std::string facts_table(const ExtractNumbers& numbers) {
 
 } // namespace
 
-std::string extract_table(const ExtractNumbers& numbers) {
-    const auto any = [&](const auto& holds) {
-        return std::any_of(numbers.surfaces.begin(), numbers.surfaces.end(), holds);
-    };
+std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
+    const auto any = [&](const auto& holds) { return std::ranges::any_of(numbers.surfaces, holds); };
     const bool times = any([](const SurfaceNumbers& surface) { return surface.time.has_value(); });
     const bool files = any([](const SurfaceNumbers& surface) { return !surface.file.empty(); });
     using enum Table::Align;
-    Table table({right, right, right, right, right, right, right, right, left});
-    table.row({"isovalue", times ? "time" : "", "tied points", "vertices", "triangles", "area", "extract",
-               files ? "write" : "", files ? "file" : ""});
+    Table table({right, right, right, right, right, left, right, right, right});
+    table.row({"isovalue", times ? "time" : "", "triangles", "vertices", "area", files ? "file" : "",
+               verbose ? "tied points" : "", verbose ? "extract" : "", verbose && files ? "write" : ""});
     for (const SurfaceNumbers& surface : numbers.surfaces) {
-        table.row({shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "",
-                   grouped(surface.report.tied_points), grouped(surface.vertices), grouped(surface.triangles),
-                   rounded(surface.area), seconds_text(surface.extract_seconds),
-                   files ? seconds_text(surface.write_seconds) : "", surface.file});
+        std::vector<std::string> row{shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "",
+                                     grouped(surface.triangles), grouped(surface.vertices), rounded(surface.area),
+                                     surface.file};
+        if (verbose) {
+            row.push_back(grouped(surface.report.tied_points));
+            row.push_back(seconds_text(surface.extract_seconds));
+            if (files) row.push_back(seconds_text(surface.write_seconds));
+        }
+        table.row(std::move(row));
     }
-    return facts_table(numbers) + "\n" + table.text();
+    return table.text() + "\n" + facts_table(numbers, verbose);
 }
 
 Json extract_json(const ExtractNumbers& numbers) {
@@ -188,6 +194,7 @@ Json extract_json(const ExtractNumbers& numbers) {
                                      {"page_loads", surface.device->page_loads}};
     }
     report["surfaces"] = std::move(list);
+    report["collection"] = numbers.collection.empty() ? Json(nullptr) : json_text(numbers.collection);
     return report;
 }
 

@@ -34,7 +34,8 @@ struct ExtractNumbers {
     std::size_t cells = 0;
     std::optional<PackReport> pack; ///< of the last packing; nothing where nothing is packed
     std::uint64_t cells_left_out = 0;
-    FieldReport field; ///< of the last time step
+    FieldReport field;     ///< of the last time step
+    std::size_t steps = 1; ///< time steps
     bool averaged = false;
     Precision precision = Precision::float32;
     Method method = Method::direct;          ///< of the last surface
@@ -50,13 +51,15 @@ struct ExtractNumbers {
     double measure_seconds = 0;    ///< for the areas
     std::uint64_t peak_before = 0; ///< of the process, with the first grid
     std::vector<SurfaceNumbers> surfaces;
+    std::string collection; ///< of a series; empty: none
 
     std::uint64_t transient_peak() const;
     double work_seconds() const; ///< packing, uploading, extracting: what is predicted
     bool on_device() const { return engine == "vulkan"; }
 };
 
-std::string extract_table(const ExtractNumbers& numbers);
+/// The surfaces, then the grid and the field; `verbose`: also how they were made.
+std::string extract_table(const ExtractNumbers& numbers, bool verbose);
 Json extract_json(const ExtractNumbers& numbers);
 
 } // namespace isotet::cli

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <isotet/field_statistics.hpp>
+
 namespace isotet::cli {
 
 namespace {
@@ -15,27 +17,27 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
 
-/// "'a', 'b', 'c' and 12 more".
-std::string list_of(const std::vector<std::string>& names) {
-    constexpr std::size_t most = 12;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(names.size(), most); ++i)
-        list += fmt::format("{}'{}'", i ? ", " : "", names[i]);
-    if (names.size() > most) list += fmt::format(" and {} more", names.size() - most);
-    return list;
-}
-
 std::vector<std::string> all_names(const GridSource& source) {
     std::vector<std::string> names = source.names(Association::point);
     add_names(names, source.names(Association::cell));
     return names;
 }
 
-Error no_such_field(const GridSource& source, const std::string& name) {
-    const std::vector<std::string> names = nearest_first(name, all_names(source));
-    const std::string there =
-        names.empty() ? "the grid has none; x, y and z are its coordinates" : "the grid has " + list_of(names);
-    return {ErrorCode::invalid_argument, fmt::format("there is no field '{}': {}", name, there)};
+/// Adds what one argument of --with names.
+Result<void> add_carried(const GridSource& source, const std::string& name, CarriedFields& carried) {
+    const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
+    if (has(point, name)) add_names(carried.point, {name});
+    else if (has(cell, name)) add_names(carried.cell, {name});
+    else if (const auto match = match_field_name(name, point))
+        carried.components.push_back({name, {match->field}, {}});
+    else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
+    else if (match_field_name(name, cell))
+        return usage_error("--with got '{}', a component of a cell field, but cell fields are carried whole", name);
+    else if (const std::size_t comma = name.find(','); comma != std::string::npos) {
+        if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;
+        return add_carried(source, name.substr(comma + 1), carried);
+    } else if (!name.empty()) return source.no_such_field(name);
+    return {};
 }
 
 } // namespace
@@ -53,40 +55,66 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
         if (names.size() != 1) {
             const std::string there = names.empty()
                                           ? "none; -f x, y or z contours a coordinate"
-                                          : fmt::format("{}: {}; -f chooses one", names.size(), list_of(names));
-            return Error{ErrorCode::invalid_argument, "no field was named, and the grid has " + there};
+                                          : fmt::format("{}: {}; -f chooses one", names.size(), quoted_list(names));
+            return usage_error("no field was named, and the grid has {}", there);
         }
         found.name = names.front();
     }
     if (const auto match = match_field_name(found.name, source.names(Association::point))) found.point = {match->field};
     if (const auto match = match_field_name(found.name, source.names(Association::cell))) found.cell = {match->field};
     if (found.point.empty() && found.cell.empty() && !is_coordinate(found.name))
-        return no_such_field(source, found.name);
+        return source.no_such_field(found.name);
     if (choice.cell_field && found.cell.empty()) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("--cell-field was asked for, but '{}' is no cell field", found.name)};
+        return usage_error("--cell-field was asked for, but '{}' is no cell field", found.name);
     }
     return found;
 }
 
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names) {
-    const std::vector<std::string> point = source.names(Association::point);
-    const std::vector<std::string> cell = source.names(Association::cell);
     CarriedFields carried;
-    for (const std::string& name : names) {
-        if (name.empty()) continue;
-        if (has(point, name)) add_names(carried.point, {name});
-        else if (has(cell, name)) add_names(carried.cell, {name});
-        else if (const auto match = match_field_name(name, point))
-            carried.components.push_back({name, {match->field}, {}});
-        else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
-        else if (match_field_name(name, cell)) {
-            return Error{
-                ErrorCode::invalid_argument,
-                fmt::format("--with got '{}', a component of a cell field, but cell fields are carried whole", name)};
-        } else return no_such_field(source, name);
-    }
+    for (const std::string& name : names)
+        if (auto added = add_carried(source, name, carried); !added) return added.error();
     return carried;
+}
+
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
+                               Console& console) {
+    const auto prefer = choice.cell_field ? Association::cell : Association::point;
+    Result<PointField> field = find_field(grid, name, {prefer}, console.run());
+    if (field) console.note(field->note);
+    return field;
+}
+
+Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
+                              const std::string& beside, Console& console, Grid& grid) {
+    FieldsToRead read;
+    std::string name = choice.name;
+    const std::size_t fields = source.info().fields.size();
+    if (!name.empty() || fields <= 1) {
+        const Result<FoundField> found = choose_field(source, choice);
+        if (!found) return found.error();
+        name = found->name;
+        read = {found->point, found->cell};
+        if (!beside.empty()) {
+            const Result<FoundField> other = choose_field(source, {beside, false});
+            if (!other) return other.error();
+            add_names(*read.point, other->point);
+            add_names(*read.cell, other->cell);
+        }
+    }
+    Result<Grid> all = source.read(read, step, console);
+    if (!all) return all.error();
+    grid = *std::move(all);
+    if (name.empty()) {
+        name = most_varied_field(grid);
+        if (name.empty())
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("none of the {} fields has two different values: there is nothing to contour; "
+                                     "-f x, y or z contours a coordinate",
+                                     fields)};
+        console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
+    }
+    return find_chosen(grid, name, choice, console);
 }
 
 } // namespace isotet::cli

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Which fields a command needs, decided by name before anything is read.
+// Which fields a command needs: decided by name before anything is read, where a name was given.
 #pragma once
 
 #include <string>
@@ -31,11 +31,23 @@ struct CarriedFields {
     std::vector<FoundField> components; ///< components of point fields
 };
 
-/// What --with names; each a point field, else a cell field, else a component of a point field. Empty names are no
-/// field.
+/// What --with names; each a point field, else a cell field, else a component of a point field, else a list of these
+/// separated by commas. Empty names are no field.
 Result<CarriedFields> choose_carried(const GridSource& source, const std::vector<std::string>& names);
 
 /// The fields of one read: without repetition.
 void add_names(std::vector<std::string>& names, const std::vector<std::string>& more);
+
+/// find_field() as a FieldChoice means it, with its note.
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
+                               Console& console);
+
+/// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which the one
+/// that varies most is taken, with a note.
+///
+/// `beside`   the name of another field, or empty
+/// Errors     as choose_field() and find_field(); invalid_data when none is named and none varies
+Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
+                              const std::string& beside, Console& console, Grid& grid);
 
 } // namespace isotet::cli

@@ -2,12 +2,15 @@
 #include "grid_source.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "coincident_points.hpp"
+#include <isotet/grid_counts.hpp>
+
 #include "number_format.hpp"
+#include "output_names.hpp"
 
 namespace isotet::cli {
 
@@ -25,9 +28,52 @@ FileInfo info_of(const MakeOptions& made) {
     return info;
 }
 
+std::string coincident_points_note(const Grid& grid) {
+    const CoincidentPoints found = estimate_coincident_points(grid);
+    if (found.points == 0) return {};
+    return fmt::format("{}{} coincide{} with other points: the surface has seams there; --merge-points 0 joins them",
+                       found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "");
+}
+
+/// Merges points, and notes what that did.
+Result<Grid> merged(const Grid& grid, double tolerance, Console& console) {
+    Result<MergedPoints> result = merge_points(grid, tolerance, console.run());
+    if (!result && result.error().code == ErrorCode::invalid_argument)
+        return Error{result.error().code, "--merge-points: " + result.error().message};
+    if (!result) return result.error();
+    console.note(fmt::format("{} merged with others", result->merged == 1 ? "1 point was"
+                                                                          : grouped(result->merged) + " points were"));
+    if (result->collapsed_cells > 0)
+        console.note(fmt::format("--merge-points {} is longer than edges of {}, which collapse: there the surface is "
+                                 "not that of the grid",
+                                 shortest(tolerance), counted(result->collapsed_cells, "cell")));
+    return std::move(result->grid);
+}
+
 } // namespace
 
-Result<GridSource> GridSource::open(const GridOptions& options, const CommonOptions& common, const Console& console) {
+FileKinds kinds_of(const std::string& file) {
+    if (file.starts_with(made_prefix)) return {true, false};
+    const std::string ending = ending_of(file);
+    FileKinds kinds;
+    for (const Format& format : formats()) {
+        if (std::ranges::find(format.extensions, ending) == format.extensions.end()) continue;
+        kinds.grid = kinds.grid || format.reads_grid;
+        kinds.surface = kinds.surface || format.reads_surface;
+    }
+    return kinds;
+}
+
+std::string quoted_list(const std::vector<std::string>& names) {
+    constexpr std::size_t max_shown = 12;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), max_shown); ++i)
+        list += fmt::format("{}'{}'", i ? ", " : "", names[i]);
+    if (names.size() > max_shown) list += fmt::format(" and {} more", names.size() - max_shown);
+    return list;
+}
+
+Result<GridSource> GridSource::open(const GridOptions& options, const Console& console) {
     GridSource source;
     source.options_ = options;
     if (options.file.starts_with(made_prefix)) {
@@ -44,9 +90,32 @@ Result<GridSource> GridSource::open(const GridOptions& options, const CommonOpti
     read_options.displace = options.displace;
     read_options.reader_program = "/proc/self/exe"; // this program, wherever it lies
     Result<FileInfo> info = inspect(options.file, read_options, console.run());
-    if (!info) return info.error();
+    if (!info) {
+        const FileKinds kinds = kinds_of(options.file);
+        if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
+            !std::filesystem::exists(options.file))
+            return info.error();
+        return Error{ErrorCode::file, fmt::format("{} is a surface, not a grid: isotet check measures it, isotet "
+                                                  "render draws it",
+                                                  options.file)};
+    }
     source.info_ = *std::move(info);
+    const std::vector<std::string> points = source.names(Association::point);
+    if (!options.displace.empty() && std::ranges::find(points, options.displace) == points.end()) {
+        Error error = source.no_such_field(options.displace);
+        error.message = "--displace takes a point field: " + error.message;
+        return error;
+    }
     return source;
+}
+
+Error GridSource::no_such_field(const std::string& name) const {
+    std::vector<std::string> all;
+    for (const FieldInfo& field : info_.fields)
+        if (std::ranges::find(all, field.name) == all.end()) all.push_back(field.name);
+    return {ErrorCode::invalid_argument,
+            fmt::format("there is no field '{}': the grid has {}", name,
+                        all.empty() ? "none; x, y and z are its coordinates" : quoted_list(nearest_first(name, all)))};
 }
 
 std::vector<std::string> GridSource::names(Association association) const {
@@ -75,14 +144,18 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         console.notes(result->notes);
         grid = std::move(result->grid);
     }
-    if (!options_.merge_points) {
-        console.note(coincident_points_note(grid));
-        return grid;
+    if (options_.merge_points) return merged(grid, *options_.merge_points, console);
+    console.note(coincident_points_note(grid));
+    return grid;
+}
+
+std::string cells_left_out_note(const Grid& grid) {
+    std::string list;
+    for (const auto& [type, count] : count_cells_by_type(grid.cells)) {
+        if (is_contoured(type)) continue;
+        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(count), name_of_cell_type(type));
     }
-    Result<MergedPoints> merged = merge_points(grid, *options_.merge_points, console.run());
-    if (!merged) return merged.error();
-    console.note(fmt::format("{} points were welded to others", grouped(merged->merged)));
-    return std::move(merged->grid);
+    return list.empty() ? list : "cells left out, their types are not contoured: " + list;
 }
 
 std::optional<double> time_of(const FileInfo& info, std::size_t step) {
@@ -94,10 +167,10 @@ namespace {
 
 /// "0, 0.1, 0.2 ... 4": the first few and the last.
 std::string list_of(const std::vector<double>& times) {
-    constexpr std::size_t most = 10;
+    constexpr std::size_t max_shown = 10;
     std::string list;
-    for (std::size_t i = 0; i < std::min(times.size(), most); ++i) list += (i ? ", " : "") + shortest(times[i]);
-    if (times.size() > most) list += " ... " + shortest(times.back());
+    for (std::size_t i = 0; i < std::min(times.size(), max_shown); ++i) list += (i ? ", " : "") + shortest(times[i]);
+    if (times.size() > max_shown) list += " ... " + shortest(times.back());
     return list;
 }
 
@@ -108,14 +181,12 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
     }
     constexpr double tolerance = 1e-12; // relative: a time that went through text and back
     if (times.empty()) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("time {} was asked for, but the file knows no time", shortest(time))};
+        return usage_error("time {} was asked for, but the file knows no time", shortest(time));
     }
     if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
         return nearest;
-    return Error{ErrorCode::invalid_argument,
-                 fmt::format("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
-                             times.size(), list_of(times), shortest(times[nearest]))};
+    return usage_error("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
+                       times.size(), list_of(times), shortest(times[nearest]));
 }
 
 } // namespace
@@ -135,9 +206,8 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
     }
     if (options.step) {
         if (*options.step < count) return std::vector<std::size_t>{static_cast<std::size_t>(*options.step)};
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("step {} was asked for, but the file has {} time step{}, numbered from 0",
-                                 *options.step, count, count == 1 ? "" : "s")};
+        return usage_error("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step,
+                           count, count == 1 ? "" : "s");
     }
     if (count > 1) {
         console.note(

@@ -22,18 +22,29 @@ struct FieldsToRead {
     std::optional<std::vector<std::string>> point, cell;
 };
 
+/// What the ending of a name can be.
+struct FileKinds {
+    bool grid = false, surface = false;
+};
+FileKinds kinds_of(const std::string& file);
+
+/// "'a', 'b', 'c' and 12 more".
+std::string quoted_list(const std::vector<std::string>& names);
+
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold.
-    static Result<GridSource> open(const GridOptions& options, const CommonOptions& common, const Console& console);
+    static Result<GridSource> open(const GridOptions& options, const Console& console);
 
     const FileInfo& info() const noexcept { return info_; }
 
     /// Names of the point or the cell fields.
     std::vector<std::string> names(Association association) const;
 
-    /// Reads one time step, welds points if asked to, and notes what the reader has to say. Points that coincide where
-    /// nobody welds are noted too.
+    /// The error for a name that is no field's: those that there are, nearest first.
+    Error no_such_field(const std::string& name) const;
+
+    /// Reads one time step, merges points if asked to, and notes what the reader reports, and points that coincide.
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console) const;
 
 private:
@@ -48,6 +59,9 @@ private:
 enum class Steps { one, all };
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Console& console);
+
+/// "cells left out, their types are not contoured: 12 triangle, 40 polyhedron"; empty when there are none.
+std::string cells_left_out_note(const Grid& grid);
 
 /// The time of a step; nothing where the file knows no time.
 std::optional<double> time_of(const FileInfo& info, std::size_t step);

@@ -1,38 +1,28 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "json_output.hpp"
 
-#include <type_traits>
-#include <variant>
-
-#include <nlohmann/json.hpp>
+#include <isotet/write_file.hpp>
 
 #include "standard_streams.hpp"
 #include "text.hpp"
-#include "text_file.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
-using Tree = nlohmann::ordered_json;
-
-Tree tree_of(const Json& json) {
-    return std::visit(
-        [](const auto& value) -> Tree {
-            using Value = std::remove_cvref_t<decltype(value)>;
-            if constexpr (std::is_same_v<Value, Json::Array>) {
-                Tree array = Tree::array();
-                for (const Json& one : value) array.push_back(tree_of(one));
-                return array;
-            } else if constexpr (std::is_same_v<Value, Json::Object>) {
-                Tree object = Tree::object();
-                for (const Json::Member& member : value) object[member.key] = tree_of(member.value);
-                return object;
-            } else {
-                return value;
-            }
-        },
-        json.value());
+/// Where --json says: standard output ("-"), a file, which is replaced as a whole, or nowhere ("").
+Result<void> write_json(const Json& report, const std::string& where, const Run& run) {
+    if (where.empty()) return {};
+    // All texts are valid UTF-8 by now; "replace" is for one that was forgotten.
+    const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    if (where == "-") {
+        if (stdout_was_closed()) {
+            return Error{ErrorCode::cannot_write,
+                         "--json - writes to standard output, which was closed when isotet started"};
+        }
+        return write_to_stdout(text);
+    }
+    return write_text(text, where, run);
 }
 
 } // namespace
@@ -47,18 +37,12 @@ Json json_texts(const std::vector<std::string>& texts) {
     return list;
 }
 
-Result<void> write_json(const Json& report, const std::string& where, const Progress& progress) {
-    if (where.empty()) return {};
-    // All texts are valid by now; "replace" is for the one that somebody forgets.
-    const std::string text = tree_of(report).dump(2, ' ', false, Tree::error_handler_t::replace) + "\n";
-    if (where == "-") {
-        if (stdout_was_closed()) {
-            return Error{ErrorCode::cannot_write,
-                         "--json - writes to standard output, which was closed when isotet started"};
-        }
-        return write_to_stdout(text);
-    }
-    return write_text_file(where, text, progress);
+Result<ExitCode> finish(Console& console, const CommonOptions& common, std::string_view table, Json report,
+                        ExitCode status) {
+    if (Result<void> printed = console.print(table); !printed) return printed.error();
+    report["notes"] = json_texts(console.noted());
+    if (Result<void> written = write_json(report, common.json, console.run()); !written) return written.error();
+    return status;
 }
 
 } // namespace isotet::cli

@@ -5,15 +5,21 @@
 #include <string>
 #include <vector>
 
-#include <isotet/progress.hpp>
+#include <nlohmann/json.hpp>
+
 #include <isotet/result.hpp>
 
-#include "json.hpp"
+#include "console.hpp"
+#include "exit_code.hpp"
+#include "options.hpp"
 
 namespace isotet::cli {
 
+/// An object keeps the order of its keys.
+using Json = nlohmann::ordered_json;
+
 /// The number under "schema": it grows when a key changes its meaning or goes; new keys leave it as it is.
-constexpr int json_schema = 2;
+constexpr int json_schema = 3;
 
 /// An object with "schema" and "command".
 Json json_report(const std::string& command);
@@ -22,7 +28,8 @@ Json json_report(const std::string& command);
 Json json_text(const std::string& text);
 Json json_texts(const std::vector<std::string>& texts);
 
-/// Writes the report where --json says: standard output ("-"), a file, or nowhere (""). A file is replaced as a whole.
-Result<void> write_json(const Json& report, const std::string& where, const Progress& progress);
+/// The end of a command: prints the table, and writes the report with the notes of the console where --json says.
+Result<ExitCode> finish(Console& console, const CommonOptions& common, std::string_view table, Json report,
+                        ExitCode status = ExitCode::done);
 
 } // namespace isotet::cli

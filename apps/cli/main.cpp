@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
         cli::say_error("out of memory: the machine has less free than was needed");
         return static_cast<int>(cli::ExitCode::machine);
     } catch (const std::exception& fault) {
-        cli::say_error(fmt::format("a fault of isotet, please report it: {}", fault.what()));
+        cli::say_error(fmt::format("a bug of isotet, please report it: {}", fault.what()));
         return static_cast<int>(cli::ExitCode::fault);
     }
 }

@@ -41,18 +41,6 @@ std::string grouped(std::uint64_t count) {
     return digits;
 }
 
-std::string bytes_text(std::uint64_t bytes) {
-    if (bytes < 1000) return fmt::format("{} B", bytes);
-    double value = static_cast<double>(bytes);
-    const char* unit = "";
-    for (const char* larger : {"kB", "MB", "GB", "TB"}) {
-        value /= 1000;
-        unit = larger;
-        if (value < 999.95) break;
-    }
-    return fmt::format("{:.1f} {}", value, unit);
-}
-
 std::string seconds_text(double seconds) { return fmt::format("{:.3f} s", seconds); }
 
 namespace {

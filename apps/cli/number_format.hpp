@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/text.hpp>
+
 namespace isotet::cli {
 
 /// The shortest decimal that reads back as the same double: "0.7", "1e-05".
@@ -29,13 +31,10 @@ std::string counted(std::uint64_t count, std::string_view one);
 /// "12,345,678".
 std::string grouped(std::uint64_t count);
 
-/// "512 B", "1.2 MB"; a MB is 10^6 bytes.
-std::string bytes_text(std::uint64_t bytes);
-
 /// "0.034 s".
 std::string seconds_text(double seconds);
 
-/// "2GB", "1.5 GB", "512mb", "1000": decimal units, as bytes_text() writes them; nothing if it is none or does not fit.
+/// "2GB", "1.5 GB", "512mb", "1000": decimal units, as of format_bytes(); nothing if it is none or does not fit.
 std::optional<std::uint64_t> parse_bytes(std::string_view text) noexcept;
 
 /// The whole of `text` as a number, the point as its decimal sign; nothing if it is not one or does not fit.

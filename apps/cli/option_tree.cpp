@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <isotet/grid.hpp>
 
 #include "command_options.hpp"
 #include "number_format.hpp"
@@ -16,10 +19,40 @@ namespace isotet::cli {
 
 namespace {
 
+constexpr int first_error_code = 1000; ///< above CLI11's own exit codes
+
 double finite_number(const std::string& names, std::string_view text) {
     const std::optional<double> value = parse_number(text);
     if (!value || !std::isfinite(*value)) refuse_value(names, text, "a finite number");
     return *value;
+}
+
+/// Refuses a file of numbers; parse() makes an error of this code.
+[[noreturn]] void refuse_file(ErrorCode code, std::string sentence) {
+    throw CLI::ValidationError(std::move(sentence), first_error_code + static_cast<int>(code));
+}
+
+void append_numbers_of_file(const std::string& path, std::vector<double>& numbers) {
+    std::ifstream file(path);
+    if (!file) refuse_file(ErrorCode::file, fmt::format("the file of numbers '{}' cannot be read", path));
+    const std::size_t before = numbers.size();
+    std::string line;
+    for (std::size_t number = 1; std::getline(file, line); ++number) {
+        line.resize(std::min(line.find('#'), line.size()));
+        constexpr std::string_view separators = " \t\r\f\v,";
+        for (std::size_t begin = 0; (begin = line.find_first_not_of(separators, begin)) != std::string::npos;) {
+            const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
+            const std::string word = line.substr(begin, end - begin);
+            const std::optional<double> value = parse_number(word);
+            if (!value || !std::isfinite(*value))
+                refuse_file(ErrorCode::invalid_data,
+                            fmt::format("{}: line {} has '{}', but must have finite numbers", path, number, word));
+            numbers.push_back(*value);
+            begin = end;
+        }
+    }
+    if (numbers.size() == before)
+        refuse_file(ErrorCode::invalid_data, fmt::format("{} has no number, but must have at least one", path));
 }
 
 /// An option whose values go to `set`, all at once.
@@ -98,6 +131,20 @@ const CLI::App* find(const CLI::App& program, const std::string& word) {
 std::string parsed_command(const CLI::App& program) {
     const std::vector<CLI::App*> parsed = program.get_subcommands();
     return parsed.empty() ? "" : parsed.back()->get_name();
+}
+
+/// "there is no option '--isovalues'; the nearest is --isovalue"; empty when all options are known. A word that is
+/// missing elsewhere, such as FILE, matters less.
+std::string unknown_option(const CLI::App& program, const CommandText& command) {
+    std::vector<std::string> flags;
+    for (const OptionText& option : command.options)
+        if (!option.flags.empty()) flags.push_back(option.flags.back());
+    for (const std::string& word : program.remaining(true)) {
+        if (word.size() < 2 || word.front() != '-' || word == "--") continue;
+        const std::string name = word.substr(0, word.find('='));
+        return fmt::format("there is no option '{}'; the nearest is {}", name, nearest_first(name, flags).front());
+    }
+    return {};
 }
 
 } // namespace
@@ -185,6 +232,10 @@ Option Command::add_numbers(const std::string& names, std::vector<double>& targe
         names,
         [&target, names](const std::vector<std::string>& lists) {
             for (const std::string& list : lists) {
+                if (list.starts_with('@')) {
+                    append_numbers_of_file(list.substr(1), target);
+                    continue;
+                }
                 for (std::size_t begin = 0; begin <= list.size();) {
                     const std::size_t end = std::min(list.find(',', begin), list.size());
                     target.push_back(finite_number(names, std::string_view(list).substr(begin, end - begin)));
@@ -227,6 +278,13 @@ OptionTree::OptionTree(CommandLine& line)
 
 OptionTree::~OptionTree() = default;
 
+std::vector<std::string> OptionTree::words() const {
+    std::vector<std::string> words;
+    for (const CommandText& command : describe_all())
+        if (!command.word.empty()) words.push_back(command.word);
+    return words;
+}
+
 bool OptionTree::has_command(const std::string& word) const { return find(*program_, word) != nullptr; }
 
 Result<void> OptionTree::parse(const std::vector<std::string>& words) {
@@ -236,9 +294,11 @@ Result<void> OptionTree::parse(const std::vector<std::string>& words) {
     } catch (const CLI::CallForHelp&) {
         line_->help = true;
     } catch (const CLI::ParseError& error) {
-        const std::string command = parsed_command(*program_);
-        return Error{ErrorCode::invalid_argument, fmt::format("{} (isotet{}{} --help lists the options)", error.what(),
-                                                              command.empty() ? "" : " ", command)};
+        if (error.get_exit_code() >= first_error_code)
+            return Error{static_cast<ErrorCode>(error.get_exit_code() - first_error_code), error.what()};
+        const std::string command = parsed_command(*program_), unknown = unknown_option(*program_, describe(command));
+        return usage_error("{} (isotet{}{} --help lists the options)", unknown.empty() ? error.what() : unknown,
+                           command.empty() ? "" : " ", command);
     }
     line_->command = parsed_command(*program_);
     return {};

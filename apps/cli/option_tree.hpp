@@ -91,7 +91,8 @@ public:
     Option add_count(const std::string& names, CountLimits limits, std::function<void(std::uint64_t)> set,
                      const std::string& type, const std::string& description) const;
 
-    /// Finite numbers separated by commas; the option may be repeated.
+    /// Finite numbers separated by commas, or "@FILE": a file of numbers separated by blanks, commas or line ends; #
+    /// begins a comment. The option may be repeated.
     Option add_numbers(const std::string& names, std::vector<double>& target, const std::string& type,
                        const std::string& description) const;
 
@@ -130,12 +131,14 @@ public:
     explicit OptionTree(CommandLine& line);
     ~OptionTree();
 
+    std::vector<std::string> words() const; ///< of the commands that are not hidden
+
     /// True for the word of a command, hidden or not.
     bool has_command(const std::string& word) const;
 
     /// Parses a command line, argv[0] first. With --help only `command` and `help` of the CommandLine are set.
     ///
-    /// Errors   invalid_argument
+    /// Errors   invalid_argument; file and invalid_data for a file of numbers
     Result<void> parse(const std::vector<std::string>& words);
 
     /// The program, then its commands in order; hidden ones are left out.

@@ -9,6 +9,7 @@
 
 #include <isotet/draw_tets.hpp>
 #include <isotet/extract.hpp>
+#include <isotet/grid_bench.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/plan.hpp>
@@ -69,6 +70,7 @@ struct ExtractCommand {
     Normals normals = Normals::none;
     std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
     bool keep_degenerate = false;
+    bool fail_if_empty = false;
     bool edge_ends = false;
     bool source_cells = false;
     Precision precision = Precision::float32;
@@ -78,10 +80,19 @@ struct ExtractCommand {
 };
 
 /// The opacity of the grid's boundary where none is given.
-constexpr double boundary_without_a_word = 0.1;
+constexpr double default_boundary_opacity = 0.1;
 
-/// What chooses tets for a method that draws tets, where nothing else is given.
-constexpr SearchIndex filter_without_a_word = SearchIndex::cluster_ranges;
+/// What finds tets for a method that draws tets, where no search index is given.
+constexpr SearchIndex default_index = SearchIndex::cluster_ranges;
+
+/// Isovalues where neither -i nor --levels is given.
+constexpr std::uint64_t default_levels = 3;
+
+/// How a picture comes about: surfaces are extracted (by the rule where nothing is set), or tets are drawn.
+struct RenderMethod {
+    std::optional<Method> extract;
+    std::optional<DrawMethod> draw; ///< draws tets, and no surface is made
+};
 
 struct RenderCommand {
     CommonOptions common;
@@ -93,45 +104,33 @@ struct RenderCommand {
     PictureOptions picture;   ///< the camera aside
     View view = View::iso;
     bool parallel = false;
-    bool outline = false;                    ///< the box around
-    bool plain = false;                      ///< no text
-    std::string color_by;                    ///< a field; empty: each isovalue has its colour
-    ColorScale scale;                        ///< the map, the logarithm and the colour for no data
-    std::vector<double> range;               ///< both ends of the scale, or none
+    bool outline = false;     ///< the box around
+    bool plain = false;       ///< no text
+    std::string color_by;     ///< a field; empty: each isovalue has its colour
+    ColorScale scale;         ///< the map, the logarithm and the colour for no data
+    std::vector<double> range; ///< both ends of the scale, or none
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
-    std::optional<DrawMethod> method;  ///< that draws tets; nothing: clusters, which extracts surfaces
-    std::optional<SearchIndex> filter; ///< nothing: none was given
-    std::vector<double> sweep;         ///< first and last isovalue, and how many; or none
-    std::uint64_t orbit = 0;           ///< pictures around; 0: one
-    double frames_a_second = 12;
-    std::string reference;    ///< a picture to compare with; empty: none
-    double threshold = 0.001; ///< share of its pixels that may differ
+    RenderMethod method;
+    std::optional<SearchIndex> index;      ///< nothing: none was given
+    std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
+    std::uint64_t orbit = 0;    ///< pictures around; 0: one
+    double frames_per_second = 12;
+    std::string reference;     ///< a picture to compare with; empty: none
+    double threshold = 0.001;  ///< share of its pixels that may differ
     DeviceChoice device;
-};
-
-/// What `isotet bench` can measure.
-enum class BenchMethod : std::uint8_t {
-    direct,
-    clusters,
-    clusters_vulkan,
-    registers,
-    registers_instanced,
-    textures,
-    mesh
 };
 
 struct BenchCommand {
     CommonOptions common;
-    GridOptions grid; ///< `file` is empty with --paper
+    GridOptions grid;   ///< `file` is empty with --paper
     FieldChoice field;
-    std::vector<double> isovalues; ///< none: three
+    std::vector<double> isovalues;     ///< none: three
     bool paper = false;
-    std::uint64_t most_tets = 5'000'000;
-    std::vector<BenchMethod> methods; ///< none: all that can be
-    std::vector<SearchIndex> filters; ///< none: without and with the interval tree
+    std::uint64_t max_tets = 5'000'000;
+    std::vector<BenchMethod> methods;  ///< none: all that can be
+    std::vector<SearchIndex> indexes;       ///< none: without and with the interval tree
     std::uint64_t rounds = 5;
-    std::string csv, svg; ///< files; empty for none
     DeviceChoice device;
 };
 
@@ -160,6 +159,10 @@ struct DevicesCommand {
     DeviceChoice device; ///< `name` is empty without --device
 };
 
+struct HelpCommand {
+    std::string topic; ///< a command; empty: the program
+};
+
 /// The hidden command `docs`: man, completion or markdown.
 struct DocsCommand {
     std::string kind;
@@ -167,8 +170,7 @@ struct DocsCommand {
 
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
-    std::string
-        command; ///< "info", "extract", "render", "bench", "check", "make", "formats", "devices", "docs" or none
+    std::string command; ///< its word, such as "extract"; empty for none
     bool help = false;
     bool version = false;
     InfoCommand info;
@@ -179,6 +181,7 @@ struct CommandLine {
     MakeCommand make;
     FormatsCommand formats;
     DevicesCommand devices;
+    HelpCommand topic;
     DocsCommand docs;
 };
 

@@ -31,10 +31,8 @@ Result<void> complete_bare_file(std::vector<std::string>& words, const OptionTre
         if (words[1] == own) return {};
     }
     if (looks_like_command(words[1])) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("'{}' is neither a command nor a file; commands are info, extract, render, bench, "
-                                 "check, make, formats and devices",
-                                 words[1])};
+        return usage_error("'{}' is neither a command nor a file; commands are {}", words[1],
+                           fmt::join(tree.words(), ", "));
     }
     words.insert(words.begin() + 1, "info");
     return {};
@@ -55,9 +53,14 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "make") return run_make(line.make);
     if (line.command == "formats") return run_formats(line.formats);
     if (line.command == "devices") return run_devices(line.devices);
+    if (line.command == "help") {
+        if (line.topic.topic.empty() || tree.has_command(line.topic.topic))
+            return say(help_text(tree.describe(line.topic.topic), tree.describe_all()));
+        return usage_error("'{}' is no command; commands are {}", line.topic.topic, fmt::join(tree.words(), ", "));
+    }
     if (line.command == "docs") return run_docs(line.docs, tree.describe_all());
     if (line.version) return say(version_text());
-    return Error{ErrorCode::invalid_argument, "no command and no file was given; isotet --help lists the commands"};
+    return usage_error("no command and no file was given; isotet --help lists the commands");
 }
 
 Result<ExitCode> parse_and_run(std::vector<std::string> words) {
@@ -73,8 +76,8 @@ Result<ExitCode> parse_and_run(std::vector<std::string> words) {
 ExitCode run_program(std::vector<std::string> words) {
     const Result<ExitCode> result = parse_and_run(std::move(words));
     if (result) return *result;
-    // Whatever an operation said when it was stopped half-way, it was Ctrl-C that stopped it.
-    if (interrupted || result.error().code == ErrorCode::cancelled) {
+    // Whatever error an operation returned when it was stopped, Ctrl-C was the cause.
+    if (stop_requested || result.error().code == ErrorCode::cancelled) {
         say_error("interrupted: no file was left half written");
         return ExitCode::interrupted;
     }

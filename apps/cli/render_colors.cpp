@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "core/errors.hpp"
+#include "grid_source.hpp"
 #include "number_format.hpp"
 
 namespace isotet::cli {
@@ -44,8 +44,8 @@ void widen(ColorScale& scale) {
 
 Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Console& console) {
     if (field.values.components() != 1) {
-        return invalid_argument(fmt::format("--color-by names '{}', which has {} components: name one, such as {}:mag",
-                                            field.name, field.values.components(), field.name));
+        return usage_error("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
+                           field.values.components(), field.name);
     }
     field.scale = command.scale;
     const Seen seen = look_at(field.values, command.scale.logarithmic);
@@ -64,10 +64,9 @@ Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Co
         return field;
     }
     if (command.range.size() != 2 || !(command.range[0] < command.range[1]))
-        return invalid_argument("--range takes two numbers, the smaller one first, such as 0,100");
+        return usage_error("--range takes two numbers, the smaller one first, such as 0,100");
     if (command.scale.logarithmic && command.range[0] <= 0)
-        return invalid_argument(
-            fmt::format("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0])));
+        return usage_error("--range begins with {}, but --log takes positive numbers only", shortest(command.range[0]));
     field.scale.lower = command.range[0];
     field.scale.upper = command.range[1];
     return field;
@@ -85,7 +84,7 @@ Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Con
     const Array* cells = find(grid.cell_fields, name);
     if (cells && !find(grid.point_fields, name))
         return with_scale({name, *cells, Association::cell, {}, false}, command, console);
-    const Result<PointField> found = find_field(grid, name, {}, {command.common.threads, {}});
+    const Result<PointField> found = find_field(grid, name, {}, console.run());
     if (!found) return found.error();
     return with_scale({name, found->values, Association::point, {}, false}, command, console);
 }
@@ -97,7 +96,7 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
     std::vector<std::string> names;
     for (const Field& field : surface.point_fields) names.push_back(field.name);
     if (const auto match = match_field_name(command.color_by, names)) {
-        const Result<PointField> found = find_field(vertices, command.color_by, {}, {command.common.threads, {}});
+        const Result<PointField> found = find_field(vertices, command.color_by, {}, console.run());
         if (!found) return found.error();
         return with_scale({command.color_by, found->values, Association::point, {}, false}, command, console);
     }
@@ -106,11 +105,8 @@ Result<ColorField> colors_of(const Surface& surface, const RenderCommand& comman
         if (field.name == command.color_by)
             return with_scale({field.name, field.values, Association::cell, {}, false}, command, console);
     }
-    std::string there;
-    for (const std::string& name : nearest_first(command.color_by, names))
-        there += fmt::format("{}'{}'", there.empty() ? "" : ", ", name);
-    return invalid_argument(fmt::format("--color-by names '{}', but the surface has {}", command.color_by,
-                                        there.empty() ? "no fields" : there));
+    return usage_error("--color-by names '{}', but the surface has {}", command.color_by,
+                       names.empty() ? "no fields" : quoted_list(nearest_first(command.color_by, names)));
 }
 
 } // namespace isotet::cli

@@ -7,15 +7,15 @@
 
 #include <isotet/picture_file.hpp>
 
-#include "core/errors.hpp"
 #include "number_format.hpp"
+#include "output_names.hpp"
 
 namespace isotet::cli {
 
 namespace {
 
-constexpr std::string_view number_stands_here = "{frame}";
-constexpr double most_frames = 100'000;
+constexpr std::string_view number_mark = "{frame}";
+constexpr double max_frames = 100'000;
 
 } // namespace
 
@@ -23,13 +23,12 @@ Result<std::size_t> count_frames(const RenderCommand& command) {
     if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
     if (command.sweep.empty()) return std::size_t{1};
     if (command.sweep.size() != 3)
-        return invalid_argument(fmt::format(
-            "--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such as 0,1,50",
-            command.sweep.size()));
+        return usage_error("--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such "
+                           "as 0,1,50", command.sweep.size());
     const double count = command.sweep[2];
-    if (count < 2 || count > most_frames || count != std::floor(count))
-        return invalid_argument(fmt::format("--sweep ends with {}, but there must be 2 to {} isovalues",
-                                            shortest(count), shortest(most_frames)));
+    if (count < 2 || count > max_frames || count != std::floor(count))
+        return usage_error("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
+                           shortest(max_frames));
     return static_cast<std::size_t>(count);
 }
 
@@ -47,14 +46,15 @@ Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const s
 }
 
 Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pictures, double pictures_per_second) {
+    if (auto known = check_placeholders(out, {std::string(number_mark)}); !known) return known.error();
     PictureFiles files(out, pictures);
-    const bool numbered = out.find(number_stands_here) != std::string::npos;
+    const bool numbered = out.find(number_mark) != std::string::npos;
     if (pictures == 1) {
         if (!out.ends_with(".png"))
-            return invalid_argument(fmt::format("the name of the output is '{}', but it must end in .png", out));
+            return usage_error("the name of the output is '{}', but it must end in .png", out);
         if (numbered)
-            return invalid_argument(fmt::format(
-                "the name of the output is '{}', but only pictures of --sweep and --orbit have numbers", out));
+            return usage_error("the name of the output is '{}', but only pictures of --sweep and --orbit have numbers",
+                               out);
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {
@@ -64,18 +64,16 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return invalid_argument(
-        fmt::format("the name of the output is '{}', but {} pictures need one that ends in .webp, or that "
-                    "holds {} and ends in .png",
-                    out, pictures, number_stands_here));
+    return usage_error("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} "
+                       "and ends in .png", out, pictures, number_mark);
 }
 
 std::string PictureFiles::name(std::size_t picture) const {
     std::string name = out_;
-    const std::size_t at = name.find(number_stands_here);
+    const std::size_t at = name.find(number_mark);
     if (at == std::string::npos) return name;
     const std::size_t digits = std::to_string(pictures_).size();
-    return name.replace(at, number_stands_here.size(), fmt::format("{:0{}}", picture + 1, digits));
+    return name.replace(at, number_mark.size(), fmt::format("{:0{}}", picture + 1, digits));
 }
 
 std::vector<std::string> PictureFiles::names() const {

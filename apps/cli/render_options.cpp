@@ -1,9 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "render_options.hpp"
-
+#include "command_options.hpp"
 #include "number_format.hpp"
-#include "option_tree.hpp"
-#include "options.hpp"
 
 namespace isotet::cli {
 
@@ -13,16 +10,17 @@ constexpr const char* render_details = R"(
 FILE is a grid or a surface. With nothing but FILE the field that varies most is taken, with three isovalues between the
 ends of its range (rare values at the ends aside), each in its own colour. FIELD is found as by isotet extract.
 
-The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png; without
-it the picture is called as FILE is, in the current folder. The pictures of --sweep and --orbit are numbered from 1 where
-{frame} stands in OUT, or go into one animated file when OUT ends in .webp.
+The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png;
+without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1
+where {frame} stands in OUT, or go into one animated file when OUT ends in .webp.
 
-A graphics card draws, if there is one; otherwise, or with --device software, a software device, which is said. Without
-either nothing can be drawn. On one device the same command gives the same bytes.
+A graphics card draws, if there is one; otherwise, or with --device software, a software device, with a note. If there
+is neither, nothing can be drawn: on Debian the package mesa-vulkan-drivers has a software device. On one device the same
+command gives the same bytes.
 
 Examples:
   isotet render grid.vtu
-  isotet render grid.vtu -f pressure -i 0.5 -o pressure.png
+  isotet render grid.vtu pressure.png -f pressure -i 0.5
   isotet render surface.vtp --view +x --size 800x600 --background transparent
   isotet render grid.vtu -f pressure --sweep 0,1,50 -o sweep.webp
   isotet render grid.vtu -f pressure -i 0.5 --orbit 90 -o 'frame{frame}.png'
@@ -72,13 +70,11 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     const Command command = program.add_command("render", "Draw isosurfaces, or a surface, into a picture");
     command.add_file("FILE", render.grid.file, "FILE", "A grid or a surface: a file, or make:SHAPE:SIDE[:FIELDS]")
         .required();
-    command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp");
-    command.add_text("-f,--field", render.field.name, "FIELD",
-                     "The field to contour; without it the one that varies most");
-    command.add_flag("--cell-field", render.field.cell_field,
-                     "Of a name that is both a point and a cell field, the cell field");
-    const Option isovalues = command.add_numbers("-i,--isovalue", render.isovalues, "V[,W...]",
-                                                 "Isovalues, separated by commas; may be repeated");
+    const Option out = command.add_file("OUT", render.out, "OUT_FILE", "The picture, as -o");
+    command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp")
+        .excludes(out);
+    add_field(command, render.field, "The field to contour; without it the one that varies most");
+    const Option isovalues = add_isovalues(command, render.isovalues);
     command
         .add_count(
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
@@ -96,7 +92,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         [&](double rate) {
             if (rate <= 0 || rate > 100)
                 refuse_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
-            render.frames_a_second = rate;
+            render.frames_per_second = rate;
         },
         "RATE", "Pictures a second of an animated OUT; without it 12");
     add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
@@ -119,17 +115,17 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
         "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
         "CPU");
-    std::vector<std::pair<std::string, std::optional<DrawMethod>>> methods{{"clusters", std::nullopt}};
-    for (const DrawMethod method : all_draw_methods) methods.emplace_back(name_of(method), method);
-    command.add_choice(
-        "--method", render.method, methods,
-        "clusters extracts surfaces; the others are earlier ways that draw tets and make no surface, to be "
-        "compared with; "
-        "without it clusters");
-    std::vector<std::pair<std::string, std::optional<SearchIndex>>> filters;
-    for (const SearchIndex filter : all_search_indexes) filters.emplace_back(name_of(filter), filter);
-    command.add_choice("--filter", render.filter, filters,
-                       "What finds the tets that such a method draws, none: it draws all; without it cluster_ranges");
+    std::vector<std::pair<std::string, RenderMethod>> methods{
+        {"auto", {}}, {"direct", {Method::direct, {}}}, {"clusters", {Method::clusters, {}}}};
+    for (const DrawMethod method : all_draw_methods) methods.push_back({std::string(name_of(method)), {{}, method}});
+    command.add_choice("--method", render.method, methods,
+                       "How: auto, direct and clusters extract surfaces, as isotet extract does; the others are "
+                       "earlier methods that draw tets and make no surface, to be compared with; without it auto");
+    std::vector<std::pair<std::string, std::optional<SearchIndex>>> indexes;
+    for (const SearchIndex index : all_search_indexes) indexes.emplace_back(name_of(index), index);
+    command.add_choice("--index", render.index, indexes,
+                       "Search index that finds the active tets for a method that draws tets, none: it draws all; "
+                       "without it cluster_ranges");
     command.add_text("--color-by", render.color_by, "FIELD",
                      "Colour by this point or cell field; without it each isovalue has its colour");
     command.add_choice<ColorMap>("--colormap", render.scale.map,
@@ -162,7 +158,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         .needs(reference);
     command.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
     add_color(command, "--background", render.picture.background,
-              "Background: white, black, transparent, or #rrggbb; without it white");
+              "Background: white, black, gray, red, green, blue, transparent, or #rrggbb; without it white");
     command.set_details(render_details);
     return command;
 }

@@ -1,6 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "render_report.hpp"
 
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+#include <tuple>
+
 #include <fmt/format.h>
 
 #include "number_format.hpp"
@@ -10,21 +16,28 @@ namespace isotet::cli {
 
 namespace {
 
-std::string times_text(const RenderInput& input, const RenderScene& scene, const PictureNumbers& picture) {
+std::string times_text(const RenderInput& input, const PictureNumbers& picture) {
+    const SceneReport& report = input.scene->report();
     std::string text = "read " + seconds_text(input.read_seconds);
-    if (input.packed) text += ", pack " + seconds_text(input.pack_seconds);
-    if (input.boundary) text += ", boundary " + seconds_text(input.boundary_seconds);
-    if (input.packed)
-        text += fmt::format(", upload {}, extract {}", seconds_text(scene.upload_seconds()),
-                            seconds_text(scene.extract_seconds()));
-    else text += ", upload " + seconds_text(scene.extract_seconds());
-    return text +
-           fmt::format(", draw {}, write {}", seconds_text(picture.draw_seconds), seconds_text(picture.write_seconds));
+    if (report.pack_seconds > 0) text += ", pack " + seconds_text(report.pack_seconds);
+    if (report.boundary_faces > 0) text += ", boundary " + seconds_text(report.boundary_seconds);
+    if (report.store) text += ", upload " + seconds_text(report.upload_seconds);
+    return text + fmt::format(", {} {}, draw {}, write {}", input.is_surface ? "upload" : "extract",
+                              seconds_text(report.extract_seconds), seconds_text(picture.draw_seconds),
+                              seconds_text(picture.write_seconds));
 }
 
-std::string_view filter_name(const RenderCommand& command) {
-    return name_of(command.filter.value_or(filter_without_a_word));
+const char* engine_name(const RenderInput& input) {
+    const SceneReport& report = input.scene->report();
+    return input.is_surface || report.store ? "none" : report.on_device ? "vulkan" : "cpu";
 }
+
+std::string_view method_name(const RenderCommand& command, const RenderInput& input) {
+    if (input.is_surface) return "none";
+    return command.method.draw ? name_of(*command.method.draw) : name_of(input.scene->report().method);
+}
+
+std::string_view index_name(const RenderCommand& command) { return name_of(command.index.value_or(default_index)); }
 
 Json json_of(const DeviceWork& work) {
     Json passes = Json::array();
@@ -40,65 +53,125 @@ Json json_of(const DeviceWork& work) {
 
 std::string percent_text(double share) { return rounded(100 * share) + " %"; }
 
-std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene,
-                         const Device& device, const PictureNumbers& picture) {
-    Table table = facts();
-    table.row({input.surface ? "surface" : "grid", fmt::format("{} ({})", command.grid.file, input.format)});
-    if (input.packed) {
-        table.row({"cells", grouped(input.cells)});
-        const bool finite = input.lower <= input.upper;
-        table.row({"field", finite
-                                ? fmt::format("{}, {} to {}", input.field, shortest(input.lower), shortest(input.upper))
-                                : input.field});
+std::vector<std::string> isovalue_texts(const IsosurfaceScene& scene) {
+    std::vector<double> isovalues;
+    for (const ShownSurface& surface : scene.surfaces()) isovalues.push_back(surface.isovalue.value_or(0));
+    return told_apart(isovalues);
+}
+
+void note_empty_surfaces(const RenderInput& input, Console& console) {
+    const auto& [field, store] = std::tie(input.scene->report().field, input.scene->report().store);
+    for (const ShownSurface& surface : input.scene->surfaces()) {
+        if (!surface.isovalue) continue;
+        // Of tets it is not known before they are drawn; values on both sides of the isovalue make a surface mostly.
+        const bool shown = store ? field.lower < *surface.isovalue && *surface.isovalue <= field.upper
+                                 : surface.triangles > 0;
+        if (shown) continue;
+        const std::string values =
+            !(field.lower <= field.upper) ? fmt::format("'{}' has no finite value", input.field)
+            : field.lower == field.upper
+                ? fmt::format("all values of '{}' are {}", input.field, shortest(field.lower))
+                : fmt::format("the values of '{}' go from {} to {}", input.field, shortest(field.lower),
+                              shortest(field.upper));
+        console.note(fmt::format("there is no surface at {}: {}", shortest(*surface.isovalue), values));
     }
-    if (input.boundary) table.row({"boundary", grouped(input.boundary->triangle_count()) + " faces"});
+}
+
+Annotation annotation_of(const RenderCommand& command, const RenderInput& input) {
+    Annotation annotation;
+    if (command.plain) return annotation;
+    const std::vector<ShownSurface>& surfaces = input.scene->surfaces();
+    const FieldReport& field = input.scene->report().field;
+    std::uint64_t all = 0;
+    for (const ShownSurface& surface : surfaces) all += surface.size();
+    annotation.caption = std::filesystem::path(command.grid.file).filename().string();
+    if (!input.is_surface) annotation.caption += "  ·  " + counted(input.cells, "cell");
+    if (!input.is_surface && surfaces.size() == 1)
+        annotation.caption += fmt::format("  ·  {} = {}", input.field,
+                                          rounded(*surfaces.front().isovalue, (field.upper - field.lower) / 1000));
+    else if (!input.is_surface)
+        annotation.caption += fmt::format("  ·  {} at {} isovalues", input.field, surfaces.size());
+    annotation.caption += "  ·  " + (command.method.draw ? counted(all, "tet") + " drawn" : counted(all, "triangle"));
+    if (input.time) annotation.caption += "  ·  time " + rounded(*input.time);
+    if (input.colors) {
+        annotation.title = input.colors->name;
+        annotation.scale = input.colors->scale;
+        if (input.colors->has_no_data) annotation.no_data = "no data";
+    } else if (surfaces.size() > 1) {
+        annotation.title = input.field;
+        std::vector<std::size_t> order(surfaces.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::sort(order, std::greater(), [&](std::size_t i) { return surfaces[i].isovalue; }); // largest above
+        const std::vector<std::string> values = isovalue_texts(*input.scene);
+        for (const std::size_t i : order)
+            annotation.legend.push_back({input.scene->scene().surfaces[i].color, values[i]});
+    }
+    return annotation;
+}
+
+std::string render_table(const RenderCommand& command, const RenderInput& input, const Device& device,
+                         const PictureNumbers& picture) {
+    const SceneReport& report = input.scene->report();
+    Table table = facts();
+    table.row({input.is_surface ? "surface" : "grid", fmt::format("{} ({})", command.grid.file, input.format)});
+    if (!input.is_surface) {
+        table.row({"cells", grouped(input.cells)});
+        const bool finite = report.field.lower <= report.field.upper;
+        table.row({"field", finite ? fmt::format("{}, {} to {}", input.field, shortest(report.field.lower),
+                                                shortest(report.field.upper))
+                                  : input.field});
+    }
+    if (report.boundary_faces > 0) table.row({"boundary", grouped(report.boundary_faces) + " faces"});
     if (!command.sweep.empty())
         table.row({"isovalues", fmt::format("{}, {} to {}", picture.pictures, shortest(command.sweep[0]),
                                             shortest(command.sweep[1]))});
-    const std::vector<std::string> isovalues = scene.isovalue_texts();
+    const std::vector<std::string> isovalues = isovalue_texts(*input.scene);
     for (std::size_t i = 0; i < isovalues.size() && command.sweep.empty(); ++i) {
-        const SurfaceCounts& surface = scene.surfaces()[i];
+        const ShownSurface& surface = input.scene->surfaces()[i];
         const std::string what = surface.isovalue ? "isovalue " + isovalues[i] : "surface";
-        table.row({what, scene.tets() ? fmt::format("{} drawn, {} sent", counted(surface.tets, "tet"),
-                                                    bytes_text(surface.sent_bytes))
+        table.row({what, report.store ? fmt::format("{} drawn, {} sent", counted(surface.tets, "tet"),
+                                                    format_bytes(surface.sent_bytes))
                                       : counted(surface.triangles, "triangle")});
     }
     if (input.colors)
         table.row({"coloured by", fmt::format("{}, {} to {}", input.colors->name, rounded(input.colors->scale.lower),
                                               rounded(input.colors->scale.upper))});
     table.row({"device", fmt::format("{} ({})", device.info().name, name_of(device.info().kind))});
-    if (input.packed && !scene.tets()) table.row({"engine", scene.engine()});
-    if (scene.tets()) {
-        const TetStoreReport& store = scene.tets()->report();
-        table.row({"method", fmt::format("{}, filter {}", name_of(*command.method), filter_name(command))});
-        table.row({"store", fmt::format("{}, of them {} sent again for every picture", bytes_text(store.stored_bytes),
-                                        bytes_text(store.host_bytes))});
+    if (!input.is_surface && !report.store)
+        table.row({"engine", fmt::format("{}, {}", engine_name(input), method_name(command, input))});
+    if (report.store) {
+        const TetStoreReport& store = *report.store;
+        table.row({"method", fmt::format("{}, index {}", method_name(command, input), index_name(command))});
+        table.row({"store", fmt::format("{}, of them {} sent again for every picture", format_bytes(store.stored_bytes),
+                                        format_bytes(store.host_bytes))});
     }
-    table.row({"time", times_text(input, scene, picture)});
+    table.row({"time", times_text(input, picture)});
     const std::string count = picture.pictures == 1 ? "picture" : fmt::format("{} pictures", picture.pictures);
     table.row({count, fmt::format("{}, {} x {} ({})", picture.file, command.picture.width, command.picture.height,
-                                  bytes_text(picture.bytes))});
+                                  format_bytes(picture.bytes))});
     if (picture.differs)
         table.row({"reference",
                    fmt::format("{}: {} of the pixels differ", command.reference, percent_text(*picture.differs))});
     return table.text();
 }
 
-Json render_json(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
+Json render_json(const RenderCommand& command, const RenderInput& input, const Device& device,
                  const PictureNumbers& picture) {
+    const SceneReport& made = input.scene->report();
+    const FieldReport& range = made.field;
     Json report = json_report("render");
     report["input"] = json_text(command.grid.file);
     report["format"] = input.format;
-    report["field"] = input.packed ? json_text(input.field) : Json(nullptr);
+    report["field"] = input.is_surface ? Json(nullptr) : json_text(input.field);
     report["range"] =
-        input.packed && input.lower <= input.upper ? Json::array({input.lower, input.upper}) : Json(nullptr);
+        !input.is_surface && range.lower <= range.upper ? Json::array({range.lower, range.upper}) : Json(nullptr);
     report["color_by"] = input.colors ? json_text(input.colors->name) : Json(nullptr);
     report["color_range"] =
         input.colors ? Json::array({input.colors->scale.lower, input.colors->scale.upper}) : Json(nullptr);
-    report["boundary_faces"] = input.boundary ? Json(input.boundary->triangle_count()) : Json(nullptr);
+    report["boundary_faces"] = made.boundary_faces > 0 ? Json(made.boundary_faces) : Json(nullptr);
     Json surfaces = Json::array();
-    for (const SurfaceCounts& surface : scene.surfaces()) {
-        const bool tets = scene.tets() != nullptr;
+    for (const ShownSurface& surface : input.scene->surfaces()) {
+        const bool tets = made.store.has_value();
         surfaces.push_back({{"isovalue", surface.isovalue ? Json(*surface.isovalue) : Json(nullptr)},
                             {"vertices", tets ? Json(nullptr) : Json(surface.vertices)},
                             {"triangles", tets ? Json(nullptr) : Json(surface.triangles)},
@@ -107,20 +180,20 @@ Json render_json(const RenderCommand& command, const RenderInput& input, const R
     }
     report["surfaces"] = std::move(surfaces);
     report["device"] = {{"name", json_text(device.info().name)}, {"kind", name_of(device.info().kind)}};
-    report["engine"] = scene.engine();
-    report["method"] = command.method ? name_of(*command.method) : "clusters";
-    report["filter"] = command.method ? Json(filter_name(command)) : Json(nullptr);
+    report["engine"] = engine_name(input);
+    report["method"] = method_name(command, input);
+    report["index"] = made.store ? Json(index_name(command)) : Json(nullptr);
     report["store"] = nullptr;
-    if (scene.tets()) {
-        const TetStoreReport& store = scene.tets()->report();
+    if (made.store) {
+        const TetStoreReport& store = *made.store;
         report["store"] = {
             {"bytes", store.stored_bytes}, {"on_device", store.device_bytes}, {"sent_every_time", store.host_bytes}};
     }
-    report["seconds"] = {{"read", input.read_seconds},         {"pack", input.pack_seconds},
-                         {"boundary", input.boundary_seconds}, {"upload", scene.upload_seconds()},
-                         {"extract", scene.extract_seconds()}, {"draw", picture.draw_seconds},
+    report["seconds"] = {{"read", input.read_seconds},         {"pack", made.pack_seconds},
+                         {"boundary", made.boundary_seconds}, {"upload", made.upload_seconds},
+                         {"extract", made.extract_seconds}, {"draw", picture.draw_seconds},
                          {"write", picture.write_seconds}};
-    report["extracting"] = json_of(scene.extract_work());
+    report["extracting"] = json_of(made.extract_work);
     report["drawing"] = json_of(picture.drawing);
     report["pictures"] = picture.pictures;
     report["file"] = json_text(picture.file);

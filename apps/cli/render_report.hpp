@@ -1,17 +1,16 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What `isotet render` tells: the table for people, and the JSON.
+// What `isotet render` tells: in the picture, in the table for people, and in the JSON.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include <isotet/render.hpp>
+#include <isotet/annotation.hpp>
 
 #include "json_output.hpp"
 #include "options.hpp"
 #include "render_input.hpp"
-#include "render_scene.hpp"
 
 namespace isotet::cli {
 
@@ -28,9 +27,18 @@ struct PictureNumbers {
 /// "0.25 %".
 std::string percent_text(double share);
 
-std::string render_table(const RenderCommand& command, const RenderInput& input, const RenderScene& scene,
-                         const Device& device, const PictureNumbers& picture);
-Json render_json(const RenderCommand& command, const RenderInput& input, const RenderScene& scene, const Device& device,
+/// Isovalues of the surfaces that are shown, each different.
+std::vector<std::string> isovalue_texts(const IsosurfaceScene& scene);
+
+/// Notes the isovalues that give no surface.
+void note_empty_surfaces(const RenderInput& input, Console& console);
+
+/// Scale, legend and caption; empty with --plain.
+Annotation annotation_of(const RenderCommand& command, const RenderInput& input);
+
+std::string render_table(const RenderCommand& command, const RenderInput& input, const Device& device,
+                         const PictureNumbers& picture);
+Json render_json(const RenderCommand& command, const RenderInput& input, const Device& device,
                  const PictureNumbers& picture);
 
 } // namespace isotet::cli

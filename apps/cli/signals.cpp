@@ -5,7 +5,7 @@
 
 namespace isotet::cli {
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr int stopping_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 extern "C" void stop(int) {
-    interrupted.store(true, std::memory_order_relaxed);
+    stop_requested.store(true, std::memory_order_relaxed);
     for (const int other : stopping_signals) std::signal(other, SIG_DFL);
 }
 

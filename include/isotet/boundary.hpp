@@ -19,4 +19,15 @@ namespace isotet {
 /// Method       faces cancel within each cluster first; those left over are sorted
 ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
+/// The boundary of a grid that is not packed: all faces that its tets, repeated ones aside, do not use equally often in
+/// both directions. Triangles face outwards; a face that is used more than once too often stands there once. Positions
+/// are the grid's, in its type.
+///
+/// Guarantees   the same bytes for any thread count
+/// Cost         O(n), as survey() with faces; faster than boundary_of() a packed grid
+/// Errors       invalid_data as survey(); out_of_memory; cancelled
+/// Threads      safe from many threads on one grid
+/// Method       tets are dealt into buckets that fit a processor's cache, where their faces are hashed
+ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
+
 } // namespace isotet

@@ -163,12 +163,17 @@ private:
 /// sixteenth of the memory that is free.
 ISOTET_API std::shared_ptr<const Engine> vulkan_engine(const Device& device, const DeviceGridOptions& options = {});
 
-/// Surfaces of a session whose engine is vulkan_engine(), in the order of the isovalues. They stay on the device, to be
-/// drawn there.
+/// Surfaces on a device, and what they cost.
+struct SurfacesOnDevice {
+    std::vector<DeviceSurface> surfaces; ///< in the order of the isovalues
+    DeviceWork work;
+};
+
+/// Surfaces of a session whose engine is vulkan_engine(). They stay on the device, to be drawn there.
 ///
 /// Errors   as Contour::extract() and DeviceGrid::extract(); invalid_argument when the session has another engine, or
 ///          has given the device up
-ISOTET_API Result<std::vector<DeviceSurface>> extract_on_device(Contour& contour, std::span<const double> isovalues,
-                                                                const Run& run = {});
+ISOTET_API Result<SurfacesOnDevice> extract_on_device(Contour& contour, std::span<const double> isovalues,
+                                                      const Run& run = {});
 
 } // namespace isotet

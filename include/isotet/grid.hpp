@@ -109,13 +109,15 @@ ISOTET_API Result<TetList> split(const Grid& grid, const Run& run = {});
 /// A grid after welding.
 struct MergedPoints {
     Grid grid;
-    std::size_t merged = 0; ///< points no longer used
+    std::size_t merged = 0;          ///< points no longer used
+    std::size_t collapsed_cells = 0; ///< contoured cells of which two corners became the same point
 };
 
 /// Welds points closer than `tolerance` (0: exactly equal coordinates; -0 equals +0): every cell then uses the
 /// lowest-numbered point of each chain of close points. Points and point fields keep their numbers and lengths.
 ///
-/// Errors   invalid_argument when the tolerance is negative or not finite; invalid_data as survey(); out_of_memory
+/// Errors   invalid_argument when the tolerance is negative or not finite, or so large that every contoured cell
+///          collapses; invalid_data as survey(); out_of_memory
 /// Cost     O(P log P), 24 bytes a point, and a new connectivity
 ISOTET_API Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Run& run = {});
 

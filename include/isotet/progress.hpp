@@ -5,6 +5,7 @@
 #include <functional>
 #include <string_view>
 
+
 namespace isotet {
 
 /// How a long operation tells how far it is, and how it is told to stop. Every operation that can last over a second

@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <tuple>
 #include <vector>
 
+#include <fmt/format.h>
 #include <tbb/parallel_sort.h>
 
 #include "core/carry_out.hpp"
+#include "core/faces.hpp"
+#include "core/memory.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
 
@@ -113,30 +117,73 @@ Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& point
         packed.reals);
 }
 
-Surface surface_of(const Packed& packed, const std::vector<PackedFace>& faces) {
+bool is_mirrored(const PackedFace& face) { return face.uses < 0; }
+bool is_mirrored(const BoundaryFace& face) { return face.mirrored; }
+
+/// Positions of some points, in the type of the grid's.
+Array positions_of(const Array& all, const std::vector<std::uint64_t>& points) {
+    const auto gathered = [&]<class Real>(Real) {
+        const std::span<const Real> from = all.as<Real>();
+        std::vector<Real> out(3 * points.size());
+        parallel_each(points.size(), 1 << 14, [&](std::size_t i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) out[3 * i + axis] = from[3 * points[i] + axis];
+        });
+        return Array::own(std::move(out), 3);
+    };
+    return all.type() == ScalarType::float32 ? gathered(float{}) : gathered(double{});
+}
+
+/// `Source`   a packed grid, or the points of the user's
+/// `Face`     with three points, ascending, and is_mirrored()
+template <class Source, class Face>
+Surface surface_of(const Source& source, const std::vector<Face>& faces) {
     std::vector<std::uint64_t> points;
     points.reserve(3 * faces.size());
-    for (const PackedFace& face : faces) points.insert(points.end(), face.points.begin(), face.points.end());
+    for (const Face& face : faces) points.insert(points.end(), face.points.begin(), face.points.end());
     tbb::parallel_sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
     std::vector<std::uint32_t> triangles(3 * faces.size());
     parallel_each(faces.size(), 1 << 12, [&](std::size_t i) {
         std::array<std::uint64_t, 3> corners = faces[i].points;
-        if (faces[i].uses < 0) std::swap(corners[1], corners[2]);
+        if (is_mirrored(faces[i])) std::swap(corners[1], corners[2]);
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const auto place = std::lower_bound(points.begin(), points.end(), corners[corner]);
             triangles[3 * i + corner] =
-                static_cast<std::uint32_t>(place - points.begin()); // a packed grid has fewer than 2^32 points
+                static_cast<std::uint32_t>(place - points.begin()); // fewer than 2^32: tets use no more points
         }
     });
     Surface surface;
-    surface.positions = positions_of(packed, points);
+    surface.positions = positions_of(source, points);
     surface.triangles = Array::own(std::move(triangles), 3);
     return surface;
 }
 
+Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
+    const auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    const TetSurvey tets = survey_tets(grid, *cells, progress);
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "finding the boundary was cancelled"};
+    if (tets.tets == 0) return nothing_to_contour(grid, *cells);
+    constexpr std::uint64_t enough_for_small_grids = 1 << 26;
+    const std::uint64_t memory = std::max(free_memory() / 4, enough_for_small_grids);
+    const auto faces = find_boundary_faces(grid, *cells, tets, {.memory = memory}, progress);
+    if (!faces) return faces.error();
+    constexpr std::uint64_t max_numbers = std::numeric_limits<std::uint32_t>::max();
+    if (3 * faces->size() > max_numbers && grid.points.tuples() > max_numbers)
+        return Error{ErrorCode::invalid_data, fmt::format("the boundary has {} faces, but of a grid of more than 2^32 "
+                                                          "points it must have at most {}",
+                                                          faces->size(), max_numbers / 3)};
+    return surface_of(grid.points, *faces);
+}
+
 } // namespace
 } // namespace core
+
+Result<Surface> boundary_of(const Grid& grid, const Run& run) {
+    return core::carry_out("finding the boundary", run,
+                           [&](const Progress& progress) { return core::boundary_of_grid(grid, progress); });
+}
 
 Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {
     return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {

@@ -67,6 +67,13 @@ public:
     }
     std::size_t size() const { return size_; }
 
+    /// Calls use(item) for every item, in the order of the table.
+    template <class Use>
+    void for_each(const Use& use) const {
+        for (const Item& item : places_)
+            if (!is_empty(item)) use(item);
+    }
+
     /// The item with this key, which is added where there is none.
     template <class Key>
     Item& operator[](const Key& key) {
@@ -147,6 +154,15 @@ public:
             use({p[0], p[1], p[3]}, sign, counts);
             use({p[0], p[1], p[2]}, -sign, counts);
         }
+    }
+
+    /// Calls found(points, mirrored) for each unbalanced face of the last bucket, in no particular order: its points
+    /// ascending, and whether it faces outwards in the mirrored order.
+    template <class Found>
+    void each_unbalanced(const Found& found) const {
+        faces_.for_each([&](const Face& face) {
+            if (face.balance != 0) found(face.key, face.balance < 0);
+        });
     }
 
 private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <mutex>
+#include <optional>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_sort.h>
@@ -53,6 +54,21 @@ public:
           bucket_count_(buckets_.of(cells.points() - 1) + 1),
           chunks_(std::clamp<std::size_t>(cells.count() / min_chunk, 1, max_chunks)) {}
 
+    /// Faces are kept, too, bucket by bucket.
+    void keep_faces() { faces_.emplace(bucket_count_); }
+
+    std::vector<BoundaryFace> faces() {
+        std::size_t count = 0;
+        for (const auto& some : *faces_) count += some.size();
+        std::vector<BoundaryFace> all;
+        all.reserve(count);
+        for (auto& some : *faces_) {
+            all.insert(all.end(), some.begin(), some.end());
+            some = {};
+        }
+        return all;
+    }
+
     Result<FaceSurvey> run(std::uint64_t memory) {
         const std::uint64_t bytes = 2 * survey_.tets * sizeof(AscendingTet<Point>); // a tet is in at most two buckets
         const std::uint64_t rounds =
@@ -81,13 +97,25 @@ private:
         std::atomic<std::size_t> done{0};
         parallel_each(last - first, 1, [&](std::size_t b) {
             if (progress_.cancelled()) return;
-            counters.local().add(dealt.bucket(b), first + b, buckets_, progress_, counts.local());
+            FaceCounter<Point>& counter = counters.local();
+            counter.add(dealt.bucket(b), first + b, buckets_, progress_, counts.local());
+            if (faces_) keep_unbalanced(counter, (*faces_)[first + b]);
             report(first + 0.4 * static_cast<double>(last - first) + 0.6 * static_cast<double>(++done));
         });
         for (const FaceCounts& part : counts) {
             total_.repeated += part.repeated;
             total_.unbalanced += part.unbalanced;
         }
+    }
+
+    /// Where all tets are mirrored alike, is_mirrored() says that none is.
+    void keep_unbalanced(const FaceCounter<Point>& counter, std::vector<BoundaryFace>& out) const {
+        const bool other_way = survey_.all_alike() && survey_.mirrored > 0;
+        counter.each_unbalanced([&](const std::array<Point, 3>& points, bool mirrored) {
+            out.push_back({{points[0], points[1], points[2]}, mirrored != other_way});
+        });
+        std::sort(out.begin(), out.end(),
+                  [](const BoundaryFace& a, const BoundaryFace& b) { return a.points < b.points; });
     }
 
     void report(double buckets) const {
@@ -136,6 +164,7 @@ private:
     PointBuckets buckets_;
     std::size_t bucket_count_, chunks_;
     FaceCounts total_;
+    std::optional<std::vector<std::vector<BoundaryFace>>> faces_;
 };
 
 } // namespace
@@ -163,13 +192,36 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets) {
     return faces;
 }
 
-Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
-                                const FaceSurveyOptions& options, const Progress& progress) {
+namespace {
+
+/// Calls use(surveyor) with the surveyor for the width of point numbers that the grid needs.
+template <class Use>
+auto with_surveyor(const Grid& grid, const CellReader& cells, const TetSurvey& survey, bool wide,
+                   const Progress& progress, const Use& use) {
     using Narrow = std::uint32_t;
     using Wide = std::uint64_t;
-    if (options.wide || cells.points() > AscendingTet<Narrow>::max_points)
-        return FaceSurveyor<Wide>(grid, cells, survey, progress).run(options.memory);
-    return FaceSurveyor<Narrow>(grid, cells, survey, progress).run(options.memory);
+    if (wide || cells.points() > AscendingTet<Narrow>::max_points)
+        return use(FaceSurveyor<Wide>(grid, cells, survey, progress));
+    return use(FaceSurveyor<Narrow>(grid, cells, survey, progress));
+}
+
+} // namespace
+
+Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
+                                const FaceSurveyOptions& options, const Progress& progress) {
+    return with_surveyor(grid, cells, survey, options.wide, progress,
+                         [&](auto surveyor) { return surveyor.run(options.memory); });
+}
+
+Result<std::vector<BoundaryFace>> find_boundary_faces(const Grid& grid, const CellReader& cells,
+                                                      const TetSurvey& survey, const FaceSurveyOptions& options,
+                                                      const Progress& progress) {
+    return with_surveyor(grid, cells, survey, options.wide, progress,
+                         [&](auto surveyor) -> Result<std::vector<BoundaryFace>> {
+                             surveyor.keep_faces();
+                             if (const auto counted = surveyor.run(options.memory); !counted) return counted.error();
+                             return surveyor.faces();
+                         });
 }
 
 } // namespace isotet::core

@@ -87,24 +87,6 @@ std::uint64_t free_memory() {
     return least;
 }
 
-std::optional<std::uint64_t> resident_memory() { return proc_bytes("/proc/self/status", "VmRSS:"); }
-
-std::optional<std::uint64_t> peak_resident_memory() { return proc_bytes("/proc/self/status", "VmHWM:"); }
-
-bool forget_peak_memory() {
-    std::ofstream clear("/proc/self/clear_refs");
-    clear << "5\n" << std::flush; // proc(5): resets the peak resident set size
-    return static_cast<bool>(clear);
-}
-
-std::string format_bytes(std::uint64_t bytes) {
-    const auto value = static_cast<double>(bytes);
-    if (value < 1e3) return fmt::format("{} B", bytes);
-    if (value < 1e6) return fmt::format("{:.1f} kB", value / 1e3);
-    if (value < 1e9) return fmt::format("{:.1f} MB", value / 1e6);
-    return fmt::format("{:.1f} GB", value / 1e9);
-}
-
 Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
     std::uint64_t free = free_memory();
     if (bytes > free && drop_kept_blocks() > 0) free = free_memory();
@@ -114,3 +96,17 @@ Result<void> require_memory(std::string_view what, std::uint64_t bytes) {
 }
 
 } // namespace isotet::core
+
+namespace isotet {
+
+std::optional<std::uint64_t> resident_memory() { return core::proc_bytes("/proc/self/status", "VmRSS:"); }
+
+std::optional<std::uint64_t> peak_resident_memory() { return core::proc_bytes("/proc/self/status", "VmHWM:"); }
+
+bool reset_peak_memory() {
+    std::ofstream clear("/proc/self/clear_refs");
+    clear << "5\n" << std::flush; // proc(5): resets the peak resident set size
+    return static_cast<bool>(clear);
+}
+
+} // namespace isotet

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include <isotet/export.hpp>
+#include <isotet/process_memory.hpp>
 #include <isotet/result.hpp>
+#include <isotet/text.hpp>
 
 namespace isotet::core {
 
@@ -24,15 +25,9 @@ std::uint64_t control_group_free(const std::string& membership, const std::strin
 /// An out_of_memory error when `bytes` are more than free_memory(): "packing needs 12.3 GB, but 4.5 GB are free".
 ISOTET_API Result<void> require_memory(std::string_view what, std::uint64_t bytes);
 
-/// The memory of this process that is in the machine: now, and at its most since the process began or since the peak
-/// was last forgotten. Nothing where the system does not tell.
-std::optional<std::uint64_t> resident_memory();
-std::optional<std::uint64_t> peak_resident_memory();
-
-/// Lets the peak begin anew; false where the system cannot.
-bool forget_peak_memory();
-
-/// "12.3 GB", decimal.
-ISOTET_API std::string format_bytes(std::uint64_t bytes);
+using isotet::format_bytes;
+using isotet::peak_resident_memory;
+using isotet::reset_peak_memory;
+using isotet::resident_memory;
 
 } // namespace isotet::core

@@ -75,6 +75,31 @@ Array replaced(const Array& connectivity, const core::CellReader& cells, const s
     });
 }
 
+struct CollapsedCells {
+    std::uint64_t collapsed = 0, contoured = 0;
+};
+
+/// How many contoured cells get two equal corners that were different points.
+CollapsedCells count_collapsed(const core::CellReader& cells, const std::vector<std::uint64_t>& lowest) {
+    std::atomic<std::uint64_t> collapsed = 0, contoured = 0;
+    core::parallel_ranges(cells.count(), grain, [&](std::size_t begin, std::size_t end) {
+        CollapsedCells part;
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            if (!core::is_contoured(cells.type(cell))) continue;
+            ++part.contoured;
+            const std::uint64_t first = cells.first(cell), last = first + cells.corners(cell);
+            bool merged = false;
+            for (std::uint64_t i = first; i < last && !merged; ++i)
+                for (std::uint64_t j = first; j < i && !merged; ++j)
+                    merged = cells.corner(i) != cells.corner(j) && lowest[cells.corner(i)] == lowest[cells.corner(j)];
+            part.collapsed += merged;
+        }
+        collapsed += part.collapsed;
+        contoured += part.contoured;
+    });
+    return {collapsed, contoured};
+}
+
 Result<MergedPoints> merge(const Grid& grid, double tolerance, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
@@ -95,9 +120,18 @@ Result<MergedPoints> merge(const Grid& grid, double tolerance, const Progress& p
     if (progress.cancelled()) return cancelled();
     progress("merge points", 0.8);
 
-    MergedPoints result{grid, 0};
+    MergedPoints result{grid, 0, 0};
     for (std::uint64_t point = 0; point < lowest.size(); ++point) result.merged += lowest[point] != point;
-    if (result.merged > 0) result.grid.cells.connectivity = replaced(grid.cells.connectivity, *cells, lowest);
+    if (result.merged > 0) {
+        const CollapsedCells cells_hit = count_collapsed(*cells, lowest);
+        if (tolerance > 0 && cells_hit.collapsed == cells_hit.contoured)
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("the tolerance is {}, but with it every one of the {} cells collapses: it must be "
+                                     "below the length of their edges",
+                                     tolerance, cells_hit.contoured)};
+        result.collapsed_cells = cells_hit.collapsed;
+        result.grid.cells.connectivity = replaced(grid.cells.connectivity, *cells, lowest);
+    }
     progress("merge points", 1);
     return result;
 }

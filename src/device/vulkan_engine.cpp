@@ -79,17 +79,18 @@ std::shared_ptr<const Engine> vulkan_engine(const Device& device, const DeviceGr
     return std::make_shared<const VulkanEngine>(device, options);
 }
 
-Result<std::vector<DeviceSurface>> extract_on_device(Contour& contour, std::span<const double> isovalues,
-                                                     const Run& run) {
-    Result<std::vector<DeviceSurface>> surfaces = Error{};
+Result<SurfacesOnDevice> extract_on_device(Contour& contour, std::span<const double> isovalues, const Run& run) {
+    SurfacesOnDevice found;
     const auto extract = [&](EngineGrid& grid, const ExtractOptions& options) -> Result<void> {
         auto* const on_device = dynamic_cast<GridOfSession*>(&grid);
         if (!on_device) return invalid_argument("the session has another engine than a device");
-        surfaces = on_device->grid().extract(isovalues, options, run);
+        auto surfaces = on_device->grid().extract(isovalues, options, run);
+        if (!surfaces) return surfaces.error();
+        found = {*std::move(surfaces), on_device->grid().work()};
         return {};
     };
     if (auto ok = contour.use_grid(isovalues.size(), extract, run); !ok) return ok.error();
-    return surfaces;
+    return found;
 }
 
 } // namespace isotet

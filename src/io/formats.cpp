@@ -135,8 +135,9 @@ Error nobody_knows(const std::string& path, const Head& head, const std::string&
     }
 #endif
     return {ErrorCode::file,
-            fmt::format("{} has no format that isotet reads: {}, its name ends in {}; formats are {}", path, seen,
-                        extension.empty() ? "nothing" : in_quotes(extension), fmt::join(names_of_readers(), ", "))};
+            fmt::format("{} has no format that isotet reads: {}, its name {}; formats are {}", path, seen,
+                        extension.empty() ? "has no extension" : "ends in " + in_quotes(extension),
+                        fmt::join(names_of_readers(), ", "))};
 }
 
 } // namespace

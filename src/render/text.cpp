@@ -8,34 +8,21 @@
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
+#include <isotet/text.hpp>
+
 #include "font_bytes.hpp"
 
 namespace isotet::render {
 
 namespace {
 
-constexpr std::uint32_t replacement = 0xFFFD;
 constexpr double fixed = 64; // FreeType counts in 64ths of a pixel
 
-/// The next character, and takes it off; one byte of what is not UTF-8.
-std::uint32_t next_character(std::string_view& text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
-    };
-    const std::uint8_t first = byte(0);
-    const std::size_t more = first < 0x80                    ? 0
-                             : first >= 0xF0 && first < 0xF8 ? 3
-                             : first >= 0xE0                 ? 2
-                             : first >= 0xC0                 ? 1
-                                                             : 4;
-    std::uint32_t character = more == 0 ? first : first & (0x3FU >> more);
-    bool right = more < 4 && first < 0xF8;
-    for (std::size_t i = 1; right && i <= more; ++i) {
-        right = (byte(i) & 0xC0) == 0x80;
-        character = character << 6 | (byte(i) & 0x3FU);
-    }
-    text.remove_prefix(right ? more + 1 : 1);
-    return right ? character : replacement;
+/// Takes the next character off; U+FFFD stands for a byte that is not UTF-8.
+char32_t next_character(std::string_view& text) {
+    const Utf8Character character = first_utf8_character(text);
+    text.remove_prefix(character.bytes);
+    return character.code;
 }
 
 } // namespace
@@ -104,8 +91,8 @@ double TextPainter::width(std::string_view text) const {
 std::size_t TextPainter::count_missing(std::string_view text) const {
     std::size_t missing = 0;
     while (!text.empty()) {
-        const std::uint32_t character = next_character(text);
-        missing += character == replacement || FT_Get_Char_Index(data_->face, character) == 0;
+        const char32_t character = next_character(text);
+        missing += character == U'\uFFFD' || FT_Get_Char_Index(data_->face, character) == 0;
     }
     return missing;
 }

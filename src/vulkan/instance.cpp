@@ -42,7 +42,9 @@ VKAPI_ATTR VkBool32 VKAPI_CALL hear(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDe
 /// Always the machine's fault: loaders speak of memory, too, when a driver's description is broken.
 Error no_instance(VkResult result) {
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-        return {ErrorCode::no_device, "there is a Vulkan loader on this machine, but no driver that it can use"};
+        return {ErrorCode::no_device,
+                "there is a Vulkan loader on this machine, but no driver that it can use; drivers of graphics cards "
+                "bring one, and the package mesa-vulkan-drivers of Debian and Ubuntu has a software device"};
     return {ErrorCode::no_device, failure("starting Vulkan", result).message};
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "program.hpp"
+#include "small_grid.hpp"
 
 namespace isotet::test {
 namespace {
@@ -21,7 +22,7 @@ std::vector<std::string> bench(const std::vector<std::string>& more) {
 
 TEST_F(Program, BenchMeasuresWhatNeedsNoDeviceAndSaysWhichToTake) {
     const json report = json_of(bench({"make:kuhn:8:sphere", "-i", "0.5,0.7"}));
-    EXPECT_EQ(report["schema"], 2);
+    EXPECT_EQ(report["schema"], 3);
     EXPECT_EQ(report["field"], "sphere");
     EXPECT_EQ(report["isovalues"], json({0.5, 0.7}));
     EXPECT_TRUE(report["device"].is_null());
@@ -31,7 +32,7 @@ TEST_F(Program, BenchMeasuresWhatNeedsNoDeviceAndSaysWhichToTake) {
         const json& row = report["rows"][i];
         EXPECT_EQ(row["method"], methods[i]);
         EXPECT_EQ(row["tets"], 6 * 8 * 8 * 8);
-        EXPECT_TRUE(row["filter"].is_null());
+        EXPECT_TRUE(row["index"].is_null());
         EXPECT_GT(row["triangles"], 100);
         EXPECT_EQ(row["seconds"]["draw"], 0);
         EXPECT_GT(row["seconds"]["all"], 0);
@@ -62,22 +63,23 @@ TEST_F(Program, BenchRecommendsWhatItMeasured) {
     }
 }
 
-TEST_F(Program, BenchWritesRowsAndCharts) {
-    const RunResult run =
-        isotet(bench({"--paper", "--max-tets", "3000", "--csv", path("rows.csv"), "--svg", path("chart.svg")}));
+TEST_F(Program, BenchOfThePaperMeasuresGridsOfGrowingSize) {
+    const RunResult run = isotet(bench({"--paper", "--max-tets", "3000", "--json", path("rows.json")}));
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("2,058 direct"), std::string::npos) << run.out;
-    const std::string rows = content_of(path("rows.csv")), chart = content_of(path("chart.svg"));
-    EXPECT_EQ(std::ranges::count(rows, '\n'), 3);
-    for (std::size_t begin = 0; begin < rows.size();) { // every line has the columns of the first
-        const std::string line = rows.substr(begin, rows.find('\n', begin) - begin);
-        EXPECT_EQ(std::ranges::count(line, ','), 18) << line;
-        begin += line.size() + 1;
-    }
-    for (const char* part : {"<svg", ">direct<", ">clusters<", ">GPU(R) in the paper, 2006<", "</svg>"})
-        EXPECT_NE(chart.find(part), std::string::npos) << part;
-    ASSERT_EQ(isotet(bench({"make:kuhn:4:sphere", "--svg", path("one.svg")})).status, 0);
-    EXPECT_NE(content_of(path("one.svg")).find("make:kuhn:4:sphere: sphere"), std::string::npos);
+    const json report = json::parse(content_of(path("rows.json")));
+    EXPECT_EQ(report["rows"].size(), 2u);
+    EXPECT_EQ(report["rows"][0]["grid"], "make:kuhn:7:gyroid");
+}
+
+TEST_F(Program, BenchTellsOfRepeatedTets) {
+    std::string grid = small_grid({{"p", {0, 1, 1, 1, 2}}});
+    const std::string cells = "2\n1 4 2 1 1 1 2 3 4\n";
+    grid.replace(grid.find(cells), cells.size(), "3\n1 4 2 1 1 1 2 3 4\n3 4 2 1 1 1 2 3 4\n");
+    put_content(path("g.msh"), grid);
+    const RunResult run = isotet(bench({path("g.msh"), "-i", "0.5", "--methods", "clusters"}));
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("2, 1 repeated or collapsed ones dropped"), std::string::npos) << run.out;
 }
 
 TEST_F(Program, BenchSaysWhenThereIsNoSurface) {
@@ -93,10 +95,7 @@ TEST_F(Program, BenchRefusesWhatItCannotMeasure) {
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4", "--methods", "textures"})),
                              "--methods has textures, which needs a device"));
     EXPECT_TRUE(
-        is_one_error(isotet(bench({"make:kuhn:4", "--filters", "octree"})), "none of the methods takes lists of tets"));
-    const RunResult twice = isotet(bench({"make:kuhn:4:sphere", "--csv", path("a"), "--svg", path("a")}));
-    EXPECT_EQ(twice.status, 2) << twice.err;
-    EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4:sphere", "--csv", "-"})), "--csv got '-'"));
+        is_one_error(isotet(bench({"make:kuhn:4", "--indexes", "octree"})), "none of the methods takes lists of tets"));
     EXPECT_TRUE(is_one_error(isotet(bench({"make:kuhn:4:sphere", "--device-memory", "1GB"})), "--device is none"));
     EXPECT_EQ(isotet(bench({"--paper", "--merge-points", "0"})).status, 2);
     EXPECT_EQ(isotet(bench({path("missing.vtu")})).status, 3);

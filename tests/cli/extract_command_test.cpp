@@ -83,7 +83,7 @@ TEST_F(Program, ExtractChoosesTheMethodByTheNumberOfSurfacesAlone) {
     EXPECT_EQ(method({"--levels", "32", "--engine", "reference"}), "clusters");
     EXPECT_EQ(method({"--levels", "3", "--normals", "gradient"}), "direct");
     EXPECT_EQ(method({"--levels", "4", "--normals", "gradient"}), "clusters");
-    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "0.5"});
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", "-i", "0.5", "-v"});
     EXPECT_NE(run.out.find("direct (1 surface)"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find(" predicted, took "), std::string::npos) << run.out;
 }
@@ -317,10 +317,10 @@ TEST_F(Program, ExtractTellsOfCoincidentPointsAndWeldsThem) {
     put_content(path("g.msh"), grid);
     const RunResult open = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0.5"});
     EXPECT_EQ(open.status, 0) << open.err;
-    EXPECT_NE(open.err.find("3 points lie exactly on others"), std::string::npos) << open.err;
+    EXPECT_NE(open.err.find("3 points coincide with other points"), std::string::npos) << open.err;
     const RunResult welded = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0.5", "--merge-points", "0"});
     EXPECT_EQ(welded.status, 0) << welded.err;
-    EXPECT_EQ(welded.err.find("points lie exactly on others"), std::string::npos) << welded.err;
+    EXPECT_EQ(welded.err.find("coincide"), std::string::npos) << welded.err;
 }
 
 TEST_F(Program, ExtractReplacesAnOldFileAsAWhole) {
@@ -328,6 +328,114 @@ TEST_F(Program, ExtractReplacesAnOldFileAsAWhole) {
     EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5"}).status, 0);
     EXPECT_GT(read_back(path("s.vtp")).surface.triangle_count(), 0u);
     EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST_F(Program, ExtractShowsSurfacesFirstAndHowTheyWereMadeOnlyWhenVerbose) {
+    const std::vector<std::string> arguments{"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5"};
+    const RunResult run = isotet(arguments);
+    EXPECT_TRUE(run.out.starts_with("isovalue")) << run.out;
+    EXPECT_LT(run.out.find("triangles"), run.out.find("grid"));
+    for (const char* detail : {"method", "memory", "predicted", "tied points"})
+        EXPECT_EQ(run.out.find(detail), std::string::npos) << detail;
+    std::vector<std::string> verbose = arguments;
+    verbose.push_back("-v");
+    const RunResult more = isotet(verbose);
+    for (const char* detail : {"method", "memory", "predicted", "tied points"})
+        EXPECT_NE(more.out.find(detail), std::string::npos) << detail;
+}
+
+TEST_F(Program, ExtractFailsIfEmptyWhenAskedTo) {
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5,99", "--fail-if-empty"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_TRUE(is_one_error(run, "--fail-if-empty: isovalue 99 is outside the range"));
+    EXPECT_EQ(folder.entries(), 0u);
+    EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5", "--fail-if-empty"}).status, 0);
+}
+
+TEST_F(Program, ExtractExplainsAnIsovalueAtTheMinimum) {
+    put_content(path("g.msh"), small_grid({{"p", {0, 1, 2, 3, 4}}}));
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_NE(run.err.find("0 is the smallest value of 'p': nothing is below it, the surface is empty"),
+              std::string::npos)
+        << run.err;
+}
+
+TEST_F(Program, ExtractSaysWhenAnEmptySurfaceReplacesAFile) {
+    put_content(path("s.vtp"), "old");
+    const RunResult run = isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "99"});
+    EXPECT_NE(run.err.find("s.vtp' was replaced by an empty surface"), std::string::npos) << run.err;
+    const RunResult fresh = isotet({"extract", "make:kuhn:4:sphere", path("t.vtp"), "-i", "99"});
+    EXPECT_EQ(fresh.err.find("replaced"), std::string::npos) << fresh.err;
+}
+
+TEST_F(Program, ExtractReadsIsovaluesFromAFile) {
+    put_content(path("levels.txt"), "# metres\n0.5, 0.75\n\n1 1.25 # the last\r\n");
+    const json report = json_of({"extract", "make:kuhn:4:sphere", "-i", "@" + path("levels.txt"), "-i", "0.25"});
+    std::vector<double> isovalues;
+    for (const json& surface : report["surfaces"]) isovalues.push_back(surface["isovalue"]);
+    EXPECT_EQ(isovalues, (std::vector<double>{0.5, 0.75, 1, 1.25, 0.25}));
+}
+
+TEST_F(Program, ExtractNamesTheLineOfAnIsovalueFileThatIsWrong) {
+    const auto run = [&](const std::string& text) {
+        put_content(path("levels.txt"), text);
+        return isotet({"extract", "make:kuhn:4:sphere", "-i", "@" + path("levels.txt")});
+    };
+    const RunResult wrong = run("0.5\n0.75 0.8m\n");
+    EXPECT_EQ(wrong.status, 3);
+    EXPECT_TRUE(is_one_error(wrong, "line 2 has '0.8m', but must have finite numbers"));
+    EXPECT_TRUE(is_one_error(run("1e999"), "line 1 has '1e999'"));
+    EXPECT_TRUE(is_one_error(run("# nothing\n"), "has no number"));
+    const RunResult missing = isotet({"extract", "make:kuhn:4:sphere", "-i", "@" + path("missing.txt")});
+    EXPECT_EQ(missing.status, 3);
+    EXPECT_TRUE(is_one_error(missing, "cannot be read"));
+}
+
+TEST_F(Program, ExtractTakesAListOfFieldsToCarry) {
+    put_content(path("g.msh"), small_grid({{"p", {0, 1, 1, 1, 2}}, {"q", {5, 6, 7, 8, 9}}, {"a,b", {1, 1, 1, 1, 1}}}));
+    const std::vector<std::string> start{"extract", path("g.msh"), path("s.vtp"), "-f", "p", "-i", "0.5", "--with"};
+    const auto carried = [&](const std::string& with) {
+        std::vector<std::string> arguments = start;
+        arguments.push_back(with);
+        EXPECT_EQ(isotet(arguments).status, 0) << with;
+        std::vector<std::string> names;
+        for (const Field& one : read_back(path("s.vtp")).surface.point_fields) names.push_back(one.name);
+        return names;
+    };
+    EXPECT_EQ(carried("p,q"), (std::vector<std::string>{"p", "q"}));
+    EXPECT_EQ(carried("a,b"), (std::vector<std::string>{"a,b"})) << "a name with a comma is taken whole";
+}
+
+TEST_F(Program, ExtractRefusesAToleranceThatCollapsesEveryCell) {
+    const std::vector<std::string> grid{"extract", "make:kuhn:4:sphere", "-i", "0.5", "--merge-points"};
+    const auto merge = [&](const char* tolerance) {
+        std::vector<std::string> arguments = grid;
+        arguments.push_back(tolerance);
+        return isotet(arguments);
+    };
+    const RunResult run = merge("10");
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "--merge-points: the tolerance is 10, but with it every one of the 384 cells"));
+    EXPECT_EQ(merge("0.01").status, 0);
+}
+
+TEST_F(Program, ExtractTellsOfCellsThatMergingCollapses) {
+    std::string grid = small_grid({{"p", {0, 1, 1, 1, 2}}});
+    const std::string point = "2 1 0 0\n"; // near the first one
+    grid.replace(grid.find(point), point.size(), "2 0.001 0 0\n");
+    put_content(path("g.msh"), grid);
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "-i", "1.5", "--merge-points", "0.01"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("--merge-points 0.01 is longer than edges of 1 cell, which collapse"), std::string::npos)
+        << run.err;
+}
+
+TEST_F(Program, ExtractListsFieldsForAWrongDisplacement) {
+    put_content(path("g.msh"), small_grid({{"p", {0, 1, 1, 1, 2}}, {"shift", {5, 6, 7, 8, 9}}}));
+    const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0.5", "--displace", "shft"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_error(run, "--displace takes a point field: there is no field 'shft': the grid has 'shift', 'p'"));
 }
 
 } // namespace

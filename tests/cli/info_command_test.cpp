@@ -11,7 +11,7 @@ using nlohmann::json;
 TEST_F(Program, InfoTellsCellsFieldsAndRanges) {
     put_content(path("g.msh"), small_grid({{"p", {1, 2, 3, 4, 9}}, {"c", {-5, 7}, 0, true}}));
     const json report = json_of({"info", path("g.msh")});
-    EXPECT_EQ(report["schema"], 2);
+    EXPECT_EQ(report["schema"], 3);
     EXPECT_EQ(report["points"], 5);
     EXPECT_EQ(report["cells"], 2);
     EXPECT_EQ(report["tets"], 2);
@@ -54,6 +54,13 @@ TEST_F(Program, InfoCountsValuesThatAreNoNumber) {
             EXPECT_EQ(field["nan"], json::array({1}));
         }
     }
+}
+
+TEST_F(Program, InfoOfASurfaceNamesTheCommandsForSurfaces) {
+    EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5"}).status, 0);
+    const RunResult run = isotet({"info", path("s.vtp")});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_TRUE(is_one_error(run, "is a surface, not a grid: isotet check measures it, isotet render draws it"));
 }
 
 TEST_F(Program, BareFileIsInfo) {

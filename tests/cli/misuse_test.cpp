@@ -24,7 +24,12 @@ const Misuse misuses[] = {
     {{}, "no command"},
     {{"extrct"}, "'extrct' is neither a command nor a file"},
     {{"extract"}, "FILE is required"},
-    {{"extract", "make:kuhn:2", "--bogus"}, "--bogus"},
+    {{"extract", "make:kuhn:2", "--bogus"}, "there is no option '--bogus'"},
+    {{"extract", "--isovalues=3"}, "there is no option '--isovalues'; the nearest is --isovalue"},
+    {{"--bogus"}, "there is no option '--bogus'"},
+    {{"help", "extrct"}, "'extrct' is no command; commands are info, extract"},
+    {{"extract", "make:kuhn:2:sphere", "-i", "1", "s-{val}.vtp"},
+     "has {val}, but here only {value} and {time} and {step} can stand for something"},
     {{"extract", "make:kuhn:2", "a.vtp", "-o", "b.vtp", "-i", "1"}, "excludes"},
     {{"extract", "", "-i", "1"}, "FILE got '', but it takes the name of a file"},
     {{"extract", "make:kuhn:2:sphere", "", "-i", "1"}, "OUT got ''"},
@@ -130,6 +135,13 @@ TEST_F(Program, SaysThreeToBrokenData) {
     EXPECT_EQ(run.status, 3);
     EXPECT_TRUE(is_one_error(run, "broken.msh"));
     EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST_F(Program, HelpIsACommandToo) {
+    EXPECT_EQ(isotet({"help"}).out, isotet({"--help"}).out);
+    const RunResult run = isotet({"help", "extract"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.out, isotet({"extract", "--help"}).out);
 }
 
 TEST_F(Program, SaysHelpOnStandardOutputWithStatusZero) {

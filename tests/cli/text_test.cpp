@@ -94,11 +94,11 @@ TEST(ParseBytes, TakesDecimalUnits) {
         EXPECT_FALSE(parse_bytes(text)) << text;
 }
 
-TEST(BytesText, ChangesUnitsAtAThousand) {
-    EXPECT_EQ(bytes_text(999), "999 B");
-    EXPECT_EQ(bytes_text(1000), "1.0 kB");
-    EXPECT_EQ(bytes_text(999'960), "1.0 MB");
-    EXPECT_EQ(bytes_text(2'500'000'000'000'000), "2500.0 TB");
+TEST(FormatBytes, ChangesUnitsAtAThousand) {
+    EXPECT_EQ(format_bytes(999), "999 B");
+    EXPECT_EQ(format_bytes(1000), "1.0 kB");
+    EXPECT_EQ(format_bytes(999'960), "1.0 MB");
+    EXPECT_EQ(format_bytes(2'500'000'000'000'000), "2500.0 TB");
 }
 
 } // namespace

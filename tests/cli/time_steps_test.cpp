@@ -67,10 +67,15 @@ TEST_F(ProgramWithTimes, AllStepsMakeOneFileEachAndEqualThoseOfSingleSteps) {
     }
 }
 
+TEST_F(ProgramWithTimes, TheRangeOfASeriesIsThatOfTheLastStep) {
+    const RunResult run = isotet({"extract", grid, "-f", "p", "-i", "1", "--all-steps"});
+    EXPECT_NE(run.out.find("p, 0 to 8 in the last time step"), std::string::npos) << run.out;
+}
+
 TEST_F(ProgramWithTimes, AllStepsIntoOneFileAreRefused) {
     const RunResult run = isotet({"extract", grid, path("s.vtp"), "-f", "p", "-i", "1", "--all-steps"});
     EXPECT_EQ(run.status, 2);
-    EXPECT_TRUE(is_one_error(run, "has no {time}"));
+    EXPECT_TRUE(is_one_error(run, "has neither {step} nor {time}"));
 }
 
 TEST_F(ProgramWithTimes, LevelsFollowTheRangeOfEachStep) {
@@ -86,6 +91,38 @@ TEST_F(ProgramWithTimes, TheCellsAreNotPackedAgainWhereOnlyValuesChange) {
     std::size_t count = 0;
     for (std::size_t at = 0; (at = run.err.find("not packed again", at)) != std::string::npos; ++at) ++count;
     EXPECT_EQ(count, 2u) << run.err;
+}
+
+TEST_F(ProgramWithTimes, StepsNumberTheFilesOfASeriesAndACollectionNamesThem) {
+    const json report = json_of({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--all-steps"});
+    for (const char* step : {"0", "1", "2"}) EXPECT_TRUE(std::filesystem::exists(path(fmt::format("s-{}.vtp", step))));
+    EXPECT_EQ(report["collection"], path("s.pvd"));
+    const std::string collection = content_of(path("s.pvd"));
+    EXPECT_NE(collection.find("timestep=\"0.1\" group=\"\" part=\"0\" file=\"s-1.vtp\""), std::string::npos)
+        << collection;
+    EXPECT_NE(collection.find("timestep=\"2.5\""), std::string::npos);
+}
+
+TEST_F(ProgramWithTimes, SurfacesOfOneTimeArePartsOfTheCollection) {
+    const RunResult run =
+        isotet({"extract", grid, path("{value}_{time}.vtp"), "-f", "p", "-i", "0.5,1", "--all-steps"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const std::string collection = content_of(path("series.pvd"));
+    EXPECT_NE(collection.find("timestep=\"2.5\" group=\"\" part=\"1\" file=\"1_2.5.vtp\""), std::string::npos)
+        << collection;
+}
+
+TEST_F(ProgramWithTimes, ACollectionIsWrittenForASeriesOfVtpOnlyAndNeverOverTheInput) {
+    EXPECT_TRUE(json_of({"extract", grid, path("s-{step}.ply"), "-f", "p", "-i", "1", "--all-steps"})["collection"]
+                    .is_null());
+    EXPECT_TRUE(json_of({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--step", "1"})["collection"]
+                    .is_null());
+    EXPECT_TRUE(std::filesystem::exists(path("s-1.vtp")));
+    std::filesystem::create_symlink(grid, path("g.pvd"));
+    const RunResult run = isotet({"extract", grid, path("g-{step}.vtp"), "-f", "p", "-i", "1", "--all-steps"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("no collection of the series is written"), std::string::npos) << run.err;
+    EXPECT_TRUE(std::filesystem::is_symlink(path("g.pvd")));
 }
 
 } // namespace

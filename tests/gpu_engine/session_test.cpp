@@ -57,10 +57,11 @@ TEST_F(SessionOnDevice, GivesTheBytesOfTheCpuThroughChanges) {
 
 TEST_F(SessionOnDevice, LeavesSurfacesOnTheDevice) {
     Contour contour = Contour::create(session_input(grid, 0), {.engine = vulkan_engine(device())}).value();
-    const auto surfaces = extract_on_device(contour, std::array{0.1, 0.2}).value();
-    ASSERT_EQ(surfaces.size(), 2u);
+    const SurfacesOnDevice found = extract_on_device(contour, std::array{0.1, 0.2}).value();
+    ASSERT_EQ(found.surfaces.size(), 2u);
+    EXPECT_GT(found.work.submissions, 0u);
     const ContourResult expected = contour.extract(0.2).value();
-    EXPECT_EQ(surfaces[1].triangle_count(), expected.surfaces[0].surface.triangle_count());
+    EXPECT_EQ(found.surfaces[1].triangle_count(), expected.surfaces[0].surface.triangle_count());
     Contour cpu = Contour::create(session_input(grid, 0), on_cpu).value();
     EXPECT_EQ(extract_on_device(cpu, std::array{0.1}).error().message,
               "the session extracts by the cpu engine, which keeps no grid");

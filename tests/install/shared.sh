@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 # shared.sh STAGE CONSUMER FOLDER CXX: links shared libraries from the objects of the installed static ones, which were
-# compiled for both, and a consumer against them by what pkg-config says. Nothing but isotet's own names may be shown.
+# compiled for both, and a consumer against them by what pkg-config says. Nothing but isotet's own names may be shown, and
+# templates of the standard library, which show themselves.
 set -euo pipefail
 stage=$1 consumer=$2 folder=$3 cxx=$4
 
@@ -15,11 +16,11 @@ export PKG_CONFIG_PATH=$lib/pkgconfig
 link() {
     local name=$1
     shift
-    "$cxx" -shared -Wl,--no-undefined -Wl,-soname,"lib$name.so" -o "$lib/lib$name.so" \
+    "$cxx" -shared -Wl,--no-undefined -Wl,-soname,"lib$name.so" -Wl,-rpath,'$ORIGIN' -o "$lib/lib$name.so" \
         -Wl,--whole-archive "$lib/lib$name.a" -Wl,--no-whole-archive -L"$lib" "$@"
     local foreign
     foreign=$(nm -DC --defined-only "$lib/lib$name.so" | cut -d' ' -f3- |
-        grep -vE '^(typeinfo|vtable|VTT|typeinfo name|guard variable|construction vtable)|isotet::' || true)
+        grep -vE 'isotet::|(^|[ <])(std|__gnu_cxx)::' || true)
     if [[ -n $foreign ]]; then
         echo "lib$name.so shows what is not isotet's:"
         head <<<"$foreign"

@@ -93,29 +93,60 @@ TEST_F(Render, ExtractsOnEitherEngineTheSamePicture) {
     auto on_cpu = command("make:kuhn:8:sphere,gyroid", "cpu.png", more),
          on_device = command("make:kuhn:8:sphere,gyroid", "device.png", more);
     on_device.insert(on_device.end(), {"--engine", "vulkan"});
-    EXPECT_EQ(json_of(on_cpu)["engine"], "cpu");
+    const auto direct = json_of(on_cpu);
+    EXPECT_EQ(direct["engine"], "cpu");
+    EXPECT_EQ(direct["method"], "direct") << "one surface is not worth packing";
+    EXPECT_EQ(direct["seconds"]["pack"], 0);
     const auto report = json_of(on_device);
     EXPECT_EQ(report["engine"], "vulkan");
     EXPECT_LT(report["extracting"]["bytes_down"], 1000) << "the surface stays where it is";
     EXPECT_GT(content(path("device.png")).size(), 1000u);
 }
 
+TEST_F(Render, PacksForManySurfacesOnlyAndDrawsTheSamePicture) {
+    const auto method = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"--plain"});
+        return json_of(command("make:kuhn:8:sphere,gyroid", "{frame}.png", std::move(more)))["method"];
+    };
+    EXPECT_EQ(method({"-f", "gyroid", "--sweep", "-0.5,0.5,3"}), "direct");
+    EXPECT_EQ(method({"-f", "gyroid", "--sweep", "-0.5,0.5,4"}), "clusters");
+    const std::vector<std::string> more{"-f", "gyroid", "-i", "0.2", "--color-by", "sphere"};
+    ASSERT_EQ(isotet(command("make:kuhn:8:sphere,gyroid", "direct.png", more)).status, 0);
+    auto clusters = command("make:kuhn:8:sphere,gyroid", "clusters.png", more);
+    clusters.insert(clusters.end(), {"--method", "clusters", "--reference", path("direct.png")});
+    const auto report = json_of(clusters);
+    EXPECT_EQ(report["method"], "clusters");
+    EXPECT_GT(report["seconds"]["pack"], 0);
+}
+
+TEST_F(Render, TakesThePictureAsASecondName) {
+    EXPECT_EQ(isotet({"render", "make:kuhn:4:sphere", path("a.png"), "-i", "0.5", "--size", "64x48", "--device",
+                      "software"})
+                  .status,
+              0);
+    EXPECT_TRUE(std::filesystem::exists(path("a.png")));
+    const RunResult wrong =
+        isotet({"render", "make:kuhn:4:sphere", path("a-{frme}.png"), "-i", "0.5", "--device", "software"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_TRUE(is_one_error(wrong, "has {frme}, but here only {frame} can stand for something"));
+}
+
 TEST_F(Render, DrawsTheSamePictureByEveryMethod) {
     const std::vector<std::string> more{"-i", "0.5", "--plain", "--boundary", "0"};
     ASSERT_EQ(isotet(command("make:kuhn:8:sphere", "clusters.png", more)).status, 0);
     for (const std::string method : {"registers", "registers_instanced", "textures", "mesh"}) {
-        for (const std::string filter : {"none", "span_space"}) {
+        for (const std::string index : {"none", "span_space"}) {
             auto words = command("make:kuhn:8:sphere", method + ".png", more);
-            words.insert(words.end(), {"--method", method, "--filter", filter, "--reference", path("clusters.png")});
+            words.insert(words.end(), {"--method", method, "--index", index, "--reference", path("clusters.png")});
             if (method.starts_with("registers")) words.insert(words.end(), {"--threshold", "0.5"}); // shaded by faces
             const auto report = json_of(words);
             EXPECT_EQ(report["method"], method);
-            EXPECT_EQ(report["filter"], filter);
+            EXPECT_EQ(report["index"], index);
             EXPECT_EQ(report["engine"], "none");
             EXPECT_TRUE(report["surfaces"][0]["triangles"].is_null());
             const std::uint64_t tets = report["surfaces"][0]["tets"], sent = report["surfaces"][0]["bytes_sent"];
-            EXPECT_EQ(sent, filter == "none" ? 0 : 4 * tets);
-            EXPECT_EQ(tets == 3072, filter == "none") << tets;
+            EXPECT_EQ(sent, index == "none" ? 0 : 4 * tets);
+            EXPECT_EQ(tets == 3072, index == "none") << tets;
             const std::uint64_t record = method == "registers" ? 272 : method == "registers_instanced" ? 64 : 16;
             const std::uint64_t tables = method == "textures" || method == "mesh" ? 2 * 16 * 9 * 9 * 9 + 176 : 0;
             const std::uint64_t ranges = method == "mesh" ? 3072 / 32 * 8 : 0;
@@ -136,7 +167,7 @@ TEST_F(Render, RefusesWhatMethodsThatDrawTetsCannotDo) {
               std::string::npos);
     EXPECT_NE(error({"--method", "registers", "--engine", "cpu"}).find("but --method registers extracts nothing"),
               std::string::npos);
-    EXPECT_NE(error({"--filter", "octree"}).find("but --method clusters draws surfaces"), std::string::npos);
+    EXPECT_NE(error({"--index", "octree"}).find("but surfaces are drawn"), std::string::npos);
     EXPECT_NE(error({"--method", "points"}).find("--method got 'points'"), std::string::npos);
 }
 
@@ -179,18 +210,18 @@ TEST_F(Render, SaysWhenThereIsNoSurface) {
     EXPECT_NE(run.err.find("there is no surface at 99: the values of 'sphere' go from"), std::string::npos) << run.err;
 }
 
-TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndFilter) {
+TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndIndex) {
     const auto report = json_of({"bench", "make:kuhn:6:sphere", "-i", "0.6", "--device", "software", "--rounds", "1",
-                                 "--filters", "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
+                                 "--indexes", "none,interval_tree,octree,seed_set,span_space,cluster_ranges"});
     EXPECT_EQ(report["device"]["kind"], "software");
     ASSERT_EQ(report["rows"].size(), 3 + 4 * 6u);
     const std::uint64_t tets = 6 * 6 * 6 * 6;
     for (const auto& row : report["rows"]) {
         EXPECT_TRUE(row["missing"].is_null()) << row;
         EXPECT_GT(row["seconds"]["draw"], 0);
-        if (row["filter"].is_null()) {
+        if (row["index"].is_null()) {
             EXPECT_GT(row["triangles"], 0) << row;
-        } else if (row["filter"] == "none") {
+        } else if (row["index"] == "none") {
             EXPECT_EQ(row["tets_looked_at"], tets);
             EXPECT_EQ(row["bytes"]["sent"], 0);
         } else {
@@ -203,7 +234,7 @@ TEST_F(Render, IsWhatBenchMeasuresWithEveryMethodAndFilter) {
 TEST_F(Render, OfWhatDoesNotFitCrossesTheBusWhenBenchMeasuresIt) {
     const auto crossing = [](const char* memory) {
         return json_of({"bench", "make:kuhn:30:sphere", "-i", "0.6", "--device", "software", "--device-memory", memory,
-                        "--rounds", "1", "--methods", "registers", "--filters", "none"})["rows"][0];
+                        "--rounds", "1", "--methods", "registers", "--indexes", "none"})["rows"][0];
     };
     const auto all = crossing("1GB"), some = crossing("32MB");
     EXPECT_EQ(all["bytes"]["crossing"], 0);

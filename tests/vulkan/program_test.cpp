@@ -44,8 +44,8 @@ TEST(DevicesCommand, SaysThatThereIsNoDriver) {
     const RunResult run = isotet({"devices"}, no_driver);
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.out, "");
-    EXPECT_EQ(run.err, "isotet: note: there is a Vulkan loader on this machine, but no driver that it can use; isotet "
-                       "works on the CPU\n");
+    EXPECT_TRUE(is_one_error(run, "note: there is a Vulkan loader on this machine, but no driver that it can use; "));
+    EXPECT_TRUE(is_one_error(run, "mesa-vulkan-drivers of Debian and Ubuntu has a software device; isotet works on"));
     const RunResult chosen = isotet({"devices", "--device", "software"}, no_driver);
     EXPECT_EQ(chosen.status, 4);
     EXPECT_TRUE(is_one_error(chosen, "no driver that it can use"));

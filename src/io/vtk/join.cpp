@@ -263,7 +263,7 @@ PointNumbers number_points(const std::vector<Piece>& pieces, bool by_coordinates
     });
     if (have_ids) {
         if (auto numbers = number_by_ids(pieces)) {
-            notes.push_back(fmt::format("{} pieces joined by global point numbers: {} points fell together",
+            notes.push_back(fmt::format("{} pieces joined by global point numbers: {} points were merged",
                                         pieces.size(), numbers->joined));
             return std::move(*numbers);
         }
@@ -271,13 +271,13 @@ PointNumbers number_points(const std::vector<Piece>& pieces, bool by_coordinates
     }
     if (by_coordinates) {
         auto numbers = number_by_coordinates(pieces);
-        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points fell together", pieces.size(),
+        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points were merged", pieces.size(),
                                     numbers.joined));
         return numbers;
     }
     notes.push_back(
-        fmt::format("{} pieces without global point numbers lie side by side: surfaces are open between them "
-                    "unless points with equal coordinates are merged",
+        fmt::format("{} pieces without global point numbers lie side by side: surfaces have seams between them "
+                    "unless points with equal coordinates are merged (--merge-pieces)",
                     pieces.size()));
     return number_one_after_another(pieces);
 }

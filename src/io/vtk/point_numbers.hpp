@@ -13,7 +13,7 @@ struct PointNumbers {
     std::vector<std::vector<std::uint64_t>> numbers; ///< per piece, one a point; empty where no point was joined
     std::vector<std::uint64_t> first;                ///< number of a piece's first point, where `numbers` is empty
     std::uint64_t count = 0;
-    std::uint64_t joined = 0; ///< points that fell together with one of an earlier piece
+    std::uint64_t joined = 0; ///< points merged with one of an earlier piece
 
     std::uint64_t operator()(std::size_t piece, std::uint64_t point) const {
         return numbers.empty() ? first[piece] + point : numbers[piece][point];

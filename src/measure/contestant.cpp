@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "bench_contestant.hpp"
+#include "measure/contestant.hpp"
 
 #include <span>
 #include <utility>
@@ -10,16 +10,14 @@
 #include <isotet/extract_direct.hpp>
 #include <isotet/search.hpp>
 
-#include "stopwatch.hpp"
-
-namespace isotet::cli {
+namespace isotet::measure {
 
 namespace {
 
 /// Makes a surface on the CPU; where there is a device it is uploaded.
 class OnCpu : public Contestant {
 public:
-    Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+    Result<DrawnSurface> make(Bed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch extracting;
         const Result<Extraction> extraction = extract_surface(bed, isovalue);
         if (!extraction) return extraction.error();
@@ -37,39 +35,39 @@ public:
     }
 
 private:
-    virtual Result<Extraction> extract_surface(BenchBed& bed, double isovalue) = 0;
+    virtual Result<Extraction> extract_surface(Bed& bed, double isovalue) = 0;
 
     std::optional<DeviceMesh> mesh_;
 };
 
 class Direct final : public OnCpu {
 public:
-    Result<BenchCosts> prepare(BenchBed&) override { return BenchCosts{}; }
+    Result<BenchCosts> prepare(Bed&) override { return BenchCosts{}; }
 
 private:
-    Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
-        Result<DirectExtraction> once = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), {}, bed.run);
-        if (!once) return once.error();
-        return std::move(once->surfaces.front());
+    Result<Extraction> extract_surface(Bed& bed, double isovalue) override {
+        Result<DirectExtraction> direct = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), {}, bed.run);
+        if (!direct) return direct.error();
+        return std::move(direct->surfaces.front());
     }
 };
 
 class Clusters final : public OnCpu {
 public:
-    Result<BenchCosts> prepare(BenchBed& bed) override {
+    Result<BenchCosts> prepare(Bed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         return BenchCosts{bed.pack_seconds, bed.packed->report().bytes, 0, 0};
     }
 
 private:
-    Result<Extraction> extract_surface(BenchBed& bed, double isovalue) override {
+    Result<Extraction> extract_surface(Bed& bed, double isovalue) override {
         return extract(*bed.packed, isovalue, {}, bed.run);
     }
 };
 
 class ClustersOnDevice final : public Contestant {
 public:
-    Result<BenchCosts> prepare(BenchBed& bed) override {
+    Result<BenchCosts> prepare(Bed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch uploading;
         Result<DeviceGrid> grid = DeviceGrid::upload(*bed.device, *bed.packed, {}, bed.run);
@@ -78,7 +76,7 @@ public:
         return BenchCosts{bed.pack_seconds + uploading.seconds(), bed.packed->report().bytes, grid_->device_bytes(), 0};
     }
 
-    Result<DrawnSurface> make(BenchBed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+    Result<DrawnSurface> make(Bed& bed, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
         const Stopwatch extracting;
         if (Result<void> done = grid_->extract(isovalue, surface_, {}, bed.run); !done) return done.error();
         times.extract = extracting.seconds();
@@ -94,20 +92,20 @@ private:
     DeviceSurface surface_;
 };
 
-/// The paper's: the vertex shader cuts tets, all of them or those that a filter finds.
+/// The paper's: the vertex shader cuts tets, all of them or those that a search index finds.
 class InTheVertexShader final : public Contestant {
 public:
-    InTheVertexShader(DrawMethod method, SearchIndex filter) : method_(method), filter_(filter) {}
+    InTheVertexShader(DrawMethod method, SearchIndex index) : method_(method), index_(index) {}
 
-    Result<BenchCosts> prepare(BenchBed& bed) override {
+    Result<BenchCosts> prepare(Bed& bed) override {
         if (Result<void> packed = bed.pack(); !packed) return packed.error();
         const Stopwatch preparing;
         Result<TetStore> store = TetStore::upload(*bed.device, *bed.packed, method_, {}, bed.run);
         if (!store) return store.error();
         store_ = *std::move(store);
         BenchCosts costs;
-        if (filter_ != SearchIndex::none) {
-            Result<TetIndex> tets = TetIndex::create(*bed.packed, filter_, bed.run);
+        if (index_ != SearchIndex::none) {
+            Result<TetIndex> tets = TetIndex::create(*bed.packed, index_, bed.run);
             if (!tets) return tets.error();
             tets_ = *std::move(tets);
             costs.host_bytes = tets_->report().table_bytes + tets_->report().index_bytes;
@@ -119,14 +117,14 @@ public:
         return costs;
     }
 
-    Result<DrawnSurface> make(BenchBed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
-        const Stopwatch asking;
+    Result<DrawnSurface> make(Bed&, double isovalue, BenchTimes& times, BenchOutcome& outcome) override {
+        const Stopwatch searching;
         std::optional<std::span<const std::uint32_t>> found;
         if (tets_) {
             const auto list = tets_->find(isovalue);
             if (!list) return list.error();
             found = *list;
-            times.ask = asking.seconds();
+            times.search = searching.seconds();
         }
         const Stopwatch sending;
         Result<TetSurface> surface = found ? store_->at(isovalue, *found) : store_->at(isovalue);
@@ -142,7 +140,7 @@ public:
 
 private:
     DrawMethod method_;
-    SearchIndex filter_;
+    SearchIndex index_;
     std::optional<TetStore> store_;
     std::optional<TetIndex> tets_;
     std::optional<TetSurface> surface_;
@@ -150,7 +148,7 @@ private:
 
 } // namespace
 
-Result<void> BenchBed::pack() {
+Result<void> Bed::pack() {
     if (packed) return {};
     const Stopwatch packing;
     Result<PackedGrid> made = isotet::pack(grid, field, {}, run);
@@ -162,10 +160,10 @@ Result<void> BenchBed::pack() {
 
 std::unique_ptr<Contestant> make_contestant(const BenchPair& pair) {
     if (const std::optional<DrawMethod> method = draw_method_of(pair.method))
-        return std::make_unique<InTheVertexShader>(*method, pair.filter);
+        return std::make_unique<InTheVertexShader>(*method, pair.index);
     if (pair.method == BenchMethod::direct) return std::make_unique<Direct>();
     if (pair.method == BenchMethod::clusters) return std::make_unique<Clusters>();
     return std::make_unique<ClustersOnDevice>();
 }
 
-} // namespace isotet::cli
+} // namespace isotet::measure

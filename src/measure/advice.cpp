@@ -1,14 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "bench_advice.hpp"
+#include <isotet/grid_bench.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace isotet::cli {
+namespace isotet {
 
-std::vector<Advice> advice_of(const std::vector<BenchRow>& rows) {
-    std::vector<Advice> advice;
+std::vector<BenchAdvice> advice_of(const std::vector<BenchRow>& rows) {
+    std::vector<BenchAdvice> advice;
     // By the best rounds: what slows a round down is other programs, and rounds of different rows do not meet the same
     // ones.
     const auto cost = [&](std::size_t row, double surfaces) {
@@ -41,10 +41,9 @@ std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, B
     double sum = 0;
     int grids = 0;
     for (const BenchRow& with : rows) {
-        if (with.pair.method != method || with.pair.filter != SearchIndex::interval_tree || !with.missing.empty())
-            continue;
+        if (with.pair.method != method || with.pair.index != SearchIndex::interval_tree || !with.missing.empty()) continue;
         const auto without = std::ranges::find_if(rows, [&](const BenchRow& row) {
-            return row.grid == with.grid && row.pair.method == method && row.pair.filter == SearchIndex::none &&
+            return row.grid == with.grid && row.pair.method == method && row.pair.index == SearchIndex::none &&
                    row.missing.empty();
         });
         if (without == rows.end()) continue;
@@ -54,4 +53,4 @@ std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, B
     return grids > 0 ? std::optional(sum / grids) : std::nullopt;
 }
 
-} // namespace isotet::cli
+} // namespace isotet

@@ -1,0 +1,126 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// From isovalues to a Scene that a Renderer draws: a session that extracts, colours, the grid's boundary, a box around.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isotet/camera.hpp>
+#include <isotet/contour.hpp>
+#include <isotet/draw_tets.hpp>
+#include <isotet/export.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/render.hpp>
+#include <isotet/result.hpp>
+#include <isotet/search.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+/// A field that colours surfaces.
+struct ColorField {
+    std::string name;
+    Array values; ///< a scalar for each point or cell of the grid; of a surface for each vertex or triangle
+    Association association = Association::point;
+    ColorScale scale;
+    bool has_no_data = false; ///< some values are NaN: a legend shows their colour
+};
+
+/// How a scene looks.
+struct SceneLook {
+    std::optional<ColorField> colors; ///< nothing: each isovalue has its own colour of `map`
+    ColorMap map = ColorMap::viridis;
+    std::optional<double> opacity;    ///< nothing: 1, and of several isosurfaces 0.35 for all but the smallest
+    double boundary_opacity = 0.1;    ///< of the grid's boundary; 0: it is not looked for
+    bool outline = false;             ///< the edges of the box around
+    double line_width = 1;            ///< pixels
+};
+
+/// Where surfaces of a grid are extracted.
+enum class ExtractOn : std::uint8_t {
+    best,   ///< on the device that draws if it is a graphics card and clusters pay or are asked for, else on the CPU
+    cpu,
+    device, ///< or an error
+};
+
+/// A grid to contour, and how.
+struct IsosurfaceOptions {
+    Grid grid; ///< its own fields are not looked at
+    PointField field;
+    std::uint64_t surfaces = 1;   ///< how many isovalues will be shown, as ContourOptions::surfaces
+    std::optional<Method> method; ///< as ContourOptions::method
+    ExtractOn where = ExtractOn::best;
+    std::optional<DrawMethod> draw; ///< tets are drawn by this method instead, and no surface is made
+    SearchIndex index = SearchIndex::cluster_ranges; ///< that finds the tets to draw
+    PictureOptions picture; ///< of the pictures to come: `draw` leaves device memory free for them
+};
+
+/// A surface that is shown, or the tets that stand for it.
+struct ShownSurface {
+    std::optional<double> isovalue; ///< nothing for a surface that was given
+    std::uint64_t vertices = 0, triangles = 0;
+    std::uint64_t tets = 0, sent_bytes = 0; ///< with IsosurfaceOptions::draw: how many, and bytes over the bus for this
+                                            ///< isovalue
+
+    std::uint64_t size() const noexcept { return triangles + tets; }
+};
+
+/// What making a scene took; seconds of all calls so far.
+struct SceneReport {
+    FieldReport field; ///< of a grid, from the first show() on
+    double pack_seconds = 0, boundary_seconds = 0, upload_seconds = 0, extract_seconds = 0;
+    std::uint64_t boundary_faces = 0;
+    bool on_device = false;                ///< the last surfaces were extracted there
+    Method method = Method::direct;        ///< of the last surfaces
+    DeviceWork extract_work;               ///< of the last ones on the device
+    std::optional<TetStoreReport> store;   ///< with IsosurfaceOptions::draw
+};
+
+/// A scene of isosurfaces of one grid, or of one surface. Moving is cheap; it keeps the device open.
+///
+/// Guarantees   the surfaces of Contour; on a device they stay there, and a field colours them where they are
+/// Threads      one call at a time
+class ISOTET_API IsosurfaceScene {
+public:
+    /// Finds the boundary, starts the session, and packs and uploads what all isovalues share.
+    ///
+    /// Errors   as Contour::create(), Contour::prepare(), boundary_of(), TetStore::upload() and TetIndex::create()
+    static Result<IsosurfaceScene> create(const Device& device, IsosurfaceOptions options, SceneLook look,
+                                          const Run& run = {});
+
+    /// Of a surface that is there already: show() without isovalues shows it.
+    static Result<IsosurfaceScene> create(const Device& device, Surface surface, SceneLook look);
+
+    IsosurfaceScene(IsosurfaceScene&&) noexcept;
+    IsosurfaceScene& operator=(IsosurfaceScene&&) noexcept;
+    ~IsosurfaceScene();
+
+    /// Makes the scene that of these isovalues; what was shown before goes.
+    /// Errors   as Contour::extract(), DeviceMesh::upload() and DeviceColors; the CPU replaces a
+    ///          device that fails, with a note, unless it is required
+    Result<void> show(std::span<const double> isovalues, const Run& run = {});
+
+    /// Points a camera at the whole grid or surface: the same for all isovalues, and with `orbit` from all sides at one
+    /// distance.
+    enum class Fit : std::uint8_t { once, orbit };
+    void fit(Camera& camera, double aspect, Fit fit = Fit::once) const;
+
+    const Scene& scene() const noexcept;
+    const std::vector<ShownSurface>& surfaces() const noexcept;
+    const SceneReport& report() const noexcept;
+
+    /// Sentences for the user since the last call.
+    std::vector<std::string> take_notes();
+
+private:
+    struct Data;
+    explicit IsosurfaceScene(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet

@@ -1,0 +1,106 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/grid_counts.hpp>
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/cells.hpp"
+#include "core/orientation.hpp"
+#include "core/parallel.hpp"
+#include "core/point_hash.hpp"
+
+namespace isotet {
+
+namespace {
+
+constexpr std::size_t max_sampled_points = std::size_t{1} << 16;
+constexpr std::size_t coincident_one_in = 1000;
+
+using TypeHistogram = std::array<std::uint64_t, 256>;
+
+struct SampledPoint {
+    std::uint64_t hash, number;
+    friend auto operator<=>(const SampledPoint&, const SampledPoint&) = default;
+};
+
+/// The points whose hash ends with `zero_bits` bits of zero, by hash.
+std::vector<SampledPoint> sample_points(const Array& points, int zero_bits) {
+    std::vector<SampledPoint> samples;
+    std::mutex mutex;
+    const core::PointReader reader(points);
+    core::parallel_ranges(points.tuples(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+        std::vector<SampledPoint> found;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint64_t hash = core::hash_of(reader[i]);
+            if ((hash & ((std::uint64_t{1} << zero_bits) - 1)) == 0) found.push_back({hash, i});
+        }
+        const std::lock_guard lock(mutex);
+        samples.insert(samples.end(), found.begin(), found.end());
+    });
+    std::sort(samples.begin(), samples.end());
+    return samples;
+}
+
+std::size_t count_repeated(const std::vector<SampledPoint>& samples) {
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i) count += samples[i].hash == samples[i - 1].hash;
+    return count;
+}
+
+/// Removes points that no cell uses.
+void keep_used(std::vector<SampledPoint>& samples, const Grid& grid) {
+    std::vector<bool> used(grid.points.tuples(), false);
+    grid.cells.connectivity.visit([&](auto corners) {
+        if constexpr (std::is_integral_v<typename decltype(corners)::value_type>) {
+            for (const auto corner : corners) {
+                const auto point = static_cast<std::uint64_t>(corner);
+                if (point < used.size()) used[point] = true;
+            }
+        }
+    });
+    std::erase_if(samples, [&](const SampledPoint& sample) { return !used[sample.number]; });
+}
+
+} // namespace
+
+std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells) {
+    std::map<std::uint8_t, std::uint64_t> counts;
+    if (cells.types.empty()) {
+        if (cells.count() > 0) counts[static_cast<std::uint8_t>(cells.uniform_type)] = cells.count();
+        return counts;
+    }
+    if (cells.types.type() != ScalarType::uint8) return counts;
+    TypeHistogram total{};
+    std::mutex mutex;
+    const std::span<const std::uint8_t> types = cells.types.as<std::uint8_t>();
+    core::parallel_ranges(types.size(), std::size_t{1} << 20, [&](std::size_t begin, std::size_t end) {
+        TypeHistogram part{};
+        for (const std::uint8_t type : types.subspan(begin, end - begin)) ++part[type];
+        const std::lock_guard lock(mutex);
+        for (std::size_t i = 0; i < part.size(); ++i) total[i] += part[i];
+    });
+    for (std::size_t type = 0; type < total.size(); ++type)
+        if (total[type] > 0) counts[static_cast<std::uint8_t>(type)] = total[type];
+    return counts;
+}
+
+bool is_contoured(std::uint8_t cell_type) noexcept { return core::is_contoured(cell_type); }
+
+CoincidentPoints estimate_coincident_points(const Grid& grid) {
+    const std::size_t points = grid.points.tuples();
+    if (grid.points.components() != 3 || points < 2) return {};
+    int zero_bits = 0;
+    while ((points >> zero_bits) > max_sampled_points) ++zero_bits;
+    std::vector<SampledPoint> samples = sample_points(grid.points, zero_bits);
+    const auto are_few = [&] { return count_repeated(samples) <= samples.size() / coincident_one_in; };
+    if (are_few()) return {};
+    keep_used(samples, grid);
+    if (are_few()) return {};
+    return {static_cast<std::uint64_t>(count_repeated(samples)) << zero_bits, zero_bits > 0};
+}
+
+} // namespace isotet
