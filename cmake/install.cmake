@@ -10,7 +10,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/isotet-config.cmake.in
     INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isotet)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/isotet-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/isotet-config.cmake ${PROJECT_BINARY_DIR}/isotet-config-version.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindCompressors.cmake ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isotet)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
     DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)

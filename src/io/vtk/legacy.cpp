@@ -6,7 +6,7 @@
 #include <vtkNew.h>
 
 #include "io/reader.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/legacy_layout.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/vtk_grid.hpp"

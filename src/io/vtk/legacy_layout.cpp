@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "io/own/text_scanner.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/legacy_layout.hpp"
 #include "io/vtk/mapped_file.hpp"
 

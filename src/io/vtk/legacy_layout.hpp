@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 
 namespace isotet::io::vtk {
 

@@ -9,8 +9,8 @@
 #include <pugixml.hpp>
 
 #include "io/vtk/length_check.hpp"
-#include "io/vtk/escape.hpp"
-#include "io/vtk/loaded.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/loaded.hpp"
 #include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {

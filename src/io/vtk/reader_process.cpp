@@ -11,7 +11,7 @@
 
 #include "io/vtk/child_process.hpp"
 #include "io/own/file_kind.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/find_reader.hpp"
 #include "io/vtk/reader_process.hpp"
 

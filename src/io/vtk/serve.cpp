@@ -17,8 +17,8 @@
 
 #include "core/memory.hpp"
 #include "io/vtk/child_process.hpp"
-#include "io/vtk/escape.hpp"
-#include "io/vtk/join.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/join.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/messages.hpp"
 #include "io/vtk/reader_process.hpp"
@@ -67,7 +67,7 @@ void limit_memory(std::uint64_t limit) {
 
 /// Bytes of the grid's file; nothing where it is spread over several, whose sizes are not known yet.
 std::optional<std::uint64_t> size_of_grid(const Request& request) {
-    for (const std::string_view format : {"vtu", "vti", "vtr", "vts", "vtk", "cgns", "vtkhdf", "ucd", ""}) {
+    for (const std::string_view format : {"vtk", "cgns", "vtkhdf", "ucd", ""}) {
         struct stat status{};
         if (request.format == format && ::stat(request.path.c_str(), &status) == 0)
             return static_cast<std::uint64_t>(status.st_size);

@@ -13,7 +13,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include "io/reader.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/structured.hpp"
 #include "io/vtk/vtk_grid.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 
 /// Refuses a name in an index file that is a URL, absolute, or climbs out of the folder with "..", unless
 /// `allow_outside`.
@@ -19,4 +19,4 @@ Result<void> check_name(const std::string& index, std::string_view name, bool al
 /// Errors   file when it is not there or no plain file; invalid_data when it may not be named, or is the index itself
 Result<std::string> named_file(const std::string& index, std::string_view name, bool allow_outside);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -4,10 +4,10 @@
 
 #include <fmt/core.h>
 
-#include "io/vtk/escape.hpp"
-#include "io/vtk/index_file.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/index_file.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,4 +47,4 @@ Result<std::string> named_file(const std::string& index, std::string_view name, 
     return file.string();
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 
 /// Where the points of each piece go in the joined grid.
 struct PointNumbers {
@@ -28,4 +28,4 @@ std::optional<PointNumbers> number_by_ids(const std::vector<Piece>& pieces);
 /// By exactly equal coordinates (-0 equals +0) of different pieces; points of one piece stay apart.
 PointNumbers number_by_coordinates(const std::vector<Piece>& pieces);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

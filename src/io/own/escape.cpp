@@ -1,9 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 namespace {
 
 /// Bytes of the UTF-8 character at the start of `text`; 0 if there is none. (C1 controls, U+0080 to U+009F, are none.)
@@ -43,4 +43,4 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

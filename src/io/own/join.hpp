@@ -1,9 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 
 /// Makes one grid of all pieces, one after another.
 ///
@@ -16,4 +16,4 @@ namespace isotet::io::vtk {
 /// Cost     O(P + T); frees each piece's arrays once they are joined
 Result<ReadResult> join(Loaded loaded, bool by_coordinates);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -1,10 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
-#include "io/vtk/escape.hpp"
-#include "io/vtk/loaded.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/loaded.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 
 void announce(FileInfo& info, FieldInfo field) {
     for (const FieldInfo& known : info.fields)
@@ -16,4 +16,4 @@ Error broken(const std::string& path, std::string_view what) {
     return {ErrorCode::invalid_data, fmt::format("{}: {}", escaped(path), what)};
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -5,9 +5,9 @@
 #include <optional>
 #include <unordered_map>
 
-#include "io/vtk/point_numbers.hpp"
+#include "io/own/point_numbers.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 namespace {
 
 using Place = std::array<double, 3>;
@@ -105,4 +105,4 @@ PointNumbers number_by_coordinates(const std::vector<Piece>& pieces) {
     return result;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -9,11 +9,11 @@
 
 #include <fmt/core.h>
 
-#include "io/vtk/escape.hpp"
-#include "io/vtk/join.hpp"
-#include "io/vtk/point_numbers.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/join.hpp"
+#include "io/own/point_numbers.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 namespace {
 
 constexpr int corners_of_uniform[] = {4, 8, 8, 6, 5}; // tetrahedron, voxel, hexahedron, wedge, pyramid
@@ -357,4 +357,4 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     return result;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What the readers in the reader process give, before pieces are joined to one grid. VTK is not seen here.
+// What readers of files in pieces give, before the pieces are joined to one grid.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 
 /// One part of a grid: a block, a zone, a file of a parallel run.
 struct Piece {
@@ -31,20 +31,9 @@ struct Loaded {
 /// How far to read: what the file holds, or its grid too.
 enum class Depth { description, arrays };
 
-/// One format, in the reader process.
-using Load = Result<Loaded> (*)(const std::string& path, const ReadOptions& options, Depth depth);
-
-struct FileLoader {
-    std::string_view format;
-    Load load;
-};
-
-/// The loader of a format, or null.
-Load loader_of(std::string_view format);
-
 /// Adds a field to the description unless it is there.
 void announce(FileInfo& info, FieldInfo field);
 
 Error broken(const std::string& path, std::string_view what);
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io

@@ -7,17 +7,20 @@
 #include <pugixml.hpp>
 
 #include "io/own/text_scanner.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/index_file.hpp"
+#include "io/own/plain_file.hpp"
+#include "io/own/read_vtk_xml.hpp"
+#include "io/own/vtk_xml/load.hpp"
 #include "io/reader.hpp"
-#include "io/vtk/escape.hpp"
-#include "io/vtk/index_file.hpp"
-#include "io/vtk/loaders.hpp"
 
-namespace isotet::io::vtk {
+namespace isotet::io {
 namespace {
 
 using FilesByTime = std::map<double, std::vector<std::string>>;
 
 Result<FilesByTime> entries(const std::string& path) {
+    if (const auto file = open_plain_file(path); !file) return file.error();
     pugi::xml_document document;
     const auto parsed = document.load_file(path.c_str());
     if (!parsed) return broken(path, fmt::format("broken XML at byte {}: {}", parsed.offset, parsed.description()));
@@ -34,16 +37,25 @@ Result<FilesByTime> entries(const std::string& path) {
     return files;
 }
 
-/// The loader of one entry, by the name of its file; never another collection, so nothing can include itself.
-Load loader_of_entry(std::string_view name) {
-    for (const std::string_view format : {"pvtu", "vtu", "vti", "vtr", "vts"})
-        if (name.ends_with(fmt::format(".{}", format))) return loader_of(format);
-    return nullptr;
+/// One entry, by the name of its file; never another collection, so nothing can include itself.
+Result<Loaded> load_entry(const std::string& path, std::string_view name, const ReadOptions& options, Depth depth,
+                          const Progress& progress) {
+    if (name.ends_with(".pvtu")) return vtk_xml::load_parallel(path, options, depth, progress);
+    for (const auto& [ending, type] : {std::pair(".vtu", "UnstructuredGrid"), std::pair(".vti", "ImageData"),
+                                       std::pair(".vtr", "RectilinearGrid"), std::pair(".vts", "StructuredGrid")})
+        if (name.ends_with(ending)) return vtk_xml::load_file(path, type, options, depth, true, progress);
+    return broken(path, "its name does not end in .vtu, .pvtu, .vti, .vtr or .vts");
+}
+
+bool is_read(std::string_view name) {
+    constexpr std::string_view endings[] = {".vtu", ".pvtu", ".vti", ".vtr", ".vts"};
+    return std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
 } // namespace
 
-Result<Loaded> load_pvd(const std::string& path, const ReadOptions& options, Depth depth) {
+Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth,
+                               const Progress& progress) {
     auto files = entries(path);
     if (!files) return files.error();
     Loaded loaded;
@@ -54,13 +66,12 @@ Result<Loaded> load_pvd(const std::string& path, const ReadOptions& options, Dep
     if (!step) return step.error();
     loaded.step = *step;
     for (const std::string& name : std::next(files->begin(), static_cast<std::ptrdiff_t>(*step))->second) {
-        const Load load = loader_of_entry(name);
-        if (!load)
+        if (!is_read(name))
             return broken(path, fmt::format("it names \"{}\", but only .vtu, .pvtu, .vti, .vtr and .vts are read",
                                             escaped(name)));
         auto file = named_file(path, name, options.allow_outside);
         if (!file) return file.error();
-        auto part = load(*file, of_entries, depth);
+        auto part = load_entry(*file, name, of_entries, depth, progress);
         if (!part) return part.error();
         for (FieldInfo& field : part->info.fields) announce(loaded.info, std::move(field));
         for (Piece& piece : part->pieces) loaded.pieces.push_back(std::move(piece));
@@ -69,4 +80,4 @@ Result<Loaded> load_pvd(const std::string& path, const ReadOptions& options, Dep
     return loaded;
 }
 
-} // namespace isotet::io::vtk
+} // namespace isotet::io
