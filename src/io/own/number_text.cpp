@@ -116,7 +116,7 @@ Result<std::size_t> read_numbers_of(const ByteSource& source, std::size_t begin,
         core::parallel_each(places.size(), 1, [&](std::size_t i) {
             const std::vector<T>& numbers = chunks[i].numbers;
             const std::uint64_t used = std::min<std::uint64_t>(numbers.size(), count - places[i]);
-            if (used > 0) std::memcpy(to + places[i] * sizeof(T), numbers.data(), used * sizeof(T));
+            if (to && used > 0) std::memcpy(to + places[i] * sizeof(T), numbers.data(), used * sizeof(T));
         });
         if (found >= count)
             return behind_words(source, chunks[places.size() - 1].begin, begin, end,

@@ -17,7 +17,7 @@ namespace isotet::io {
 /// Reads `count` numbers that begin in [begin, end) of the source, by the rules of TextScanner and read_scalar().
 ///
 /// `what`    for the message: "the array 'p'"
-/// `to`      room for `count` scalars of the type
+/// `to`      room for `count` scalars of the type; null: they are only checked
 /// Returns   where the text goes on behind the last of them
 /// Errors    invalid_data: a word among them is no number of the type or longer than 512 characters, or there are fewer
 ///           (before memory is taken: a number takes a character and a space); as ByteSource::read(); cancelled

@@ -43,7 +43,6 @@ bool starts_with_numbers(Head head, int count) {
 }
 
 int recognizes_xdmf(Head head, std::string_view) { return has(head, "<Xdmf") ? 2 : 0; }
-int recognizes_legacy(Head head, std::string_view) { return head.starts_with("# vtk DataFile") ? 2 : 0; }
 int recognizes_exodus(Head head, std::string_view extension) {
     if (!is_netcdf(head) && !is_hdf5(head)) return 0;
     if (has(head, "num_nodes") || has(head, "len_string") || has(head, "_nc3_strict") || has(head, "_NCProperties"))
@@ -98,8 +97,7 @@ struct Named {
 };
 
 const auto& table() {
-    static const std::array<Named, 8> formats = {{
-        {{"vtk", vtk::load_legacy}, recognizes_legacy, "VTK legacy file", {".vtk"}},
+    static const std::array<Named, 7> formats = {{
         {{"exodus", vtk::load_exodus}, recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
         {{"cgns", vtk::load_cgns}, recognizes_cgns, "CGNS", {".cgns"}},
         {{"vtkhdf", vtk::load_vtkhdf}, recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},

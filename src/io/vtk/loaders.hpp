@@ -17,7 +17,6 @@ struct FileLoader {
 /// The loader of a format, or null.
 Load loader_of(std::string_view format);
 
-Result<Loaded> load_legacy(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth);

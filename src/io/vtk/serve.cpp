@@ -67,7 +67,7 @@ void limit_memory(std::uint64_t limit) {
 
 /// Bytes of the grid's file; nothing where it is spread over several, whose sizes are not known yet.
 std::optional<std::uint64_t> size_of_grid(const Request& request) {
-    for (const std::string_view format : {"vtk", "cgns", "vtkhdf", "ucd", ""}) {
+    for (const std::string_view format : {"cgns", "vtkhdf", "ucd", ""}) {
         struct stat status{};
         if (request.format == format && ::stat(request.path.c_str(), &status) == 0)
             return static_cast<std::uint64_t>(status.st_size);

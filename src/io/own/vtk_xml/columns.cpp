@@ -35,19 +35,6 @@ const DataArray* global_ids(const Section& section, std::span<const std::string_
     return ids && ids->components == 1 && !is_floating(ids->type) ? ids : nullptr;
 }
 
-void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out) {
-    left_out.resize(marks.tuples(), 0);
-    const bool levels = name == "vtkGhostLevels";
-    marks.visit([&](auto values) {
-        core::parallel_each(left_out.size(), std::size_t{1} << 16, [&](std::size_t cell) {
-            const auto value = static_cast<double>(values[cell * marks.components()]);
-            const int mark = value > 0 && value < 0x1p31 ? static_cast<int>(value) : 0;
-            if (levels ? mark > 0 : (mark & cell_is_out) != 0) left_out[cell] = 1;
-        });
-    });
-    if (std::ranges::none_of(left_out, [](std::uint8_t out) { return out != 0; })) left_out.clear();
-}
-
 /// The arrays of one kind (point data or cell data) that are read, and what becomes of them.
 struct Selection {
     std::vector<std::vector<DataArray>> columns; ///< for each array its descriptions in all pieces
@@ -89,6 +76,19 @@ Result<Selection> select(const Document& document, const char* element, Associat
 }
 
 } // namespace
+
+void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out) {
+    left_out.resize(marks.tuples(), 0);
+    const bool levels = name == "vtkGhostLevels";
+    marks.visit([&](auto values) {
+        core::parallel_each(left_out.size(), std::size_t{1} << 16, [&](std::size_t cell) {
+            const auto value = static_cast<double>(values[cell * marks.components()]);
+            const int mark = value > 0 && value < 0x1p31 ? static_cast<int>(value) : 0;
+            if (levels ? mark > 0 : (mark & cell_is_out) != 0) left_out[cell] = 1;
+        });
+    });
+    if (std::ranges::none_of(left_out, [](std::uint8_t out) { return out != 0; })) left_out.clear();
+}
 
 bool is_ghost_array(std::string_view name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }
 

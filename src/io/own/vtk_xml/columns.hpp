@@ -66,6 +66,9 @@ struct Wanted {
 Result<void> load_fields(Document& document, const Layout& points, const Layout& cells, const Wanted& wanted,
                          const Progress& progress, Piece& piece);
 
+/// Marks the cells that vtkGhostType or vtkGhostLevels takes out; empty where there are none.
+void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
+
 /// True for arrays that describe the grid (ghost marks), which are no fields.
 bool is_ghost_array(std::string_view name);
 

@@ -2,8 +2,11 @@
 // VTU, PVTU, VTI, VTR and VTS, in this process and on all threads.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
@@ -38,6 +41,9 @@ Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options
 /// Points and cells of all pieces of an UnstructuredGrid, and its fields.
 Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress);
 
+/// Takes types and offsets away where they say nothing: all cells of one linear kind, one after another.
+void simplify(Cells& cells);
+
 /// The points of a document that stores them.
 Result<Array> load_points(Document& document, const Layout& layout, std::size_t step, const Progress& progress);
 
@@ -50,7 +56,19 @@ struct GridSize {
     std::uint64_t x = 0, y = 0, z = 0;
 };
 
-/// Its hexahedra, and a note that says so.
+/// Points of a box in the order of VTK, x fastest.
+///
+/// As vtkImageData makes them: matrix (three rows) times the numbers along the axes, counted from `first`, and origin.
+struct ImagePoints {
+    std::array<std::int64_t, 3> first{};
+    std::array<double, 9> matrix{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    std::array<double, 3> origin{};
+};
+Result<Array> points_of(const GridSize& size, const ImagePoints& image);
+/// From coordinates along each axis.
+Result<Array> points_of(const GridSize& size, const std::array<std::vector<double>, 3>& ticks);
+
+/// The hexahedra of a box, and a note that says so.
 Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes);
 
 } // namespace isotet::io::vtk_xml

@@ -143,37 +143,30 @@ Layout layout_of(const Boxes& boxes, bool of_points) {
     return layout;
 }
 
-/// Points of all places of a box, in the order of VTK, each from its numbers along the axes.
+/// Points of all places of a box, each from its numbers along the axes.
 template <class Place>
-Result<Array> made_points(const Extent& whole, const Place& place) {
-    const std::uint64_t x_count = whole.points(0), y_count = whole.points(1);
-    return filled_array(ScalarType::float64, static_cast<std::size_t>(all_points(whole)), 3, [&](std::byte* to) {
+Result<Array> made_points(const GridSize& size, const Place& place) {
+    const auto count = static_cast<std::size_t>(size.x * size.y * size.z);
+    return filled_array(ScalarType::float64, count, 3, [&](std::byte* to) {
         auto* const points = reinterpret_cast<double*>(to);
-        core::parallel_ranges(static_cast<std::size_t>(all_points(whole)), std::size_t{1} << 16,
-                              [&](std::size_t begin, std::size_t end) {
-                                  for (std::uint64_t i = begin; i < end; ++i)
-                                      place(i % x_count, i / x_count % y_count, i / (x_count * y_count), points + 3 * i);
-                              });
+        core::parallel_each(count, std::size_t{1} << 16, [&](std::size_t i) {
+            place(i % size.x, i / size.x % size.y, i / (size.x * size.y), points + 3 * i);
+        });
         return Result<void>();
     });
 }
 
-/// As vtkImageData makes them: a matrix of directions times spacings, and the origin.
+GridSize size_of_box(const Extent& extent) { return {extent.points(0), extent.points(1), extent.points(2)}; }
+
 Result<Array> image_points(const Document& document, const Extent& whole) {
-    std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
-    std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const pugi::xml_node image = document.primary();
-    if (auto read = read_numbers_of(image, "Origin", origin); !read) return read.error();
-    if (auto read = read_numbers_of(image, "Spacing", spacing); !read) return read.error();
-    if (auto read = read_numbers_of(image, "Direction", direction); !read) return read.error();
-    for (std::size_t i = 0; i < 9; ++i) direction[i] *= spacing[i % 3];
-    return made_points(whole, [&](std::uint64_t x, std::uint64_t y, std::uint64_t z, double* to) {
-        const auto i = static_cast<double>(static_cast<std::int64_t>(x) + whole.first[0]),
-                   j = static_cast<double>(static_cast<std::int64_t>(y) + whole.first[1]),
-                   k = static_cast<double>(static_cast<std::int64_t>(z) + whole.first[2]);
-        for (std::size_t a = 0; a < 3; ++a)
-            to[a] = direction[3 * a] * i + direction[3 * a + 1] * j + direction[3 * a + 2] * k + origin[a];
-    });
+    ImagePoints image{whole.first, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    std::array<double, 3> spacing{1, 1, 1};
+    const pugi::xml_node element = document.primary();
+    if (auto read = read_numbers_of(element, "Origin", image.origin); !read) return read.error();
+    if (auto read = read_numbers_of(element, "Spacing", spacing); !read) return read.error();
+    if (auto read = read_numbers_of(element, "Direction", image.matrix); !read) return read.error();
+    for (std::size_t i = 0; i < 9; ++i) image.matrix[i] *= spacing[i % 3];
+    return points_of(size_of_box(whole), image);
 }
 
 /// Coordinates along one axis, from the pieces.
@@ -210,11 +203,7 @@ Result<Array> rectilinear_points(Document& document, const Boxes& boxes, const P
         if (!read) return read.error();
         ticks[axis] = std::move(*read);
     }
-    return made_points(boxes.whole, [&](std::uint64_t x, std::uint64_t y, std::uint64_t z, double* to) {
-        to[0] = ticks[0][x];
-        to[1] = ticks[1][y];
-        to[2] = ticks[2][z];
-    });
+    return points_of(size_of_box(boxes.whole), ticks);
 }
 
 template <class Index>
@@ -236,6 +225,25 @@ Array hexahedra(const GridSize& points) {
 }
 
 } // namespace
+
+Result<Array> points_of(const GridSize& size, const ImagePoints& image) {
+    return made_points(size, [&](std::uint64_t x, std::uint64_t y, std::uint64_t z, double* to) {
+        const auto i = static_cast<double>(static_cast<std::int64_t>(x) + image.first[0]),
+                   j = static_cast<double>(static_cast<std::int64_t>(y) + image.first[1]),
+                   k = static_cast<double>(static_cast<std::int64_t>(z) + image.first[2]);
+        const double* row = image.matrix.data();
+        for (std::size_t axis = 0; axis < 3; ++axis, row += 3)
+            to[axis] = row[0] * i + row[1] * j + row[2] * k + image.origin[axis];
+    });
+}
+
+Result<Array> points_of(const GridSize& size, const std::array<std::vector<double>, 3>& ticks) {
+    return made_points(size, [&](std::uint64_t x, std::uint64_t y, std::uint64_t z, double* to) {
+        to[0] = ticks[0][x];
+        to[1] = ticks[1][y];
+        to[2] = ticks[2][z];
+    });
+}
 
 Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes) {
     Cells cells;
@@ -268,8 +276,7 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
     else places = load_points(document, points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
-    const Extent& whole = boxes->whole;
-    auto hexahedra_of_all = hexahedra_of({whole.points(0), whole.points(1), whole.points(2)}, notes);
+    auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), notes);
     if (!hexahedra_of_all) return hexahedra_of_all.error();
     piece.grid.cells = std::move(*hexahedra_of_all);
     if (piece.grid.cells.count() == 0) { // flat: its cells are not volumes

@@ -46,6 +46,13 @@ bool are_regular(std::uint64_t first, Offsets offsets, std::uint64_t corners) {
     return wrong == 0;
 }
 
+bool are_uniform(const Array& types) {
+    const std::uint8_t first = types.as<std::uint8_t>().front();
+    return all_pieces(types, [&](std::uint64_t, auto values) {
+        return std::ranges::all_of(values, [&](auto type) { return type == first; });
+    });
+}
+
 template <class To>
 Array converted(const Array& array) {
     core::Buffer<To> values(array.size());
@@ -112,32 +119,23 @@ private:
         const auto stored = StoredArray::find(document_, *described, count_, progress_);
         if (!stored) return stored.error();
         const std::uint8_t type = cells.types.as<std::uint8_t>().front();
-        auto corners = corners_of_uniform(type);
-        if (corners && !all_pieces(cells.types, [&](std::uint64_t, auto types) {
-                return std::ranges::all_of(types, [&](auto other) { return other == type; });
-            }))
-            corners.reset();
+        auto corners = are_uniform(cells.types) ? corners_of_uniform(type) : std::nullopt;
         if (corners && stored->has_blocks()) {
             const auto regular = are_regular_blocks(*stored, *corners);
             if (!regular) return regular.error();
             if (!*regular) corners.reset();
         }
-        if (!corners || !stored->has_blocks()) {
-            auto offsets = offsets_from_0(*stored);
-            if (!offsets) return offsets.error();
-            if (!corners || !all_pieces(*offsets, [&](std::uint64_t first, auto values) {
-                    return first == 0 ? values[0] == 0 && are_regular(0, values.subspan(1), *corners)
-                                      : are_regular(first - 1, values, *corners);
-                }))
-                corners.reset();
-            if (!corners) {
-                cells.offsets = std::move(*offsets);
-                return last_of(cells.offsets);
-            }
+        if (corners && stored->has_blocks()) {
+            cells.types = Array();
+            cells.uniform_type = static_cast<CellType>(type);
+            return count_ * *corners;
         }
-        cells.types = Array();
-        cells.uniform_type = static_cast<CellType>(type);
-        return count_ * *corners;
+        auto offsets = offsets_from_0(*stored);
+        if (!offsets) return offsets.error();
+        const auto last = last_of(*offsets);
+        cells.offsets = std::move(*offsets);
+        simplify(cells);
+        return last;
     }
 
     Result<bool> are_regular_blocks(const StoredArray& stored, std::uint64_t corners) const {
@@ -273,6 +271,19 @@ Result<void> check_corners(const Cells& cells, std::uint64_t points) {
 }
 
 } // namespace
+
+void simplify(Cells& cells) {
+    if (cells.types.empty() || !are_uniform(cells.types)) return;
+    const std::uint8_t type = cells.types.as<std::uint8_t>().front();
+    const auto corners = corners_of_uniform(type);
+    if (!corners || !all_pieces(cells.offsets, [&](std::uint64_t first, auto values) {
+            return first == 0 ? values[0] == 0 && are_regular(0, values.subspan(1), *corners)
+                              : are_regular(first - 1, values, *corners);
+        }))
+        return;
+    cells.offsets = cells.types = Array();
+    cells.uniform_type = static_cast<CellType>(type);
+}
 
 Result<Array> load_points(Document& document, const Layout& layout, std::size_t step, const Progress& progress) {
     std::vector<DataArray> arrays;
