@@ -60,14 +60,14 @@ std::string lower(std::string word) {
     return word;
 }
 
-/// %20 and so on, as VTK's writer makes them, back to bytes.
+/// %20 and so on, as VTK's writer makes them, back to bytes; of a broken one VTK takes the first digit.
 std::string decoded_name(std::string_view word) {
     std::string result;
     for (std::size_t i = 0; i < word.size(); ++i) {
         unsigned char byte = 0;
         const auto digits = word.substr(i + 1, 2);
         if (word[i] == '%' && digits.size() == 2 &&
-            std::from_chars(digits.data(), digits.data() + 2, byte, 16).ptr == digits.data() + 2) {
+            std::from_chars(digits.data(), digits.data() + 2, byte, 16).ec == std::errc()) {
             result += static_cast<char>(byte);
             i += 2;
         } else {
@@ -187,7 +187,9 @@ private:
         if (auto sized = check_size(tuples, components, what); !sized) return sized.error();
         auto values = binary_ ? read_binary(type, tuples, components, what, is_wanted)
                               : read_ascii(type, tuples, components, what, is_wanted);
-        if (!values || !is_wanted || !type.widened) return values;
+        if (!values || !is_wanted) return values;
+        if (type.bits) return mapped<std::uint8_t>(*values, [](auto bit) { return std::uint8_t{bit != 0}; });
+        if (!type.widened) return values;
         return mapped<std::int64_t>(*values, [](auto value) { return static_cast<std::int64_t>(value); });
     }
 
@@ -334,12 +336,12 @@ private:
         if (count > size) return does_not_fit(size);
         cells.count = count;
         if (take_regular(cells, numbers)) return {};
-        core::Buffer<std::int32_t> corners(numbers.size() - static_cast<std::size_t>(count));
+        core::Buffer<std::int32_t> corners(numbers.size());
         core::Buffer<std::int64_t> offsets(static_cast<std::size_t>(count) + 1);
         std::size_t at = 0, next = 0;
         for (std::uint64_t cell = 0; cell < count; ++cell) {
             if (at >= numbers.size() || numbers[at] < 0 ||
-                static_cast<std::size_t>(numbers[at]) > std::min(numbers.size() - at - 1, corners.size() - next))
+                static_cast<std::size_t>(numbers[at]) > numbers.size() - at - 1)
                 return does_not_fit(cell);
             const auto length = static_cast<std::size_t>(numbers[at]);
             offsets[cell] = static_cast<std::int64_t>(next);

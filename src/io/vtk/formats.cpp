@@ -138,10 +138,6 @@ std::span<const GridReader> vtk_readers() {
     return readers;
 }
 
-Result<SurfaceFile> read_surface_with_vtk(const std::string& path, const Progress& progress) {
-    return ask<SurfaceFile>(Task::read_surface, "", path, {}, progress);
-}
-
 vtk::Load vtk::loader_of(std::string_view format) {
     for (const Named& named : table())
         if (named.loader.format == format) return named.loader.load;

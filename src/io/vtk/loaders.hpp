@@ -25,7 +25,4 @@ Result<Loaded> load_openfoam(const std::string& path, const ReadOptions& options
 Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_xdmf(const std::string& path, const ReadOptions& options, Depth depth);
 
-/// Surfaces that need VTK: VTP of any encoding, legacy polygon data.
-Result<SurfaceFile> load_surface(const std::string& path);
-
 } // namespace isotet::io::vtk

@@ -37,7 +37,7 @@ Result<Descriptor> memory_file(const char* name, std::string_view content) {
 }
 
 std::string reader_of(const Request& request) {
-    return request.format.empty() ? "VTK's surface reader" : "the reader of " + request.format;
+    return "the reader of " + request.format;
 }
 
 /// Why there is no reply.

@@ -185,6 +185,33 @@ Result<Array> load_column(const Column& column, const Layout& layout) {
                         });
 }
 
+Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>& pieces, const Layout& layout,
+                          std::size_t step, const Progress& progress) {
+    if (layout.total == 0) return Array(ScalarType::float32, nullptr, 0, 3, nullptr);
+    std::vector<DataArray> arrays;
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+        std::vector<DataArray> found;
+        for (const auto& element : pieces[piece].child("Points").children()) {
+            if (element.type() != pugi::node_element || !is_of_step(element, step)) continue;
+            auto array = describe_array(document, element);
+            if (!array) return array.error();
+            if (*array) found.push_back(std::move(**array));
+        }
+        if (found.empty() && layout.tuples[piece] == 0 && !arrays.empty()) found.push_back(arrays.front());
+        if (found.size() != 1)
+            return invalid_data(
+                fmt::format("a piece of {} points has {} arrays of points, not one", layout.tuples[piece], found.size()));
+        arrays.push_back(std::move(found.front()));
+    }
+    const DataArray& first = arrays.front();
+    if (first.components != 3 || !is_floating(first.type))
+        return invalid_data(fmt::format("the points are {} of {}, not 3 of float32 or float64", first.components,
+                                        isotet::name_of(first.type)));
+    const auto column = find_column(document, arrays, layout, progress);
+    if (!column) return column.error();
+    return load_column(*column, layout);
+}
+
 Result<void> load_fields(Document& document, const Layout& points, const Layout& cells, const Wanted& wanted,
                          const Progress& progress, Piece& piece) {
     struct Job {

@@ -54,6 +54,10 @@ Result<Column> find_column(Document& document, const std::vector<DataArray>& arr
 
 Result<Array> load_column(const Column& column, const Layout& layout);
 
+/// The points that the pieces store: float32 or float64, three components.
+Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>& pieces, const Layout& layout,
+                          std::size_t step, const Progress& progress);
+
 /// What of a file becomes a Piece besides points and cells.
 struct Wanted {
     const ReadOptions& options;

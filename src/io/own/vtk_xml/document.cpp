@@ -57,6 +57,7 @@ Result<void> find_appended(Document& document, std::size_t behind_tag) {
     if (underscore == std::string_view::npos || (*start)[underscore] != '_')
         return invalid_data("the appended data does not start with an underscore");
     document.appended = {behind_tag + underscore + 1, *end};
+    document.appended_left = document.appended.size();
     return {};
 }
 
@@ -103,8 +104,7 @@ Result<void> place_appended(const Document& document, const pugi::xml_node& elem
 Result<Document> open_document(const ByteSource& source, const Progress& progress) {
     auto outline = outline_of(source, progress);
     if (!outline) return outline.error();
-    Document document{source, {}, {}};
-    document.stored_left = source.size();
+    Document document(source);
     const auto parsed = document.tree.load_buffer(outline->text.data(), outline->text.size(), pugi::parse_default);
     if (!parsed) {
         if (parsed.status == pugi::status_end_element_mismatch && !outline->ended)

@@ -28,6 +28,8 @@ struct Range {
 
 /// A VTKFile element.
 struct Document {
+    explicit Document(ByteSource bytes) : source(std::move(bytes)) {}
+
     ByteSource source;
     pugi::xml_document tree; ///< the text of an array is replaced by its place, "BEGIN END"
     std::string type;        ///< "UnstructuredGrid" and so on
@@ -36,8 +38,8 @@ struct Document {
     Codec codec = Codec::none;
     bool appended_raw = false; ///< else base64
     Range appended;            ///< from behind the underscore
-    /// Stored bytes that arrays may still have: of arrays that share their bytes a small file could fill any memory.
-    std::uint64_t stored_left = 0;
+    /// Bytes that arrays may still have of it: with arrays that share their bytes a small file could fill any memory.
+    std::uint64_t appended_left = 0;
 
     /// The element of the file's type.
     pugi::xml_node primary() const { return tree.child("VTKFile").child(type.c_str()); }

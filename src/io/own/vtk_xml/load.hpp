@@ -44,9 +44,6 @@ Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const 
 /// Takes types and offsets away where they say nothing: all cells of one linear kind, one after another.
 void simplify(Cells& cells);
 
-/// The points of a document that stores them.
-Result<Array> load_points(Document& document, const Layout& layout, std::size_t step, const Progress& progress);
-
 /// Points and hexahedra of the structured kinds, and their fields. A flat grid has no hexahedra and no cell fields.
 Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress,
                               std::vector<std::string>& notes);

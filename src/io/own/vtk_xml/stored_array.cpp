@@ -89,12 +89,13 @@ Result<std::string_view> Stream::view(std::size_t at, std::size_t count, Scratch
     if (at > size() || count > size() - at) return missing();
     thread_local Scratch characters;
     const std::size_t first = at / 3, last = (at + count + 2) / 3;
-    const auto text = source.view(place.begin + 4 * first, 4 * (last - first), characters);
-    if (!text) return text;
-    const auto bytes = scratch.take(decoded_room(text->size()));
-    const auto decoded = decode_base64(*text, bytes.data());
+    const auto digits = source.view(place.begin + 4 * first, 4 * (last - first), characters);
+    if (!digits) return digits;
+    const auto bytes = scratch.take(decoded_room(digits->size()));
+    const auto decoded = decode_base64(*digits, bytes.data());
     if (!decoded) return invalid_data("its base64 data is broken");
     if (*decoded < at - 3 * first + count) return missing();
+    characters.trim();
     return std::string_view(reinterpret_cast<const char*>(bytes.data()) + (at - 3 * first), count);
 }
 
@@ -184,7 +185,6 @@ Result<StoredArray> StoredArray::find(Document& document, const DataArray& array
     if (array.form == DataArray::Form::ascii) {
         const auto what = fmt::format("the array {}", in_quotes(array.name));
         if (auto fits = check_room(array.place.begin, array.place.end, scalars, what); !fits) return fits.error();
-        taken = array.place.size();
     } else {
         found.needed_ = array.bits ? (scalars + 7) / 8 : scalars * size;
         auto stream = open_stream(document, array);
@@ -198,9 +198,9 @@ Result<StoredArray> StoredArray::find(Document& document, const DataArray& array
                                            isotet::name_of(array.type), found.needed_));
         taken = packed ? found.packed_[found.blocks()] : found.needed_;
     }
-    if (taken > document.stored_left)
-        return found.wrong(array.inside ? "its data is larger than the file" : "it shares appended data with others");
-    document.stored_left -= taken;
+    if (array.inside) return found;
+    if (taken > document.appended_left) return found.wrong("it shares appended data with other arrays");
+    document.appended_left -= taken;
     return found;
 }
 
@@ -263,6 +263,7 @@ Result<void> StoredArray::decode(std::byte* to) const {
         const auto end = read_numbers(document_->source, array_.place.begin, array_.place.end, array_.type, scalars_,
                                       fmt::format("the array {}", in_quotes(array_.name)), to, *progress_);
         if (!end) return end.error();
+        for (std::uint64_t i = 0; array_.bits && i < scalars_; ++i) to[i] = std::byte{to[i] != std::byte{0}};
         return {};
     }
     core::Buffer<std::byte> bits(array_.bits ? static_cast<std::size_t>(needed_) : 0);

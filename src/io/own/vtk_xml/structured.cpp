@@ -273,7 +273,7 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
     Result<Array> places = Array();
     if (document.type == "ImageData") places = image_points(document, boxes->whole);
     else if (document.type == "RectilinearGrid") places = rectilinear_points(document, *boxes, progress);
-    else places = load_points(document, points, wanted.step, progress);
+    else places = load_points(document, pieces_of(document), points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
     auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), notes);

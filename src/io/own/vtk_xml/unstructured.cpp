@@ -285,31 +285,6 @@ void simplify(Cells& cells) {
     cells.uniform_type = static_cast<CellType>(type);
 }
 
-Result<Array> load_points(Document& document, const Layout& layout, std::size_t step, const Progress& progress) {
-    std::vector<DataArray> arrays;
-    for (const auto& piece : pieces_of(document)) {
-        std::vector<DataArray> of_piece;
-        for (const auto& element : piece.child("Points").children()) {
-            if (element.type() != pugi::node_element || !is_of_step(element, step)) continue;
-            auto array = describe_array(document, element);
-            if (!array) return array.error();
-            if (*array) of_piece.push_back(std::move(**array));
-        }
-        if (of_piece.empty() && layout.tuples[arrays.size()] == 0 && !arrays.empty()) of_piece.push_back(arrays.front());
-        if (of_piece.empty() && layout.total == 0) return Array(ScalarType::float32, nullptr, 0, 3, nullptr);
-        if (of_piece.size() != 1)
-            return invalid_data(fmt::format("a piece of {} points has {} arrays of points, not one",
-                                            layout.tuples[arrays.size()], of_piece.size()));
-        arrays.push_back(std::move(of_piece.front()));
-    }
-    if (arrays.front().components != 3 || !is_floating(arrays.front().type))
-        return invalid_data(fmt::format("the points are {} of {}, not 3 of float32 or float64",
-                                        arrays.front().components, isotet::name_of(arrays.front().type)));
-    const auto column = find_column(document, arrays, layout, progress);
-    if (!column) return column.error();
-    return load_column(*column, layout);
-}
-
 Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress) {
     const auto elements = pieces_of(document);
     Layout points, cells;
@@ -326,7 +301,7 @@ Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const 
         }
     }
     Piece piece;
-    auto places = load_points(document, points, wanted.step, progress);
+    auto places = load_points(document, elements, points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
     std::vector<Cells> parts;
