@@ -341,8 +341,10 @@ TEST(ReadVtp, ReadsAppendedBase64) {
 
 TEST(ReadVtp, RefusesArraysThatShareAppendedData) {
     const auto at = [](std::size_t offset) { return fmt::format("format=\"appended\" offset=\"{}\"", offset); };
+    std::string piece = triangle_piece(at(0), at(0), at(0));
+    piece.replace(piece.find("NumberOfPolys=\"1\""), 17, "NumberOfPolys=\"2\"");
     const auto message =
-        message_of(vtp("", triangle_piece(at(0), at(0), at(0)),
+        message_of(vtp("", piece,
                        std::string("<AppendedData encoding=\"raw\">_") + little_endian<std::uint32_t>({72}) +
                            std::string(72, '\0') + "</AppendedData>\n"));
     EXPECT_NE(message.find("shares appended data"), std::string::npos) << message;

@@ -12,7 +12,6 @@
 
 #include <isotet/read.hpp>
 
-#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
@@ -104,12 +103,15 @@ TEST_F(ReaderProcess, FindsNoOtherOpenFiles) {
 }
 
 TEST_F(ReaderProcess, HittingItsMemoryLimitIsAnErrorThatNamesTheLimit) {
+    std::string content = "200000 1 0 0 0\n";
+    for (int i = 1; i <= 200000; ++i) content += std::to_string(i) + " 0 0 " + std::to_string(i) + "\n";
+    content += "1 1 tet 1 2 3 4\n";
     ReadOptions options;
-    options.memory_limit = 1000000;
-    const auto result = read((source_folder() / "data/vtkhdf/can_hex.hdf").string(), options);
+    options.memory_limit = content.size() + 1000000; // to look at the file, not for its arrays
+    const auto result = read(folder_.write("large.inp", content), options);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
-    expect_words(result.error(), {"1000000 bytes"});
+    expect_words(result.error(), {std::to_string(options.memory_limit) + " bytes"});
 }
 
 TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
