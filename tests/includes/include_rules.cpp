@@ -70,7 +70,8 @@ const std::vector<LibraryRule>& library_rules() {
 
 /// Folders that includes begin with; what begins otherwise is a public header, a library, or a neighbour in a test.
 constexpr std::array<std::string_view, 13> folders_of_includes = {
-    "core/", "check/", "make/", "ops/", "reference/", "cpu/", "api/", "session/", "io/", "search/", "vulkan/", "render/", "cli/"};
+    "core/",    "check/", "make/",   "ops/",    "reference/", "cpu/", "api/",
+    "session/", "io/",    "search/", "vulkan/", "render/",    "cli/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(),

@@ -41,15 +41,18 @@ struct TetFile {
 
     std::string text() const {
         const auto array = [](std::string_view type, std::string_view name, std::string_view values) {
-            return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"ascii\">{}</DataArray>\n", type, name, values);
+            return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"ascii\">{}</DataArray>\n", type, name,
+                               values);
         };
-        return fmt::format(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" {}>\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" "
-            "NumberOfCells=\"{}\">\n<PointData>{}</PointData>\n<Points><DataArray type=\"Float64\" "
-            "NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>\n<Cells>\n{}{}{}</Cells>\n</Piece>{}\n"
-            "</UnstructuredGrid>\n</VTKFile>\n",
-            root, points, cells, array("Float32", "p", "1 2 3 4"), array("Int32", "connectivity", connectivity),
-            array("Int32", "offsets", offsets), array("UInt8", "types", types), more_pieces);
+        return fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" "
+                           "{}>\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" "
+                           "NumberOfCells=\"{}\">\n<PointData>{}</PointData>\n<Points><DataArray type=\"Float64\" "
+                           "NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 "
+                           "1</DataArray></Points>\n<Cells>\n{}{}{}</Cells>\n</Piece>{}\n"
+                           "</UnstructuredGrid>\n</VTKFile>\n",
+                           root, points, cells, array("Float32", "p", "1 2 3 4"),
+                           array("Int32", "connectivity", connectivity), array("Int32", "offsets", offsets),
+                           array("UInt8", "types", types), more_pieces);
     }
 };
 
@@ -71,10 +74,11 @@ TEST(VtkXml, ReadsATetrahedron) {
 
 TEST(VtkXml, NamesWhatIsWrong) {
     EXPECT_EQ(error_of(TetFile{.points = "x"}.text()), "NumberOfPoints is 'x', not a count");
-    EXPECT_EQ(error_of(TetFile{.points = "5"}.text()), "the array '' should have 15 numbers, but there are only 23 characters");
+    EXPECT_EQ(error_of(TetFile{.points = "5"}.text()),
+              "the array '' should have 15 numbers, but there are only 23 characters");
     EXPECT_EQ(error_of(TetFile{.types = "10 x"}.text()), "no error") << "numbers behind those that are needed";
     EXPECT_EQ(error_of(TetFile{.types = "x"}.text()), "the array 'types': 'x', number 0 of 1, is not uint8");
-    EXPECT_EQ(error_of(TetFile{.connectivity = "0 1 2"}.text()), 
+    EXPECT_EQ(error_of(TetFile{.connectivity = "0 1 2"}.text()),
               "the array 'connectivity' should have 4 numbers, but there are only 5 characters");
     EXPECT_EQ(error_of(TetFile{.offsets = "-4"}.text()), "the last of the offsets is -4");
     EXPECT_EQ(error_of(TetFile{.root = "compressor=\"zip\""}.text()), "the compressor 'zip' is not known");
@@ -82,7 +86,8 @@ TEST(VtkXml, NamesWhatIsWrong) {
     EXPECT_EQ(error_of(TetFile{.root = "header_type=\"UInt16\""}.text()),
               "the header type 'UInt16' is not UInt32 or UInt64");
     EXPECT_EQ(error_of(TetFile().text().substr(0, 400)), "the tag at byte 391: it never ends");
-    EXPECT_EQ(error_of(TetFile().text(), "ImageData"), "this is a VTK file of type 'UnstructuredGrid', not 'ImageData'");
+    EXPECT_EQ(error_of(TetFile().text(), "ImageData"),
+              "this is a VTK file of type 'UnstructuredGrid', not 'ImageData'");
     EXPECT_EQ(error_of("<!DOCTYPE x [<!ENTITY a \"b\">]>" + TetFile().text()),
               "the tag at byte 0: document types and CDATA are not read");
 }
@@ -100,10 +105,11 @@ TEST(VtkXml, TakesNoMemoryForWhatCannotBeThere) {
 
 /// A file with one appended array for the points, of a size that the header in front of it states.
 std::string appended(std::string_view root, std::string_view encoding, std::string_view data) {
-    return fmt::format("<VTKFile type=\"UnstructuredGrid\" {}><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"0\">"
-                       "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points>"
-                       "</Piece></UnstructuredGrid><AppendedData encoding=\"{}\">\n _{}\n</AppendedData></VTKFile>",
-                       root, encoding, data);
+    return fmt::format(
+        "<VTKFile type=\"UnstructuredGrid\" {}><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"0\">"
+        "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points>"
+        "</Piece></UnstructuredGrid><AppendedData encoding=\"{}\">\n _{}\n</AppendedData></VTKFile>",
+        root, encoding, data);
 }
 
 TEST(VtkXml, ChecksTheSizesInFrontOfBlocks) {
@@ -114,7 +120,8 @@ TEST(VtkXml, ChecksTheSizesInFrontOfBlocks) {
     EXPECT_EQ(error_of(appended("", "raw", raw_block(places).substr(0, 60))),
               "the array '': 96 bytes are announced, but only 57 are left: the file is cut short or broken");
     const auto packed = [&](std::vector<std::uint32_t> sizes) {
-        return error_of(appended("compressor=\"vtkZLibDataCompressor\"", "raw", bytes_of(sizes) + std::string(40, 'x')));
+        return error_of(
+            appended("compressor=\"vtkZLibDataCompressor\"", "raw", bytes_of(sizes) + std::string(40, 'x')));
     };
     EXPECT_EQ(packed({4000000000U, 96, 0}), "the array '': 4000000000 blocks are announced in 53 bytes");
     EXPECT_EQ(packed({1, 96, 97, 40}), "the array '': its last block has 97 bytes, the others 96");
@@ -127,15 +134,18 @@ TEST(VtkXml, ChecksTheSizesInFrontOfBlocks) {
 
 TEST(VtkXml, PiecesMustCoverAStructuredGrid) {
     const auto image = [](std::string_view pieces) {
-        return fmt::format("<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 1 0 1\">{}</ImageData></VTKFile>", pieces);
+        return fmt::format(
+            "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 1 0 1\">{}</ImageData></VTKFile>", pieces);
     };
     EXPECT_EQ(error_of(image("<Piece Extent=\"0 2 0 1 0 1\"/>"), "ImageData"), "no error");
-    EXPECT_EQ(error_of(image("<Piece Extent=\"0 1 0 1 0 1\"/><Piece Extent=\"1 2 0 1 0 1\"/>"), "ImageData"), "no error");
+    EXPECT_EQ(error_of(image("<Piece Extent=\"0 1 0 1 0 1\"/><Piece Extent=\"1 2 0 1 0 1\"/>"), "ImageData"),
+              "no error");
     EXPECT_EQ(error_of(image("<Piece Extent=\"0 1 0 1 0 1\"/>"), "ImageData"),
               "the pieces have 8 of the 12 points of the whole extent");
     EXPECT_EQ(error_of(image("<Piece Extent=\"0 1 0 1 0 1\"/><Piece Extent=\"0 1 0 1 0 1\"/>"), "ImageData"),
               "the pieces have 8 of the 12 points of the whole extent");
-    EXPECT_EQ(error_of(image("<Piece Extent=\"0 3 0 1 0 1\"/>"), "ImageData"), "a piece reaches out of the whole extent");
+    EXPECT_EQ(error_of(image("<Piece Extent=\"0 3 0 1 0 1\"/>"), "ImageData"),
+              "a piece reaches out of the whole extent");
 }
 
 TEST(VtkXml, PiecesOfOneFileAreAppended) {
@@ -226,7 +236,8 @@ TEST(NumberText, IsReadAcrossChunks) {
     }
     std::vector<double> numbers(expected.size());
     auto* const to = reinterpret_cast<std::byte*>(numbers.data());
-    const auto end = io::read_numbers(ByteSource(text), 0, text.size(), ScalarType::float64, expected.size(), "x", to, {});
+    const auto end =
+        io::read_numbers(ByteSource(text), 0, text.size(), ScalarType::float64, expected.size(), "x", to, {});
     ASSERT_TRUE(end) << end.error().message;
     EXPECT_EQ(numbers, expected);
 
@@ -239,7 +250,8 @@ TEST(NumberText, IsReadAcrossChunks) {
     ASSERT_TRUE(scanner.number(next));
     EXPECT_EQ(next, expected[some]);
 
-    const auto more = io::read_numbers(ByteSource(text), 0, text.size(), ScalarType::float64, expected.size() + 1, "x", to, {});
+    const auto more =
+        io::read_numbers(ByteSource(text), 0, text.size(), ScalarType::float64, expected.size() + 1, "x", to, {});
     ASSERT_FALSE(more);
     EXPECT_EQ(more.error().message, fmt::format("x has {} numbers, not {}", expected.size(), expected.size() + 1));
 }
@@ -250,20 +262,25 @@ std::string legacy_error(std::string_view text) {
 }
 
 TEST(LegacyVtkGrid, NamesWhatIsWrong) {
-    const std::string head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+    const std::string head =
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
     EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"), "no error");
     EXPECT_EQ(legacy_error(head + "CELLS 2 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"),
               "cells: cell 1 of 2 does not fit into the 5 numbers");
-    EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"), "there are 1 cells, but 2 cell types");
+    EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"),
+              "there are 1 cells, but 2 cell types");
     EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n256\n"),
               "CELL_TYPES: a type is not between 0 and 255");
     EXPECT_EQ(legacy_error(head + "CELLS 1 500000000000\n4 0 1 2 3\n"),
               "cells: 500000000000 x 1 numbers were announced, but only 11 bytes are left");
-    EXPECT_EQ(legacy_error("# vtk DataFile Version 3.0\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4000000000 double\n"),
-              "POINTS: 4000000000 x 3 double were announced, but only 0 bytes are left");
-    EXPECT_EQ(legacy_error("# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2000000000 2000000000 2\n"
-                           "POINT_DATA 1\nSCALARS s float\nLOOKUP_TABLE default\n1\n"),
-              "DIMENSIONS are 2000000000 x 2000000000 x 2: too many points");
+    EXPECT_EQ(
+        legacy_error("# vtk DataFile Version 3.0\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4000000000 double\n"),
+        "POINTS: 4000000000 x 3 double were announced, but only 0 bytes are left");
+    EXPECT_EQ(
+        legacy_error(
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2000000000 2000000000 2\n"
+            "POINT_DATA 1\nSCALARS s float\nLOOKUP_TABLE default\n1\n"),
+        "DIMENSIONS are 2000000000 x 2000000000 x 2: too many points");
 }
 
 } // namespace

@@ -48,7 +48,8 @@ constexpr Way ways[] = {
     {"base64", vtkXMLWriter::Binary},
     {"base64_32", vtkXMLWriter::Binary, false, vtkXMLWriter::NONE, vtkXMLWriter::UInt32},
     {"base64_zlib", vtkXMLWriter::Binary, false, vtkXMLWriter::ZLIB},
-    {"base64_zlib_32_big", vtkXMLWriter::Binary, false, vtkXMLWriter::ZLIB, vtkXMLWriter::UInt32, vtkXMLWriter::BigEndian},
+    {"base64_zlib_32_big", vtkXMLWriter::Binary, false, vtkXMLWriter::ZLIB, vtkXMLWriter::UInt32,
+     vtkXMLWriter::BigEndian},
     {"appended_base64", vtkXMLWriter::Appended, true},
     {"appended_base64_lz4", vtkXMLWriter::Appended, true, vtkXMLWriter::LZ4, vtkXMLWriter::UInt32},
     {"raw", vtkXMLWriter::Appended},
@@ -85,7 +86,8 @@ vtkSmartPointer<vtkUnstructuredGrid> rich_sample() {
         const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
         array->SetName(array->GetDataTypeAsString());
         array->SetNumberOfTuples(grid->GetNumberOfPoints());
-        for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) array->SetTuple1(i, type == VTK_BIT ? i % 3 == 0 : i * 7);
+        for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+            array->SetTuple1(i, type == VTK_BIT ? i % 3 == 0 : i * 7);
         grid->GetPointData()->AddArray(array);
     }
     vtkNew<vtkStringArray> words;
@@ -178,7 +180,8 @@ protected:
 TEST_P(SameAsVtk, ForUnstructuredGridsOfEveryKind) {
     write_so<vtkXMLUnstructuredGridWriter>(rich_sample(), folder_.file("rich.vtu"), GetParam());
     expect_same(folder_.file("rich.vtu"), "the sample");
-    for (const char* name : {"artery_flow_tet_wedge", "patch_antenna_efield", "quadratic_tets_96", "stokes_channel_tets"}) {
+    for (const char* name :
+         {"artery_flow_tet_wedge", "patch_antenna_efield", "quadratic_tets_96", "stokes_channel_tets"}) {
         vtkNew<vtkXMLUnstructuredGridReader> reader;
         reader->SetFileName((source_folder() / "data/vtu" / (std::string(name) + ".vtu")).c_str());
         reader->Update();

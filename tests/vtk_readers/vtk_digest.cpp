@@ -53,8 +53,12 @@ std::string line_of(std::string_view kind, std::string_view name, const Array& a
                        hash.value());
 }
 
-std::string places_line(std::size_t count, const Hash& hash) { return fmt::format("{} points {:x}", count, hash.value()); }
-std::string cells_line(std::size_t count, const Hash& hash) { return fmt::format("{} cells {:x}", count, hash.value()); }
+std::string places_line(std::size_t count, const Hash& hash) {
+    return fmt::format("{} points {:x}", count, hash.value());
+}
+std::string cells_line(std::size_t count, const Hash& hash) {
+    return fmt::format("{} cells {:x}", count, hash.value());
+}
 
 void add_cell(Hash& hash, int type, const std::vector<std::int64_t>& corners) {
     hash.add(type);
@@ -99,7 +103,8 @@ std::vector<std::string> digest(const Grid& grid) {
         grid.cells.connectivity.visit([&](auto all) {
             for (std::size_t i = begin; i < end; ++i) corners.push_back(static_cast<std::int64_t>(all[i]));
         });
-        add_cell(cells, listed ? static_cast<int>(grid.cells.types.at(cell)) : static_cast<int>(grid.cells.uniform_type),
+        add_cell(cells,
+                 listed ? static_cast<int>(grid.cells.types.at(cell)) : static_cast<int>(grid.cells.uniform_type),
                  corners);
     }
     lines.push_back(cells_line(count, cells));

@@ -31,7 +31,7 @@ constexpr std::size_t piece_values = std::size_t{1} << 18;
 struct LegacyType {
     std::string_view name;
     ScalarType type;
-    bool bits = false;   ///< in binary files eight to a byte; they become uint8
+    bool bits = false;    ///< in binary files eight to a byte; they become uint8
     bool widened = false; ///< to int64
 };
 // vtkIdType is written as int, whatever its size in memory; long has the 8 bytes that it has on 64-bit Unix.
@@ -113,7 +113,8 @@ private:
     }
 
     Error before_here(std::string_view what) {
-        return invalid_data(fmt::format("before byte {} ({}): {}", scanner_.position(), in_quotes(scanner_.here()), what));
+        return invalid_data(
+            fmt::format("before byte {} ({}): {}", scanner_.position(), in_quotes(scanner_.here()), what));
     }
 
     Result<void> read_header() {
@@ -169,7 +170,8 @@ private:
     Result<LegacyType> read_type() {
         const auto name = lower(scanner_.word());
         const auto* const known = std::ranges::find(legacy_types, name, &LegacyType::name);
-        if (known == legacy_types.end()) return before_here(fmt::format("{} is not a type that is read", in_quotes(name)));
+        if (known == legacy_types.end())
+            return before_here(fmt::format("{} is not a type that is read", in_quotes(name)));
         return *known;
     }
 
@@ -200,7 +202,8 @@ private:
             return invalid_data(fmt::format("{}: {} x {} numbers were announced, but only {} bytes are left", what,
                                             tuples, components, scanner_.left()));
         const auto read = [&](std::byte* to) -> Result<void> {
-            const auto end = read_numbers(source_, scanner_.position(), source_.size(), type.type, count, what, to, progress_);
+            const auto end =
+                read_numbers(source_, scanner_.position(), source_.size(), type.type, count, what, to, progress_);
             if (!end) return end.error();
             scanner_.seek(*end);
             return {};
@@ -248,7 +251,8 @@ private:
         return vtk_xml::filled_array(ScalarType::uint8, static_cast<std::size_t>(tuples),
                                      static_cast<std::size_t>(components), [&](std::byte* to) {
                                          for (std::uint64_t i = 0; i < tuples * components; ++i)
-                                             to[i] = (static_cast<std::byte>((*packed)[i / 8]) >> (7 - i % 8)) & std::byte{1};
+                                             to[i] = (static_cast<std::byte>((*packed)[i / 8]) >> (7 - i % 8)) &
+                                                     std::byte{1};
                                          return Result<void>();
                                      });
     }

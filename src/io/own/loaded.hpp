@@ -14,10 +14,10 @@ namespace isotet::io {
 
 /// One part of a grid: a block, a zone, a file of a parallel run.
 struct Piece {
-    std::string name;  ///< for messages
+    std::string name; ///< for messages
     Grid grid;
-    Array point_ids;   ///< empty, or a global number for each point
-    Array cell_ids;    ///< empty, or a global number for each cell
+    Array point_ids;                    ///< empty, or a global number for each point
+    Array cell_ids;                     ///< empty, or a global number for each cell
     std::vector<std::uint8_t> left_out; ///< empty, or nonzero for each ghost or blanked cell
 };
 

@@ -26,7 +26,8 @@ constexpr std::size_t longest_word = 512;
 
 template <class T>
 struct Chunk {
-    std::vector<T> numbers;
+    core::Buffer<T> numbers; ///< as many as a chunk can hold, used again from window to window
+    std::size_t size = 0;
     std::string bad_word; ///< the first word that is no number; numbers end before it
     std::size_t begin = 0;
 };
@@ -62,7 +63,7 @@ void parse_chunk(const ChunkText& chunk, bool ends_text, Chunk<T>& to) {
             to.bad_word = scanner.word();
             return;
         }
-        to.numbers.push_back(value);
+        to.numbers[to.size++] = value;
     }
 }
 
@@ -90,7 +91,7 @@ Result<std::size_t> read_numbers_of(const ByteSource& source, std::size_t begin,
         // No further than the numbers can reach that are still missing: what follows them may be anything.
         const std::uint64_t reach = std::max<std::uint64_t>((count - found) * 32, 4096);
         const std::size_t window = std::min<std::uint64_t>({end - at, reach, chunk_bytes * chunks_at_once});
-        chunks.assign((window + chunk_bytes - 1) / chunk_bytes, {});
+        chunks.resize((window + chunk_bytes - 1) / chunk_bytes);
         FirstError failed;
         core::parallel_each(chunks.size(), 1, [&](std::size_t i) {
             thread_local Scratch scratch;
@@ -99,7 +100,10 @@ Result<std::size_t> read_numbers_of(const ByteSource& source, std::size_t begin,
             const std::size_t stop = std::min(chunk.begin + chunk_bytes, at + window);
             const auto text = text_of_chunk(source, chunk.begin, begin, stop, end, scratch);
             if (!text) return failed.add(i, text.error());
-            chunk.numbers.reserve((stop - chunk.begin) / 8);
+            chunk.size = 0;
+            chunk.bad_word.clear();
+            const std::size_t most = (stop - chunk.begin) / 2 + 1; // a number takes a character and a space
+            if (chunk.numbers.size() < most) chunk.numbers = core::Buffer<T>(most);
             parse_chunk(*text, stop + longest_word >= end, chunk);
         });
         if (auto read = failed.result(); !read) return read.error();
@@ -107,16 +111,15 @@ Result<std::size_t> read_numbers_of(const ByteSource& source, std::size_t begin,
         std::vector<std::uint64_t> places;
         for (const Chunk<T>& chunk : chunks) {
             places.push_back(found);
-            found += chunk.numbers.size();
+            found += chunk.size;
             if (found < count && !chunk.bad_word.empty())
                 return invalid_data(fmt::format("{}: {}, number {} of {}, is not {}", what, in_quotes(chunk.bad_word),
                                                 found, count, name_of(scalar_type_of<T>())));
             if (found >= count) break;
         }
         core::parallel_each(places.size(), 1, [&](std::size_t i) {
-            const std::vector<T>& numbers = chunks[i].numbers;
-            const std::uint64_t used = std::min<std::uint64_t>(numbers.size(), count - places[i]);
-            if (to && used > 0) std::memcpy(to + places[i] * sizeof(T), numbers.data(), used * sizeof(T));
+            const std::uint64_t used = std::min<std::uint64_t>(chunks[i].size, count - places[i]);
+            if (to && used > 0) std::memcpy(to + places[i] * sizeof(T), chunks[i].numbers.data(), used * sizeof(T));
         });
         if (found >= count)
             return behind_words(source, chunks[places.size() - 1].begin, begin, end,

@@ -169,15 +169,15 @@ std::span<const GridReader> own_readers() {
         std::vector<GridReader> all = vtk_xml_readers();
         all.push_back(legacy_vtk_reader());
         all.insert(all.end(), {
-        GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh, inspect_gmsh_file,
-                   read_gmsh_file},
-        GridReader{grid_format("medit", "Medit mesh with its .sol", {".mesh", ".meshb"}), recognizes_medit,
-                   inspect_medit_file, read_medit_file},
-        GridReader{grid_format("tetgen", "TetGen .node and .ele", {".node", ".ele"}), recognizes_tetgen,
-                   inspect_tetgen_files, read_tetgen_files},
-        GridReader{grid_format("gocad", "Gocad TSolid", {".so"}), recognizes_gocad, inspect_gocad_file,
-                   read_gocad_file},
-        });
+                                  GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh,
+                                             inspect_gmsh_file, read_gmsh_file},
+                                  GridReader{grid_format("medit", "Medit mesh with its .sol", {".mesh", ".meshb"}),
+                                             recognizes_medit, inspect_medit_file, read_medit_file},
+                                  GridReader{grid_format("tetgen", "TetGen .node and .ele", {".node", ".ele"}),
+                                             recognizes_tetgen, inspect_tetgen_files, read_tetgen_files},
+                                  GridReader{grid_format("gocad", "Gocad TSolid", {".so"}), recognizes_gocad,
+                                             inspect_gocad_file, read_gocad_file},
+                              });
         return all;
     }();
     return readers;

@@ -121,7 +121,8 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     const bool flat = structured && piece.grid.cells.count() == 0; // its cells are not volumes
     for (Attribute& field : file->cell_data) {
         if (flat) continue;
-        if (!vtk_xml::is_ghost_array(field.name)) piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
+        if (!vtk_xml::is_ghost_array(field.name))
+            piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
         else if (field.values.tuples() == piece.grid.cells.count())
             vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
     }
@@ -148,7 +149,9 @@ GridReader legacy_vtk_reader() {
     GridReader reader;
     reader.format = Format{"vtk", "VTK legacy file", {".vtk"}};
     reader.format.reads_grid = true;
-    reader.recognizes = [](std::string_view head, std::string_view) { return head.starts_with("# vtk DataFile") ? 2 : 0; };
+    reader.recognizes = [](std::string_view head, std::string_view) {
+        return head.starts_with("# vtk DataFile") ? 2 : 0;
+    };
     reader.inspect = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         auto loaded = load_legacy_file(path, options, Depth::description, progress);
         return loaded ? Result<FileInfo>(std::move(loaded->info)) : loaded.error();

@@ -13,7 +13,6 @@ GridReader legacy_vtk_reader();
 /// Reads a grid, as one piece, from a file or memory.
 ///
 /// Errors   invalid_data: polygon data; as read_legacy_vtk(); cancelled
-Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth,
-                           const Progress& progress);
+Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth, const Progress& progress);
 
 } // namespace isotet::io

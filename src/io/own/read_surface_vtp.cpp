@@ -32,7 +32,8 @@ public:
         }
         if (auto polys = read_cells("Polys"); !polys) return polys.error();
         if (auto strips = read_cells("Strips"); !strips) return strips.error();
-        if (auto data = read_data("PointData", parts_.positions.tuples(), parts_.point_data); !data) return data.error();
+        if (auto data = read_data("PointData", parts_.positions.tuples(), parts_.point_data); !data)
+            return data.error();
         if (auto data = read_data("CellData", parts_.cells.cells(), parts_.cell_data); !data) return data.error();
         return assemble(std::move(parts_));
     }

@@ -36,9 +36,7 @@ Result<Descriptor> memory_file(const char* name, std::string_view content) {
     return file;
 }
 
-std::string reader_of(const Request& request) {
-    return "the reader of " + request.format;
-}
+std::string reader_of(const Request& request) { return "the reader of " + request.format; }
 
 /// Why there is no reply.
 Error failure(const Request& request, const ChildOutcome& outcome) {

@@ -51,10 +51,9 @@ Result<Selection> select(const Document& document, const char* element, Associat
         sections.push_back(std::move(*section));
     }
     const bool of_points = association == Association::point;
-    const DataArray* const ids =
-        !wanted.ids  ? nullptr
-        : of_points ? global_ids(sections[0], point_id_names)
-                    : global_ids(sections[0], cell_id_names);
+    const DataArray* const ids = !wanted.ids ? nullptr
+                                 : of_points ? global_ids(sections[0], point_id_names)
+                                             : global_ids(sections[0], cell_id_names);
     Selection selection;
     for (const DataArray& array : sections[0].arrays) {
         const bool ghost = is_ghost_array(array.name);
@@ -67,8 +66,8 @@ Result<Selection> select(const Document& document, const char* element, Associat
         for (const Section& section : sections) {
             const DataArray* const part = find_array(section.arrays, array.name);
             if (!part)
-                return invalid_data(fmt::format("{} {} of the first piece is missing in another one", element,
-                                                in_quotes(array.name)));
+                return invalid_data(
+                    fmt::format("{} {} of the first piece is missing in another one", element, in_quotes(array.name)));
             column.push_back(*part);
         }
     }
@@ -199,8 +198,8 @@ Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>&
         }
         if (found.empty() && layout.tuples[piece] == 0 && !arrays.empty()) found.push_back(arrays.front());
         if (found.size() != 1)
-            return invalid_data(
-                fmt::format("a piece of {} points has {} arrays of points, not one", layout.tuples[piece], found.size()));
+            return invalid_data(fmt::format("a piece of {} points has {} arrays of points, not one",
+                                            layout.tuples[piece], found.size()));
         arrays.push_back(std::move(found.front()));
     }
     const DataArray& first = arrays.front();
@@ -246,7 +245,8 @@ Result<void> load_fields(Document& document, const Layout& points, const Layout&
             const Array& values = jobs[next].values;
             if (selection->ids == i) (points_now ? piece.point_ids : piece.cell_ids) = values;
             if (selection->is_ghost[i]) mark_left_out(values, name, piece.left_out);
-            if (selection->is_field[i]) (points_now ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, values});
+            if (selection->is_field[i])
+                (points_now ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, values});
         }
     }
     return {};

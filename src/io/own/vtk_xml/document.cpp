@@ -43,7 +43,8 @@ Result<std::size_t> end_of_data(const ByteSource& source) {
 }
 
 Result<void> find_appended(Document& document, std::size_t behind_tag) {
-    const auto encoding = std::string_view(document.tree.child("VTKFile").child("AppendedData").attribute("encoding").value());
+    const auto encoding =
+        std::string_view(document.tree.child("VTKFile").child("AppendedData").attribute("encoding").value());
     if (encoding != "raw" && encoding != "base64")
         return invalid_data(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
     document.appended_raw = encoding == "raw";
@@ -109,9 +110,9 @@ Result<Document> open_document(const ByteSource& source, const Progress& progres
     if (!parsed) {
         if (parsed.status == pugi::status_end_element_mismatch && !outline->ended)
             return invalid_data("the file ends before </VTKFile>");
-        return invalid_data(
-            fmt::format("broken XML near byte {}: {}", outline->position_of(static_cast<std::size_t>(parsed.offset)),
-                        parsed.description()));
+        return invalid_data(fmt::format("broken XML near byte {}: {}",
+                                        outline->position_of(static_cast<std::size_t>(parsed.offset)),
+                                        parsed.description()));
     }
     if (auto taken = take_root(document, document.tree.child("VTKFile")); !taken) return taken.error();
     if (outline->appended) {

@@ -5,6 +5,7 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "io/own/first_error.hpp"
 #include "io/own/index_file.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/text_scanner.hpp"
@@ -73,18 +74,27 @@ Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options
     if (!source) return source.error();
     const auto document = open_document(*source, progress);
     if (!document) return broken(path, document.error().message);
-    Loaded loaded;
-    const auto pieces = document->primary().children("Piece");
-    if (pieces.begin() == pieces.end()) return broken(path, "the index names no pieces");
-    for (const auto& element : pieces) {
-        const auto file = named_file(path, element.attribute("Source").value(), options.allow_outside);
+    std::vector<std::string> files;
+    for (const auto& element : document->primary().children("Piece")) {
+        auto file = named_file(path, element.attribute("Source").value(), options.allow_outside);
         if (!file) return file.error();
-        auto part = load_file(*file, "UnstructuredGrid", options, depth, true, progress);
-        if (!part) return part.error();
-        for (FieldInfo& field : part->info.fields) announce(loaded.info, std::move(field));
-        for (Piece& piece : part->pieces) loaded.pieces.push_back(std::move(piece));
-        loaded.notes.insert(loaded.notes.end(), part->notes.begin(), part->notes.end());
+        files.push_back(std::move(*file));
         if (depth == Depth::description) break; // pieces have the same fields
+    }
+    if (files.empty()) return broken(path, "the index names no pieces");
+    std::vector<Loaded> parts(files.size());
+    FirstError failed;
+    core::parallel_each(files.size(), 1, [&](std::size_t i) {
+        auto part = load_file(files[i], "UnstructuredGrid", options, depth, true, progress);
+        if (part) parts[i] = std::move(*part);
+        else failed.add(i, part.error());
+    });
+    if (auto done = failed.result(); !done) return done.error();
+    Loaded loaded;
+    for (Loaded& part : parts) {
+        for (FieldInfo& field : part.info.fields) announce(loaded.info, std::move(field));
+        for (Piece& piece : part.pieces) loaded.pieces.push_back(std::move(piece));
+        loaded.notes.insert(loaded.notes.end(), part.notes.begin(), part.notes.end());
     }
     return loaded;
 }

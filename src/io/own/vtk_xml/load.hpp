@@ -34,7 +34,7 @@ Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadO
 Result<Loaded> load_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                          bool ids, const Progress& progress);
 
-/// An index of VTU files, which are read one after another.
+/// An index of VTU files, which are read side by side.
 Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options, Depth depth,
                              const Progress& progress);
 

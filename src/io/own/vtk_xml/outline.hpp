@@ -20,8 +20,8 @@ struct Outline {
     /// All tags, in their order. Text that follows a start tag is replaced by its place in the file, "BEGIN END"; other
     /// text and comments are dropped. After the start tag of AppendedData the elements are closed.
     std::string text;
-    std::optional<std::size_t> appended; ///< the first byte behind that start tag
-    bool ended = false;                  ///< the end tag </VTKFile> was found, or the appended data
+    std::optional<std::size_t> appended;                   ///< the first byte behind that start tag
+    bool ended = false;                                    ///< the end tag </VTKFile> was found, or the appended data
     std::vector<std::pair<std::size_t, std::size_t>> tags; ///< where each tag begins: in `text`, in the file
 
     /// The position in the file of the tag that stands at a position of `text`.

@@ -43,7 +43,8 @@ Result<Stream> open_stream(const Document& document, const DataArray& array) {
     Stream stream{document.source, array.place, array.form == DataArray::Form::base64, nullptr};
     if (!stream.base64 || !array.inside) return stream;
     Scratch scratch;
-    const auto start = stream.source.view(stream.place.begin, std::min<std::size_t>(stream.place.size(), 4096), scratch);
+    const auto start =
+        stream.source.view(stream.place.begin, std::min<std::size_t>(stream.place.size(), 4096), scratch);
     if (!start) return start.error();
     stream.place.begin += static_cast<std::size_t>(std::ranges::find_if_not(*start, is_space) - start->begin());
     auto text = without_breaks(stream.source, stream.place);
@@ -80,7 +81,8 @@ std::uint64_t next_word(ByteReader& reader, bool wide) {
 
 Result<std::string_view> Stream::view(std::size_t at, std::size_t count, Scratch& scratch) const {
     const auto missing = [&] {
-        return invalid_data(fmt::format("{} bytes from byte {} on are needed, but there are only {}", count, at, size()));
+        return invalid_data(
+            fmt::format("{} bytes from byte {} on are needed, but there are only {}", count, at, size()));
     };
     if (!base64) {
         if (at > place.size() || count > place.size() - at) return missing();
@@ -114,7 +116,8 @@ Result<void> StoredArray::find_packed_blocks() {
     if (!head) return in_array(head.error());
     ByteReader head_reader(*head, document_->order != std::endian::native);
     const auto next = [&] { return next_word(head_reader, document_->wide_header); };
-    const std::uint64_t count = next(), size = next(), last = next(); // blocks, bytes of each and of the last if smaller
+    const std::uint64_t count = next(), size = next(),
+                        last = next(); // blocks, bytes of each and of the last if smaller
     if (count > stream_.size() / word)
         return wrong(fmt::format("{} blocks are announced in {} bytes", count, stream_.size()));
     if (last > size) return wrong(fmt::format("its last block has {} bytes, the others {}", last, size));
@@ -268,18 +271,16 @@ Result<void> StoredArray::decode(std::byte* to) const {
     }
     core::Buffer<std::byte> bits(array_.bits ? static_cast<std::size_t>(needed_) : 0);
     std::byte* const values = array_.bits ? bits.data() : to;
-    auto done = for_blocks([&](std::size_t block, std::uint64_t at, std::size_t size) {
-        return read_block(block, {values + at, size});
-    });
+    auto done = for_blocks(
+        [&](std::size_t block, std::uint64_t at, std::size_t size) { return read_block(block, {values + at, size}); });
     if (!done) return done;
     if (array_.bits) {
         for (std::uint64_t i = 0; i < scalars_; ++i) to[i] = (bits[i / 8] >> (7 - i % 8)) & std::byte{1};
     } else if (document_->order != std::endian::native) {
         const std::size_t size = size_of(array_.type);
-        core::parallel_ranges(static_cast<std::size_t>(scalars_), std::size_t{1} << 18,
-                              [&](std::size_t begin, std::size_t end) {
-                                  swap_bytes(to + begin * size, end - begin, size);
-                              });
+        core::parallel_ranges(
+            static_cast<std::size_t>(scalars_), std::size_t{1} << 18,
+            [&](std::size_t begin, std::size_t end) { swap_bytes(to + begin * size, end - begin, size); });
     }
     return {};
 }

@@ -80,11 +80,11 @@ private:
     DataArray array_;
     const Progress* progress_;
     std::uint64_t scalars_;
-    std::uint64_t needed_ = 0;    ///< bytes of values
-    std::uint64_t stored_ = 0;    ///< bytes of values that there are
+    std::uint64_t needed_ = 0; ///< bytes of values
+    std::uint64_t stored_ = 0; ///< bytes of values that there are
     Stream stream_;
-    std::size_t data_ = 0;        ///< where in the stream values begin
-    std::size_t block_bytes_ = 1; ///< of values, in all blocks but the last
+    std::size_t data_ = 0;              ///< where in the stream values begin
+    std::size_t block_bytes_ = 1;       ///< of values, in all blocks but the last
     std::vector<std::uint64_t> packed_; ///< behind data_: where each compressed block begins, and the last one ends
 };
 

@@ -80,7 +80,9 @@ void each_row(const Extent& whole, const Extent& piece, bool of_points, const Vi
     const auto count = [&](const Extent& extent, std::size_t axis) {
         return of_points ? extent.points(axis) : extent.cells(axis);
     };
-    const auto shift = [&](std::size_t axis) { return static_cast<std::uint64_t>(piece.first[axis] - whole.first[axis]); };
+    const auto shift = [&](std::size_t axis) {
+        return static_cast<std::uint64_t>(piece.first[axis] - whole.first[axis]);
+    };
     std::size_t row = 0;
     for (std::uint64_t z = 0; z < count(piece, 2); ++z)
         for (std::uint64_t y = 0; y < count(piece, 1); ++y, ++row)
@@ -216,8 +218,9 @@ Array hexahedra(const GridSize& points) {
         Index* to = corners.data() + 8 * x_cells * r;
         for (std::uint64_t x = 0; x < x_cells; ++x, to += 8) {
             const auto p = static_cast<Index>((z * points.y + y) * points.x + x), top = static_cast<Index>(p + slice);
-            const Index cell[] = {p,   static_cast<Index>(p + 1),   static_cast<Index>(p + row + 1),   static_cast<Index>(p + row),
-                                  top, static_cast<Index>(top + 1), static_cast<Index>(top + row + 1), static_cast<Index>(top + row)};
+            const Index cell[] = {
+                p,   static_cast<Index>(p + 1),   static_cast<Index>(p + row + 1),   static_cast<Index>(p + row),
+                top, static_cast<Index>(top + 1), static_cast<Index>(top + row + 1), static_cast<Index>(top + row)};
             std::memcpy(to, cell, sizeof cell);
         }
     });

@@ -164,8 +164,7 @@ private:
 
     static Result<std::uint64_t> last_of(const Array& offsets) {
         return offsets.visit([](auto values) -> Result<std::uint64_t> {
-            if (values.back() < 0)
-                return invalid_data(fmt::format("the last of the offsets is {}", values.back()));
+            if (values.back() < 0) return invalid_data(fmt::format("the last of the offsets is {}", values.back()));
             return static_cast<std::uint64_t>(values.back());
         });
     }
