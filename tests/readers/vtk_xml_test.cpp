@@ -2,6 +2,8 @@
 // VTK's XML and legacy grids, broken on purpose: an error with a sentence, and no memory for what cannot be there.
 #include <sys/stat.h>
 
+#include <atomic>
+#include <filesystem>
 #include <random>
 #include <vector>
 
@@ -189,6 +191,29 @@ TEST(VtkXml, IsAnErrorForPipesAndFolders) {
         EXPECT_FALSE(read(folder.file("pipe.vtu"), options)) << format;
         EXPECT_FALSE(read(folder.file("."), options)) << format;
     }
+}
+
+TEST(ByteSource, OfAFileThatBecameShorterIsAnError) {
+    const TemporaryFolder folder;
+    const auto source = ByteSource::open(folder.write("file", std::string(1000, 'x')));
+    ASSERT_TRUE(source);
+    std::vector<std::byte> room(1000);
+    EXPECT_TRUE(source->read(0, room));
+    std::filesystem::resize_file(folder.file("file"), 500);
+    const auto shorter = source->read(0, room);
+    ASSERT_FALSE(shorter);
+    EXPECT_EQ(shorter.error().code, ErrorCode::file);
+    EXPECT_FALSE(source->read(999, std::span(room).first(2))) << "behind the end";
+}
+
+TEST(VtkXml, StopsOnCancel) {
+    const std::string text = TetFile().text();
+    const std::atomic<bool> cancel = true;
+    Progress progress;
+    progress.cancel = &cancel;
+    const auto loaded = io::vtk_xml::load(ByteSource(text), "UnstructuredGrid", {}, Depth::arrays, false, progress);
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().code, ErrorCode::cancelled);
 }
 
 TEST(VtkXml, IsAnErrorForEveryTruncation) {
