@@ -37,19 +37,14 @@ Result<FilesByTime> entries(const std::string& path) {
     return files;
 }
 
-/// One entry, by the name of its file; never another collection, so nothing can include itself.
-Result<Loaded> load_entry(const std::string& path, std::string_view name, const ReadOptions& options, Depth depth,
-                          const Progress& progress) {
-    if (name.ends_with(".pvtu")) return vtk_xml::load_parallel(path, options, depth, progress);
-    for (const auto& [ending, type] : {std::pair(".vtu", "UnstructuredGrid"), std::pair(".vti", "ImageData"),
-                                       std::pair(".vtr", "RectilinearGrid"), std::pair(".vts", "StructuredGrid")})
-        if (name.ends_with(ending)) return vtk_xml::load_file(path, type, options, depth, true, progress);
-    return broken(path, "its name does not end in .vtu, .pvtu, .vti, .vtr or .vts");
-}
-
-bool is_read(std::string_view name) {
-    constexpr std::string_view endings[] = {".vtu", ".pvtu", ".vti", ".vtr", ".vts"};
-    return std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
+/// The type of the file of an entry, by its name; empty for others. Never another collection, so nothing can include
+/// itself.
+std::string_view type_of_entry(std::string_view name) {
+    for (const auto& [ending, type] :
+         {std::pair(".vtu", "UnstructuredGrid"), std::pair(".pvtu", "PUnstructuredGrid"),
+          std::pair(".vti", "ImageData"), std::pair(".vtr", "RectilinearGrid"), std::pair(".vts", "StructuredGrid")})
+        if (name.ends_with(ending)) return type;
+    return {};
 }
 
 } // namespace
@@ -66,12 +61,14 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     if (!step) return step.error();
     loaded.step = *step;
     for (const std::string& name : std::next(files->begin(), static_cast<std::ptrdiff_t>(*step))->second) {
-        if (!is_read(name))
+        const std::string_view type = type_of_entry(name);
+        if (type.empty())
             return broken(path, fmt::format("it names \"{}\", but only .vtu, .pvtu, .vti, .vtr and .vts are read",
                                             escaped(name)));
         auto file = named_file(path, name, options.allow_outside);
         if (!file) return file.error();
-        auto part = load_entry(*file, name, of_entries, depth, progress);
+        auto part = type == "PUnstructuredGrid" ? vtk_xml::load_parallel(*file, of_entries, depth, progress)
+                                                : vtk_xml::load_file(*file, type, of_entries, depth, true, progress);
         if (!part) return part.error();
         for (FieldInfo& field : part->info.fields) announce(loaded.info, std::move(field));
         for (Piece& piece : part->pieces) loaded.pieces.push_back(std::move(piece));
