@@ -25,7 +25,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/isotet-config.cmake.in
     INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/isotet-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/isotet-config.cmake ${PROJECT_BINARY_DIR}/isotet-config-version.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindCompressors.cmake ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
     DESTINATION ${package_dir})
 
 # pkg-config: what only a static library needs stands under .private. isotet-io read through VTK has no complete list of
@@ -56,7 +56,7 @@ isotet_pkg_config(isotet-vulkan "Isosurfaces on Vulkan devices" isotet fmt "-ldl
 set(library isotet_render)
 isotet_pkg_config(isotet-render "Pictures of isosurfaces" isotet-vulkan "fmt freetype2" "")
 set(library isotet_io)
-isotet_pkg_config(isotet-io "Grids and surfaces in files" isotet "fmt libpng libwebpmux libwebp" "")
+isotet_pkg_config(isotet-io "Grids and surfaces in files" isotet "fmt libpng libwebpmux libwebp libdeflate liblz4 liblzma pugixml" "")
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
     DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)

@@ -4,7 +4,7 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-option(ISOTET_IO "Read files through VTK, pugixml and HDF5 (VTU, Exodus, CGNS, XDMF, ...)" ON)
+option(ISOTET_IO "Read files through VTK and HDF5, too (Exodus, CGNS, VTKHDF, XDMF, ...)" ON)
 option(ISOTET_VULKAN "Extract on graphics cards through Vulkan, opened at run time" ON)
 option(ISOTET_PROGRAM "Build the program isotet" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})

@@ -63,10 +63,7 @@ struct LeftOut {
     std::string_view title, begins, extensions;
 };
 constexpr LeftOut left_out[] = {
-    {"a VTK XML file", "<?xml", ".vtu .pvtu .pvd .vtp .xdmf .xmf"},
-    {"a VTK XML file", "<VTKFile", ".vtu .pvtu .pvd"},
     {"an XDMF file", "<Xdmf", ".xdmf .xmf"},
-    {"a legacy VTK file", "# vtk DataFile", ".vtk"},
     {"a NetCDF file (Exodus II)", "CDF", ".e .ex2 .exo .g"},
     {"an HDF5 file (VTKHDF, Exodus II, CGNS)", "\x89HDF", ".hdf .vtkhdf .cgns .h5"},
 };

@@ -27,9 +27,6 @@ std::span<const GridReader> own_readers();
 /// src/io/vtk: with ISOTET_IO only.
 std::span<const GridReader> vtk_readers();
 
-/// src/io/vtk: a surface through VTK's readers, for files that ours do not take (compressed VTP and the like).
-Result<SurfaceFile> read_surface_with_vtk(const std::string& path, const Progress& progress);
-
 /// True when `options` ask for the field; fields nobody asked for are not read.
 bool wanted(const ReadOptions& options, Association association, std::string_view name);
 

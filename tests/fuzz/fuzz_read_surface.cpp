@@ -32,9 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     constexpr std::array<std::string_view, 7> formats{"vtp", "ply", "stl", "obj", "vtk", "ts", ""};
     if (size == 0) return 0;
     const auto format = formats[data[0] % formats.size()];
-    std::string compressed;
-    const auto file =
-        isotet::io::parse_surface({reinterpret_cast<const char*>(data + 1), size - 1}, {}, format, {}, compressed);
+    const auto file = isotet::io::parse_surface({reinterpret_cast<const char*>(data + 1), size - 1}, {}, format, {});
     if (file) require_valid(file->surface);
     else require(!file.error().message.empty() && file.error().code != isotet::ErrorCode::internal);
     return 0;

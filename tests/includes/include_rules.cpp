@@ -63,6 +63,9 @@ const std::vector<LibraryRule>& library_rules() {
         {"CLI11", {"CLI/"}, {"apps/", "tests/"}},
         {"nlohmann_json", {"nlohmann/"}, {"apps/", "bench/", "tests/"}},
         {"libwebp", {"webp/"}, {"src/io/own/", "tests/"}},
+        {"libdeflate", {"libdeflate.h"}, {"src/io/own/"}},
+        {"liblz4", {"lz4"}, {"src/io/own/"}},
+        {"liblzma", {"lzma"}, {"src/io/own/"}},
         {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
     };
     return rules;

@@ -33,9 +33,9 @@ TEST(WholeFile, ThatBecameShorterIsAnError) {
     const auto file = io::open_plain_file(folder.write("file", std::string(1000, 'x')));
     ASSERT_TRUE(file);
     std::vector<std::byte> room(file->size);
-    EXPECT_TRUE(read_bytes(file->descriptor.number(), "file", room, {}));
+    EXPECT_TRUE(read_bytes(*file, "file", room, {}));
     std::filesystem::resize_file(folder.file("file"), 500);
-    const auto shorter = read_bytes(file->descriptor.number(), "file", room, {});
+    const auto shorter = read_bytes(*file, "file", room, {});
     ASSERT_FALSE(shorter);
     EXPECT_EQ(shorter.error().code, ErrorCode::file);
     EXPECT_EQ(shorter.error().message, "file was cut short while it was read: it had 1000 bytes");

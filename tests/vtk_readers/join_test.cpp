@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/vtk/join.hpp"
+#include "io/own/join.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -12,7 +12,6 @@
 
 #include <isotet/read.hpp>
 
-#include "vtk_readers/sample_grid.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
@@ -20,19 +19,27 @@ namespace {
 
 class ReaderProcess : public testing::Test {
 protected:
-    ReaderProcess() { write_vtu(sample_grid(), folder_.file("sample.vtu"), Encoding::appended_raw); }
+    /// Two tetrahedra, in a format that VTK reads.
+    ReaderProcess() {
+        folder_.write("sample.inp", "5 2 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n"
+                                    "1 1 tet 1 2 3 4\n2 1 tet 2 3 4 5\n");
+    }
 
     /// Reads the sample through a script in place of the reader program.
     Error error_with(std::string_view commands, const Progress& progress = {}) {
         ReadOptions options;
         options.reader_program = folder_.write_script("reader", commands);
         options.time_limit = time_limit_;
-        const auto result = read(folder_.file("sample.vtu"), options, {.progress = progress});
+        const auto result = read(folder_.file("sample.inp"), options, {.progress = progress});
         return result ? Error{ErrorCode::internal, "no error"} : result.error();
     }
     static void expect_words(const Error& error, std::initializer_list<std::string_view> words) {
         for (const std::string_view word : words)
             EXPECT_NE(error.message.find(word), std::string::npos) << error.message;
+    }
+    static void expect_two_cells(const Result<ReadResult>& result) {
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.cells.count(), 2U);
     }
     TemporaryFolder folder_;
     std::chrono::seconds time_limit_{60};
@@ -41,13 +48,13 @@ protected:
 TEST_F(ReaderProcess, KilledBySignalIsAnErrorThatNamesReaderAndSignal) {
     const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"sample.vtu", "reader of vtu", "signal 11", "Segmentation fault", "last words"});
+    expect_words(error, {"sample.inp", "reader of ucd", "signal 11", "Segmentation fault", "last words"});
 }
 
 TEST_F(ReaderProcess, EndingByItselfIsAnErrorThatNamesTheStatus) {
     const Error error = error_with("echo 'bad zone'; exit 255");
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"reader of vtu", "status 255", "bad zone"});
+    expect_words(error, {"reader of ucd", "status 255", "bad zone"});
 }
 
 TEST_F(ReaderProcess, EndingWithoutAReplyIsAnError) { EXPECT_EQ(error_with("exit 0").code, ErrorCode::internal); }
@@ -96,22 +103,21 @@ TEST_F(ReaderProcess, FindsNoOtherOpenFiles) {
 }
 
 TEST_F(ReaderProcess, HittingItsMemoryLimitIsAnErrorThatNamesTheLimit) {
-    write_vtu(sample_grid(), folder_.file("large.vtu"), Encoding::ascii);
-    std::string content = content_of(folder_.file("large.vtu"));
-    const auto begin = content.find("NumberOfPoints=") + 16;
-    content.replace(begin, content.find('"', begin) - begin, "1000000000");
+    std::string content = "200000 1 0 0 0\n";
+    for (int i = 1; i <= 200000; ++i) content += std::to_string(i) + " 0 0 " + std::to_string(i) + "\n";
+    content += "1 1 tet 1 2 3 4\n";
     ReadOptions options;
-    options.memory_limit = 2000000000;
-    const auto result = read(folder_.write("large.vtu", content), options);
+    options.memory_limit = content.size() + 1000000; // to look at the file, not for its arrays
+    const auto result = read(folder_.write("large.inp", content), options);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::out_of_memory);
-    expect_words(result.error(), {"2000000000 bytes"});
+    expect_words(result.error(), {std::to_string(options.memory_limit) + " bytes"});
 }
 
 TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
     ReadOptions options;
     options.reader_program = folder_.file("not-there");
-    const auto result = read(folder_.file("sample.vtu"), options);
+    const auto result = read(folder_.file("sample.inp"), options);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, ErrorCode::system);
     expect_words(result.error(), {"not-there", "No such file"});
@@ -119,7 +125,7 @@ TEST_F(ReaderProcess, ThatCannotBeStartedIsAnErrorThatNamesTheProgram) {
 
 TEST_F(ReaderProcess, WorksForAParentThatIgnoresItsChildren) {
     std::signal(SIGCHLD, SIG_IGN);
-    expect_sample(read(folder_.file("sample.vtu")));
+    expect_two_cells(read(folder_.file("sample.inp")));
     std::signal(SIGCHLD, SIG_DFL);
 }
 
@@ -138,14 +144,14 @@ public:
 
 TEST_F(ReaderProcess, WorksForAParentThatWaitsForAllItsChildren) {
     const WaitingForAllChildren host;
-    for (int i = 0; i < 5; ++i) expect_sample(read(folder_.file("sample.vtu")));
+    for (int i = 0; i < 5; ++i) expect_two_cells(read(folder_.file("sample.inp")));
 }
 
 TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatWaitsForAllItsChildren) {
     const WaitingForAllChildren host;
     const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
-    expect_words(error, {"sample.vtu", "without a complete reply", "SIGCHLD", "last words"});
+    expect_words(error, {"sample.inp", "without a complete reply", "SIGCHLD", "last words"});
 }
 
 TEST_F(ReaderProcess, IsStoppedOnCancelForAParentThatWaitsForAllItsChildren) {
@@ -166,8 +172,8 @@ TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {
     ASSERT_EXIT(
         {
             for (int descriptor = 0; descriptor < 3; ++descriptor) ::close(descriptor);
-            const auto result = read(folder_.file("sample.vtu"));
-            ::_exit(result && result->grid.cells.count() == 9 ? 0 : 1);
+            const auto result = read(folder_.file("sample.inp"));
+            ::_exit(result && result->grid.cells.count() == 2 ? 0 : 1);
         },
         testing::ExitedWithCode(0), "");
 }
@@ -175,11 +181,11 @@ TEST_F(ReaderProcess, WorksForAParentWithItsStandardStreamsClosed) {
 TEST_F(ReaderProcess, ArraysOutliveEverythingElse) {
     Array points;
     {
-        auto result = read(folder_.file("sample.vtu"));
+        auto result = read(folder_.file("sample.inp"));
         ASSERT_TRUE(result) << result.error().message;
         points = result->grid.points;
     }
-    EXPECT_EQ(points.at(12, 0), 3);
+    EXPECT_EQ(points.at(4, 0), 1);
 }
 
 TEST_F(ReaderProcess, ServesManyThreadsAtOnce) {
@@ -187,7 +193,7 @@ TEST_F(ReaderProcess, ServesManyThreadsAtOnce) {
     std::vector<std::thread> threads;
     for (int i = 0; i < 4; ++i)
         threads.emplace_back([&] {
-            if (const auto result = read(folder_.file("sample.vtu")); result && result->grid.cells.count() == 9)
+            if (const auto result = read(folder_.file("sample.inp")); result && result->grid.cells.count() == 2)
                 ++read_well;
         });
     for (std::thread& thread : threads) thread.join();

@@ -8,12 +8,15 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/own/read_gmsh.hpp"
 #include "io/own/read_gocad.hpp"
+#include "io/own/read_legacy_vtk.hpp"
 #include "io/own/read_medit.hpp"
 #include "io/own/read_medit_parts.hpp"
 #include "io/own/read_tetgen.hpp"
+#include "io/own/read_vtk_xml.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/whole_file.hpp"
 #include "io/reader.hpp"
@@ -162,16 +165,21 @@ Format grid_format(const char* name, const char* title, std::vector<std::string>
 } // namespace
 
 std::span<const GridReader> own_readers() {
-    static const std::array readers{
-        GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh, inspect_gmsh_file,
-                   read_gmsh_file},
-        GridReader{grid_format("medit", "Medit mesh with its .sol", {".mesh", ".meshb"}), recognizes_medit,
-                   inspect_medit_file, read_medit_file},
-        GridReader{grid_format("tetgen", "TetGen .node and .ele", {".node", ".ele"}), recognizes_tetgen,
-                   inspect_tetgen_files, read_tetgen_files},
-        GridReader{grid_format("gocad", "Gocad TSolid", {".so"}), recognizes_gocad, inspect_gocad_file,
-                   read_gocad_file},
-    };
+    static const std::vector<GridReader> readers = [] {
+        std::vector<GridReader> all = vtk_xml_readers();
+        all.push_back(legacy_vtk_reader());
+        all.insert(all.end(), {
+                                  GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh,
+                                             inspect_gmsh_file, read_gmsh_file},
+                                  GridReader{grid_format("medit", "Medit mesh with its .sol", {".mesh", ".meshb"}),
+                                             recognizes_medit, inspect_medit_file, read_medit_file},
+                                  GridReader{grid_format("tetgen", "TetGen .node and .ele", {".node", ".ele"}),
+                                             recognizes_tetgen, inspect_tetgen_files, read_tetgen_files},
+                                  GridReader{grid_format("gocad", "Gocad TSolid", {".so"}), recognizes_gocad,
+                                             inspect_gocad_file, read_gocad_file},
+                              });
+        return all;
+    }();
     return readers;
 }
 

@@ -44,4 +44,18 @@ Result<PlainFile> open_plain_file(const std::string& path) {
     return file;
 }
 
+Result<void> read_at(const PlainFile& file, const std::string& path, std::size_t at, std::span<std::byte> to) {
+    while (!to.empty()) {
+        const ssize_t count = ::pread(file.descriptor.number(), to.data(), to.size(), static_cast<off_t>(at));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return system_error(path, "cannot be read", errno);
+        if (count == 0)
+            return Error{ErrorCode::file,
+                         fmt::format("{} was cut short while it was read: it had {} bytes", path, file.size)};
+        to = to.subspan(static_cast<std::size_t>(count));
+        at += static_cast<std::size_t>(count);
+    }
+    return {};
+}
+
 } // namespace isotet::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,11 @@ struct PlainFile {
 /// Errors   file: not there, not readable, a folder, a pipe or a device, empty; machine; out_of_memory when it is larger
 ///          than what can be addressed
 Result<PlainFile> open_plain_file(const std::string& path);
+
+/// Fills `to` with the bytes of the file from `at` on.
+///
+/// Errors   file: the file ends before, so it was cut short meanwhile; machine
+Result<void> read_at(const PlainFile& file, const std::string& path, std::size_t at, std::span<std::byte> to);
 
 /// "PATH: cannot be read: REASON" for an errno.
 Error system_error(const std::string& path, std::string_view what, int number);

@@ -13,9 +13,6 @@
 #include "io/own/surface_parts.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/whole_file.hpp"
-#if ISOTET_IO
-#include "io/reader.hpp"
-#endif
 
 namespace isotet {
 namespace io {
@@ -51,9 +48,8 @@ std::string lower_case_ending(const std::string& path) {
     return ending;
 }
 
-Result<Surface> parse_as(std::string_view format, std::string_view content, const Progress& progress,
-                         std::string& compressed) {
-    if (format == "vtp") return parse_vtp(content, progress, compressed);
+Result<Surface> parse_as(std::string_view format, std::string_view content, const Progress& progress) {
+    if (format == "vtp") return parse_vtp(content, progress);
     if (format == "ply") return parse_ply(content, progress);
     if (format == "stl") return parse_stl(content, progress);
     if (format == "obj") return parse_obj(content, progress);
@@ -76,7 +72,7 @@ std::string_view recognize_surface(std::string_view content, std::string_view en
 }
 
 Result<SurfaceFile> parse_surface(std::string_view content, std::string_view ending, std::string_view format,
-                                  const Progress& progress, std::string& compressed) {
+                                  const Progress& progress) {
     try {
         const auto chosen = format.empty() ? recognize_surface(content, ending) : format;
         if (std::ranges::find(format_names, chosen) == format_names.end()) {
@@ -89,7 +85,7 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the format {} is none of a surface: {}", in_quotes(format), all)};
         }
-        auto surface = parse_as(chosen, content, progress, compressed);
+        auto surface = parse_as(chosen, content, progress);
         if (!surface) return surface.error();
         return SurfaceFile{std::move(*surface), std::string(chosen)};
     } catch (const std::bad_alloc&) {
@@ -105,20 +101,10 @@ Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptio
     const Progress rises = core::rising(run.progress);
     const auto file = io::WholeFile::read(path, rises);
     if (!file) return file.error();
-    std::string compressed;
-    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), options.format, rises, compressed);
+    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), options.format, rises);
     if (surface) {
         rises("read", 1.0);
         return surface;
-    }
-    if (!compressed.empty()) {
-#if ISOTET_IO
-        return io::read_surface_with_vtk(path, rises);
-#else
-        return Error{ErrorCode::file,
-                     fmt::format("{}: the data is compressed ({}): this isotet was built without VTK, which reads that",
-                                 path, compressed)};
-#endif
     }
     Error error = std::move(surface).error();
     if (error.code != ErrorCode::cancelled && error.code != ErrorCode::invalid_argument)

@@ -46,8 +46,7 @@ Result<Surface> parse_stl(std::string_view content, const Progress& progress);
 Result<Surface> parse_obj(std::string_view content, const Progress& progress);
 Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progress);
 Result<Surface> parse_ts(std::string_view content, const Progress& progress);
-/// Sets `compressed` to the name of the compressor, and then fails, when only VTK can read the file.
-Result<Surface> parse_vtp(std::string_view content, const Progress& progress, std::string& compressed);
+Result<Surface> parse_vtp(std::string_view content, const Progress& progress);
 
 /// "vtp", "ply" and so on by the content, then by the ending; empty if neither tells.
 std::string_view recognize_surface(std::string_view content, std::string_view ending);
@@ -56,8 +55,7 @@ std::string_view recognize_surface(std::string_view content, std::string_view en
 ///
 /// `ending`       of the file's name, in lower case without the dot; may be empty
 /// `format`       "vtp" and so on; empty: by content, then by ending
-/// `compressed`   as of parse_vtp()
 Result<SurfaceFile> parse_surface(std::string_view content, std::string_view ending, std::string_view format,
-                                  const Progress& progress, std::string& compressed);
+                                  const Progress& progress);
 
 } // namespace isotet::io

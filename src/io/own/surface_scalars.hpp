@@ -1,20 +1,15 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Arrays out of bytes and out of text, with no memory taken for what cannot be there.
+// Numbers of a type that only the file knows.
 #pragma once
 
-#include <bit>
 #include <charconv>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include <isotet/array.hpp>
-#include <isotet/progress.hpp>
-#include <isotet/result.hpp>
 
 #include "io/own/text_scanner.hpp"
 
@@ -66,19 +61,6 @@ bool read_scalar(TextScanner& scanner, T& value) {
         return scanner.number(value);
     }
 }
-
-/// How many bytes `tuples` x `components` scalars take; nothing if that is more than `available`.
-std::optional<std::size_t> bytes_needed(ScalarType type, std::uint64_t tuples, std::uint64_t components,
-                                        std::size_t available);
-
-/// A copy of scalars that stand in `bytes` one after another; their number is a multiple of `components`.
-Array decode_scalars(ScalarType type, std::string_view bytes, std::size_t components, std::endian order);
-
-/// Exactly tuples x components numbers from the scanner.
-///
-/// Errors   invalid_data: the text is too short for so many, a word is no number of the type; cancelled
-Result<Array> scan_scalars(TextScanner& scanner, ScalarType type, std::uint64_t tuples, std::uint64_t components,
-                           std::string_view what, const Progress& progress);
 
 /// Integers as uint64; negative ones become huge, and so fail every check against a count. Empty for floating arrays.
 std::vector<std::uint64_t> as_indices(const Array& array);

@@ -13,6 +13,7 @@
 #include <isotet/result.hpp>
 
 #include "core/buffer.hpp"
+#include "io/own/plain_file.hpp"
 
 namespace isotet::io {
 
@@ -39,6 +40,7 @@ private:
 /// Fills `to` from the beginning of an open file, in parallel.
 ///
 /// Errors   file: the file is shorter, or reading failed; cancelled
-Result<void> read_bytes(int descriptor, const std::string& path, std::span<std::byte> to, const Progress& progress);
+Result<void> read_bytes(const PlainFile& file, const std::string& path, std::span<std::byte> to,
+                        const Progress& progress);
 
 } // namespace isotet::io

@@ -2,6 +2,8 @@
 #include "io/own/write_stream.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,9 +19,24 @@ constexpr std::size_t pieces_at_once = 64;
 
 } // namespace
 
+namespace {
+
+template <class Word, class Swap>
+void swap_words(std::byte* data, std::size_t count, const Swap& swap) noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+        Word word;
+        std::memcpy(&word, data + i * sizeof(Word), sizeof(Word));
+        word = swap(word);
+        std::memcpy(data + i * sizeof(Word), &word, sizeof(Word));
+    }
+}
+
+} // namespace
+
 void swap_bytes(std::byte* data, std::size_t count, std::size_t size) noexcept {
-    if (size == 1) return;
-    for (std::byte* end = data + count * size; data != end; data += size) std::reverse(data, data + size);
+    if (size == 2) swap_words<std::uint16_t>(data, count, [](auto word) { return __builtin_bswap16(word); });
+    else if (size == 4) swap_words<std::uint32_t>(data, count, [](auto word) { return __builtin_bswap32(word); });
+    else if (size == 8) swap_words<std::uint64_t>(data, count, [](auto word) { return __builtin_bswap64(word); });
 }
 
 bool WriteStream::goes_on() {

@@ -18,7 +18,7 @@
 
 #include "io/vtk/child_process.hpp"
 #include "io/own/file_kind.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 
 extern char** environ;
 

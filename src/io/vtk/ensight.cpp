@@ -4,7 +4,7 @@
 #include <vtkNew.h>
 
 #include "io/own/text_scanner.hpp"
-#include "io/vtk/index_file.hpp"
+#include "io/own/index_file.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/mapped_file.hpp"
 #include "io/vtk/vtk_load.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "io/reader.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/exodus_file.hpp"
 #include "io/vtk/exodus_parts.hpp"
 #include "io/vtk/length_check.hpp"

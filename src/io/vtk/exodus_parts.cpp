@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/exodus_parts.hpp"
 
 namespace isotet::io::vtk {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -18,18 +18,6 @@ using Head = std::string_view;
 
 bool has(Head head, std::string_view text) { return head.find(text) != Head::npos; }
 
-/// The value of the attribute `type` of the root element <VTKFile>; empty if there is none.
-std::string_view vtk_xml_type(Head head) {
-    const auto root = head.find("<VTKFile");
-    if (root == Head::npos) return {};
-    Head element = head.substr(root, head.find('>', root) - root);
-    const auto type = element.find(" type=");
-    if (type == Head::npos || element.size() < type + 8) return {};
-    const char quote = element[type + 6];
-    element.remove_prefix(type + 7);
-    return element.substr(0, element.find(quote));
-}
-
 bool is_hdf5(Head head) { return head.starts_with("\x89HDF\r\n\x1a\n"); }
 bool is_netcdf(Head head) {
     return head.size() > 3 && head.starts_with("CDF") && (head[3] == 1 || head[3] == 2 || head[3] == 5);
@@ -54,16 +42,7 @@ bool starts_with_numbers(Head head, int count) {
     return numbers == count;
 }
 
-int by_xml_type(Head head, std::string_view type) { return vtk_xml_type(head) == type ? 2 : 0; }
-
-int recognizes_vtu(Head head, std::string_view) { return by_xml_type(head, "UnstructuredGrid"); }
-int recognizes_pvtu(Head head, std::string_view) { return by_xml_type(head, "PUnstructuredGrid"); }
-int recognizes_vti(Head head, std::string_view) { return by_xml_type(head, "ImageData"); }
-int recognizes_vtr(Head head, std::string_view) { return by_xml_type(head, "RectilinearGrid"); }
-int recognizes_vts(Head head, std::string_view) { return by_xml_type(head, "StructuredGrid"); }
-int recognizes_pvd(Head head, std::string_view) { return by_xml_type(head, "Collection"); }
 int recognizes_xdmf(Head head, std::string_view) { return has(head, "<Xdmf") ? 2 : 0; }
-int recognizes_legacy(Head head, std::string_view) { return head.starts_with("# vtk DataFile") ? 2 : 0; }
 int recognizes_exodus(Head head, std::string_view extension) {
     if (!is_netcdf(head) && !is_hdf5(head)) return 0;
     if (has(head, "num_nodes") || has(head, "len_string") || has(head, "_nc3_strict") || has(head, "_NCProperties"))
@@ -118,14 +97,7 @@ struct Named {
 };
 
 const auto& table() {
-    static const std::array<Named, 14> formats = {{
-        {{"vtu", vtk::load_vtu}, recognizes_vtu, "VTK XML unstructured grid", {".vtu"}},
-        {{"pvtu", vtk::load_pvtu}, recognizes_pvtu, "VTK XML unstructured grid in pieces", {".pvtu"}},
-        {{"vti", vtk::load_vti}, recognizes_vti, "VTK XML image data", {".vti"}},
-        {{"vtr", vtk::load_vtr}, recognizes_vtr, "VTK XML rectilinear grid", {".vtr"}},
-        {{"vts", vtk::load_vts}, recognizes_vts, "VTK XML structured grid", {".vts"}},
-        {{"vtk", vtk::load_legacy}, recognizes_legacy, "VTK legacy file", {".vtk"}},
-        {{"pvd", vtk::load_pvd}, recognizes_pvd, "ParaView collection of VTK files", {".pvd"}},
+    static const std::array<Named, 7> formats = {{
         {{"exodus", vtk::load_exodus}, recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
         {{"cgns", vtk::load_cgns}, recognizes_cgns, "CGNS", {".cgns"}},
         {{"vtkhdf", vtk::load_vtkhdf}, recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
@@ -164,10 +136,6 @@ std::span<const GridReader> vtk_readers() {
     static const std::vector<GridReader> readers =
         all_readers(std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(table())>>>());
     return readers;
-}
-
-Result<SurfaceFile> read_surface_with_vtk(const std::string& path, const Progress& progress) {
-    return ask<SurfaceFile>(Task::read_surface, "", path, {}, progress);
 }
 
 vtk::Load vtk::loader_of(std::string_view format) {

@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 #include <hdf5.h>
 
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/hdf5_array.hpp"
 #include "io/vtk/length_check.hpp"
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 
 namespace isotet::io::vtk {
 namespace {

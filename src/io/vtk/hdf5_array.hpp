@@ -8,7 +8,7 @@
 #include <isotet/array.hpp>
 #include <isotet/result.hpp>
 
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 
 namespace isotet::io::vtk {
 

@@ -8,9 +8,6 @@
 
 namespace isotet::io::vtk {
 
-/// VTK XML files: the end tag is there, and every block of raw appended data ends inside the file.
-Result<void> check_xml_length(const std::string& path);
-
 /// netCDF classic, 64-bit offset and 64-bit data files (Exodus): the file is as long as its header needs. Files of
 /// other kinds (HDF5, which checks itself) pass.
 Result<void> check_netcdf_length(const std::string& path);

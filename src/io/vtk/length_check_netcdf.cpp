@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "io/vtk/length_check.hpp"
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 #include "io/vtk/mapped_file.hpp"
 
 namespace isotet::io::vtk {

@@ -12,16 +12,16 @@
 
 namespace isotet::io::vtk {
 
-enum class Task : std::uint8_t { inspect, read, read_surface };
+enum class Task : std::uint8_t { inspect, read };
 
 struct Request {
     Task task = Task::read;
-    std::string format; ///< name in formats(); empty for surfaces
+    std::string format; ///< name in formats()
     std::string path;   ///< absolute
     ReadOptions options;
 };
 
-using Reply = std::variant<Error, FileInfo, ReadResult, SurfaceFile>;
+using Reply = std::variant<Error, FileInfo, ReadResult>;
 
 std::string encode(const Request& request);
 

@@ -11,7 +11,7 @@
 
 #include "io/vtk/child_process.hpp"
 #include "io/own/file_kind.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/find_reader.hpp"
 #include "io/vtk/reader_process.hpp"
 
@@ -36,9 +36,7 @@ Result<Descriptor> memory_file(const char* name, std::string_view content) {
     return file;
 }
 
-std::string reader_of(const Request& request) {
-    return request.format.empty() ? "VTK's surface reader" : "the reader of " + request.format;
-}
+std::string reader_of(const Request& request) { return "the reader of " + request.format; }
 
 /// Why there is no reply.
 Error failure(const Request& request, const ChildOutcome& outcome) {

@@ -108,18 +108,6 @@ public:
         fields(grid.point_fields);
         fields(grid.cell_fields);
     }
-    void describe(SurfaceFile& file) {
-        out_.text(file.format);
-        array(file.surface.positions);
-        array(file.surface.triangles);
-        out_.number(file.surface.normals_kind);
-        array(file.surface.normals);
-        array(file.surface.edge_ends);
-        array(file.surface.edge_weights);
-        array(file.surface.source_cells);
-        fields(file.surface.point_fields);
-        fields(file.surface.cell_fields);
-    }
 
 private:
     Encoder& out_;
@@ -186,20 +174,6 @@ public:
         grid.cell_fields = fields();
         return result;
     }
-    SurfaceFile surface() {
-        SurfaceFile file;
-        file.format = in_.text();
-        file.surface.positions = array();
-        file.surface.triangles = array();
-        file.surface.normals_kind = in_.enumerator(Normals::face);
-        file.surface.normals = array();
-        file.surface.edge_ends = array();
-        file.surface.edge_weights = array();
-        file.surface.source_cells = array();
-        file.surface.point_fields = fields();
-        file.surface.cell_fields = fields();
-        return file;
-    }
 
 private:
     Decoder& in_;
@@ -244,7 +218,6 @@ Result<Reply> map_reply(int descriptor) {
     case 0: reply = undescriber.error(); break;
     case 1: reply = undescriber.info(); break;
     case 2: reply = undescriber.result(); break;
-    case 3: reply = undescriber.surface(); break;
     default: in.fail();
     }
     if (!in.finished()) return incomplete;

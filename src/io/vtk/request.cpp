@@ -46,7 +46,7 @@ Result<Request> decode_request(std::string_view bytes) {
     Decoder in(bytes);
     const bool known = in.number<std::uint32_t>() == request_version;
     Request request;
-    request.task = in.enumerator(Task::read_surface);
+    request.task = in.enumerator(Task::read);
     request.format = in.text();
     request.path = in.text();
     ReadOptions& options = request.options;

@@ -17,8 +17,8 @@
 
 #include "core/memory.hpp"
 #include "io/vtk/child_process.hpp"
-#include "io/vtk/escape.hpp"
-#include "io/vtk/join.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/join.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/messages.hpp"
 #include "io/vtk/reader_process.hpp"
@@ -67,7 +67,7 @@ void limit_memory(std::uint64_t limit) {
 
 /// Bytes of the grid's file; nothing where it is spread over several, whose sizes are not known yet.
 std::optional<std::uint64_t> size_of_grid(const Request& request) {
-    for (const std::string_view format : {"vtu", "vti", "vtr", "vts", "vtk", "cgns", "vtkhdf", "ucd", ""}) {
+    for (const std::string_view format : {"cgns", "vtkhdf", "ucd"}) {
         struct stat status{};
         if (request.format == format && ::stat(request.path.c_str(), &status) == 0)
             return static_cast<std::uint64_t>(status.st_size);
@@ -98,10 +98,6 @@ Result<Request> receive() {
 }
 
 Reply do_task(const Request& request) {
-    if (request.task == Task::read_surface) {
-        auto surface = load_surface(request.path);
-        return surface ? Reply(std::move(*surface)) : Reply(surface.error());
-    }
     const Load load = loader_of(request.format);
     if (!load)
         return Error{ErrorCode::invalid_argument,

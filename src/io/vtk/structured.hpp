@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <isotet/grid.hpp>
+#include <isotet/result.hpp>
 
 class vtkDataSet;
 
@@ -13,6 +14,8 @@ namespace isotet::io::vtk {
 
 /// A structured, rectilinear or image grid as hexahedra, with a note that says so; nothing for other data sets. A flat
 /// one has no hexahedra.
-std::optional<Grid> hexahedra_of(vtkDataSet* data, std::vector<std::string>& notes);
+///
+/// Errors   out_of_memory
+Result<std::optional<Grid>> hexahedra_of(vtkDataSet* data, std::vector<std::string>& notes);
 
 } // namespace isotet::io::vtk

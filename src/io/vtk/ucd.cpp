@@ -15,7 +15,7 @@
 #include "io/own/number_map.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/reader.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/mapped_file.hpp"
 

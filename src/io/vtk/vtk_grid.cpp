@@ -13,7 +13,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include "io/reader.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/structured.hpp"
 #include "io/vtk/vtk_grid.hpp"
 
@@ -147,8 +147,10 @@ Result<Piece> piece_of(vtkDataSet* data, const ReadOptions& options, std::string
         auto cells = cells_of(grid);
         if (!cells) return cells.error();
         piece.grid.cells = std::move(*cells);
-    } else if (auto structured = hexahedra_of(data, notes)) {
-        piece.grid = std::move(*structured);
+    } else if (auto structured = hexahedra_of(data, notes); !structured) {
+        return structured.error();
+    } else if (*structured) {
+        piece.grid = std::move(**structured);
     } else {
         return Error{ErrorCode::invalid_data,
                      fmt::format("a data set of type {} has no volume cells: a grid is wanted", data->GetClassName())};

@@ -6,7 +6,7 @@
 
 #include <isotet/read.hpp>
 
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 
 class vtkAlgorithm;
 class vtkDataArray;

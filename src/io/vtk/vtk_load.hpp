@@ -3,7 +3,7 @@
 #pragma once
 
 #include "io/reader.hpp"
-#include "io/vtk/loaded.hpp"
+#include "io/own/loaded.hpp"
 #include "io/vtk/vtk_grid.hpp"
 
 namespace isotet::io::vtk {

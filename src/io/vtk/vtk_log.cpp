@@ -9,7 +9,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/vtk_log.hpp"
 
 namespace isotet::io::vtk {

@@ -6,7 +6,7 @@
 
 #include "io/reader.hpp"
 #include "io/own/text_scanner.hpp"
-#include "io/vtk/escape.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/vtk_log.hpp"
 #include "io/vtk/xdmf_data.hpp"

@@ -7,9 +7,9 @@
 #include <fmt/core.h>
 
 #include "io/own/text_scanner.hpp"
-#include "io/vtk/escape.hpp"
-#include "io/vtk/index_file.hpp"
-#include "io/vtk/loaded.hpp"
+#include "io/own/escape.hpp"
+#include "io/own/index_file.hpp"
+#include "io/own/loaded.hpp"
 #include "io/vtk/mapped_file.hpp"
 #include "io/vtk/xdmf_data.hpp"
 

@@ -1,0 +1,13 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace isotet::io {
+
+/// Control characters, line ends too, and bytes that are not ASCII or UTF-8 as \x.., so that the content of a file
+/// cannot write to the user's terminal. Runs of line ends become one space.
+std::string escaped(std::string_view text);
+
+} // namespace isotet::io

@@ -1,0 +1,58 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Legacy VTK files (.vtk), ascii and binary, versions 1.0 to 5.1, of any data set: what surfaces and grids are made of.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/progress.hpp>
+#include <isotet/read.hpp>
+
+#include "io/own/byte_source.hpp"
+#include "io/own/surface_parts.hpp"
+
+namespace isotet::io {
+
+/// A list of cells (CELLS, POLYGONS and so on).
+struct LegacyCells {
+    Array connectivity;        ///< corners of all cells one after another; int32, or as the file has them
+    Array offsets;             ///< where the corners of each cell begin, and those of the last one end; or empty:
+    std::uint64_t corners = 0; ///< so many of each cell
+    std::uint64_t count = 0;
+
+    /// Calls visit(corners) for each cell; offsets have been checked.
+    void each(const std::function<void(std::span<const std::uint64_t>)>& visit) const;
+};
+
+struct LegacyFile {
+    std::string dataset; ///< "polydata", "unstructured_grid" and so on
+    bool has_points = false;
+    Array points; ///< float32 or float64
+    LegacyCells vertices, lines, polygons, strips, cells;
+    Array cell_types;
+    std::array<std::uint64_t, 3> dimensions{};
+    std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
+    std::array<Array, 3> coordinates; ///< of a rectilinear grid
+    std::vector<Attribute> point_data, cell_data;
+    FileInfo info; ///< of fields that were not asked for, too
+};
+
+/// What is wanted of a file.
+struct LegacyWants {
+    std::function<bool(std::string_view dataset)> dataset; ///< others are an error, before anything is read
+    std::function<bool(Association association, std::string_view name)> field;
+    bool geometry = true; ///< points and cells
+};
+
+/// Reads a whole file. Arrays nobody asked for are stepped over; integers of type vtkIdType become int64, as in VTK.
+///
+/// Errors   invalid_data: what was seen, where, and the rule; an array that is longer than the rest of the file, before
+///          memory is taken; as ByteSource::read(); cancelled
+Result<LegacyFile> read_legacy_vtk(const ByteSource& source, const LegacyWants& wants, const Progress& progress);
+
+} // namespace isotet::io

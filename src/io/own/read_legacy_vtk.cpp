@@ -1,0 +1,167 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Legacy VTK files as grids: unstructured, and the structured kinds as hexahedra.
+#include "io/own/read_legacy_vtk.hpp"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "io/own/join.hpp"
+#include "io/own/legacy_vtk.hpp"
+#include "io/own/text_scanner.hpp"
+#include "io/own/vtk_xml/load.hpp"
+
+namespace isotet::io {
+namespace {
+
+using vtk_xml::GridSize;
+
+Array offsets_of(const LegacyCells& cells) {
+    core::Buffer<std::int64_t> offsets(static_cast<std::size_t>(cells.count) + 1);
+    core::parallel_each(offsets.size(), std::size_t{1} << 16,
+                        [&](std::size_t i) { offsets[i] = static_cast<std::int64_t>(i * cells.corners); });
+    return std::move(offsets).to_array();
+}
+
+/// Cells without types are none, as in VTK.
+Result<Cells> cells_of(const LegacyFile& file) {
+    Cells cells;
+    const LegacyCells& list = file.cells;
+    if (list.count == 0 || file.cell_types.empty()) return cells;
+    if (file.cell_types.tuples() != list.count)
+        return invalid_data(fmt::format("there are {} cells, but {} cell types", list.count, file.cell_types.tuples()));
+    cells.connectivity = list.connectivity;
+    cells.types = file.cell_types;
+    cells.offsets = list.offsets.empty() ? offsets_of(list) : list.offsets;
+    vtk_xml::simplify(cells);
+    return cells;
+}
+
+Result<Array> structured_points(const LegacyFile& file, const GridSize& size) {
+    const std::uint64_t count = size.x * size.y * size.z;
+    if (file.dataset == "structured_grid") {
+        if (file.points.tuples() == count) return file.points;
+        return invalid_data(fmt::format("there are {} points, but DIMENSIONS are {} x {} x {}", file.points.tuples(),
+                                        size.x, size.y, size.z));
+    }
+    if (file.dataset == "structured_points") {
+        const auto& s = file.spacing;
+        return points_of(size, vtk_xml::ImagePoints{{0, 0, 0}, {s[0], 0, 0, 0, s[1], 0, 0, 0, s[2]}, file.origin});
+    }
+    std::array<std::vector<double>, 3> ticks;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Array& along = file.coordinates[axis];
+        if (along.tuples() != file.dimensions[axis])
+            return invalid_data(fmt::format("there are {} coordinates along axis {}, but DIMENSIONS say {}",
+                                            along.tuples(), "xyz"[axis], file.dimensions[axis]));
+        for (std::size_t i = 0; i < along.tuples(); ++i) ticks[axis].push_back(along.at(i));
+    }
+    return points_of(size, ticks);
+}
+
+Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<std::string>& notes) {
+    const GridSize size{file.dimensions[0], file.dimensions[1], file.dimensions[2]};
+    constexpr std::uint64_t most = std::uint64_t{1} << 48;
+    if (size.x * size.y > most / std::max<std::uint64_t>(size.z, 1))
+        return invalid_data(fmt::format("DIMENSIONS are {} x {} x {}: too many points", size.x, size.y, size.z));
+    // Fields first: if they are as long as DIMENSIONS say, the file is as large as the grid.
+    for (const Attribute& attribute : file.point_data)
+        if (attribute.values.tuples() != size.x * size.y * size.z)
+            return invalid_data(fmt::format("point field {} has {} values, but DIMENSIONS are {} x {} x {}",
+                                            in_quotes(attribute.name), attribute.values.tuples(), size.x, size.y,
+                                            size.z));
+    auto points = structured_points(file, size);
+    if (!points) return points.error();
+    auto cells = vtk_xml::hexahedra_of(size, notes);
+    if (!cells) return cells.error();
+    piece.grid.points = std::move(*points);
+    piece.grid.cells = std::move(*cells);
+    return {};
+}
+
+bool is_grid(std::string_view dataset) { return dataset.ends_with("_grid") || dataset == "structured_points"; }
+
+} // namespace
+
+Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth,
+                           const Progress& progress) {
+    std::string kind;
+    LegacyWants wants;
+    wants.geometry = depth == Depth::arrays;
+    wants.dataset = [&](std::string_view name) { return is_grid(kind = name); };
+    wants.field = [&](Association association, std::string_view name) {
+        return wants.geometry && ((association == Association::cell && vtk_xml::is_ghost_array(name)) ||
+                                  (wanted(options, association, name) && !vtk_xml::is_ghost_array(name)));
+    };
+    auto file = read_legacy_vtk(source, wants, progress);
+    if (!kind.empty() && !is_grid(kind))
+        return invalid_data(fmt::format("a legacy VTK file of type {} has no cells with a volume", in_quotes(kind)));
+    if (!file) return file.error();
+    if (file->dataset.empty()) return invalid_data("the file has no DATASET");
+    Loaded loaded;
+    loaded.info = std::move(file->info);
+    std::erase_if(loaded.info.fields, [](const FieldInfo& field) { return vtk_xml::is_ghost_array(field.name); });
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    Piece piece;
+    const bool structured = file->dataset != "unstructured_grid";
+    if (structured) {
+        if (auto taken = take_structured(*file, piece, loaded.notes); !taken) return taken.error();
+    } else {
+        auto cells = cells_of(*file);
+        if (!cells) return cells.error();
+        piece.grid.points = std::move(file->points);
+        piece.grid.cells = std::move(*cells);
+    }
+    if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
+    for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
+    const bool flat = structured && piece.grid.cells.count() == 0; // its cells are not volumes
+    for (Attribute& field : file->cell_data) {
+        if (flat) continue;
+        if (!vtk_xml::is_ghost_array(field.name))
+            piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
+        else if (field.values.tuples() == piece.grid.cells.count())
+            vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
+    }
+    loaded.pieces.push_back(std::move(piece));
+    return loaded;
+}
+
+namespace {
+
+Result<Loaded> load_legacy_file(const std::string& path, const ReadOptions& options, Depth depth,
+                                const Progress& progress) {
+    const auto source = ByteSource::open(path);
+    if (!source) return source.error();
+    auto loaded = load_legacy(*source, options, depth, progress);
+    if (!loaded) return loaded.error().code == ErrorCode::invalid_data ? broken(path, loaded.error().message) : loaded;
+    for (Piece& piece : loaded->pieces) piece.name = path;
+    loaded->info.format = "vtk";
+    return loaded;
+}
+
+} // namespace
+
+GridReader legacy_vtk_reader() {
+    GridReader reader;
+    reader.format = Format{"vtk", "VTK legacy file", {".vtk"}};
+    reader.format.reads_grid = true;
+    reader.recognizes = [](std::string_view head, std::string_view) {
+        return head.starts_with("# vtk DataFile") ? 2 : 0;
+    };
+    reader.inspect = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        auto loaded = load_legacy_file(path, options, Depth::description, progress);
+        return loaded ? Result<FileInfo>(std::move(loaded->info)) : loaded.error();
+    };
+    reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
+        auto loaded = load_legacy_file(path, options, Depth::arrays, progress);
+        if (!loaded) return Result<ReadResult>(loaded.error());
+        return join(std::move(*loaded), options.merge_pieces_by_coordinates);
+    };
+    return reader;
+}
+
+} // namespace isotet::io

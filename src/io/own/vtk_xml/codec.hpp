@@ -1,0 +1,26 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The compressors of VTK's XML files.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace isotet::io::vtk_xml {
+
+enum class Codec : std::uint8_t { none, zlib, lz4, lzma };
+
+/// By the name of VTK's class ("vtkZLibDataCompressor"); empty: none.
+std::optional<Codec> codec_of(std::string_view compressor);
+
+std::string_view name_of(Codec codec);
+
+/// False where so few bytes cannot become so many.
+bool is_plausible(Codec codec, std::uint64_t packed, std::uint64_t unpacked);
+
+/// Inflates one block, which must fill `to`.
+bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to);
+
+} // namespace isotet::io::vtk_xml

@@ -1,0 +1,79 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Arrays of points or cells over all Piece elements of a file.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <isotet/read.hpp>
+
+#include "io/own/loaded.hpp"
+#include "io/own/vtk_xml/stored_array.hpp"
+
+namespace isotet::io::vtk_xml {
+
+/// The Piece elements; the primary element itself where there are none.
+std::vector<pugi::xml_node> pieces_of(const Document& document);
+
+/// True for the arrays of a step: an attribute TimeStep lists those that an array is for; without it, it is for all.
+bool is_of_step(const pugi::xml_node& element, std::size_t step);
+
+/// The arrays of a PointData or CellData element, without those of other steps.
+struct Section {
+    std::vector<DataArray> arrays;
+    std::string global_ids; ///< the array that is marked so
+};
+
+/// Errors   invalid_data: as describe_array(); an array without a name, two of one name
+Result<Section> describe_section(const Document& document, const pugi::xml_node& element, std::size_t step);
+
+/// Tells the fields of the first piece, and the file's times.
+Result<void> announce_fields(Document& document, const Progress& progress, FileInfo& info);
+
+/// Where the tuples of each piece go.
+struct Layout {
+    std::vector<std::uint64_t> tuples; ///< of each piece
+    std::uint64_t total = 0;
+    /// Puts a piece's tuples to their places; without it they follow one another.
+    std::function<void(std::size_t piece, const std::byte* from, std::byte* to, std::size_t tuple_bytes)> place;
+};
+
+/// One array, with its values in each piece.
+struct Column {
+    DataArray array; ///< of the first piece
+    std::vector<StoredArray> parts;
+};
+
+/// Finds an array in every piece and checks that it has as many values as the layout says.
+///
+/// Errors   invalid_data: a piece has it of another type; as StoredArray::find()
+Result<Column> find_column(Document& document, const std::vector<DataArray>& arrays, const Layout& layout,
+                           const Progress& progress);
+
+Result<Array> load_column(const Column& column, const Layout& layout);
+
+/// The points that the pieces store: float32 or float64, three components.
+Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>& pieces, const Layout& layout,
+                          std::size_t step, const Progress& progress);
+
+/// What of a file becomes a Piece besides points and cells.
+struct Wanted {
+    const ReadOptions& options;
+    std::size_t step = 0;
+    bool ids = false; ///< global numbers, to join files by
+};
+
+/// Reads point data and cell data into `piece`: fields that are wanted, ghost marks, global numbers. All arrays side by
+/// side.
+Result<void> load_fields(Document& document, const Layout& points, const Layout& cells, const Wanted& wanted,
+                         const Progress& progress, Piece& piece);
+
+/// Marks the cells that vtkGhostType or vtkGhostLevels takes out; empty where there are none.
+void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
+
+/// True for arrays that describe the grid (ghost marks), which are no fields.
+bool is_ghost_array(std::string_view name);
+
+} // namespace isotet::io::vtk_xml

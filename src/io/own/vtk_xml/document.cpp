@@ -1,0 +1,165 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/own/vtk_xml/document.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/core.h>
+
+#include "core/errors.hpp"
+#include "io/own/pace.hpp"
+#include "io/own/text_scanner.hpp"
+#include "io/own/vtk_xml/outline.hpp"
+
+namespace isotet::io::vtk_xml {
+namespace {
+
+constexpr std::size_t most_components = 1U << 20U;
+constexpr std::size_t tail_bytes = 4096;
+
+struct TypeName {
+    std::string_view name;
+    ScalarType type;
+};
+constexpr std::array type_names{TypeName{"Int8", ScalarType::int8},       TypeName{"UInt8", ScalarType::uint8},
+                                TypeName{"Int16", ScalarType::int16},     TypeName{"UInt16", ScalarType::uint16},
+                                TypeName{"Int32", ScalarType::int32},     TypeName{"UInt32", ScalarType::uint32},
+                                TypeName{"Int64", ScalarType::int64},     TypeName{"UInt64", ScalarType::uint64},
+                                TypeName{"Float32", ScalarType::float32}, TypeName{"Float64", ScalarType::float64},
+                                TypeName{"vtkIdType", ScalarType::int64}, TypeName{"Bit", ScalarType::uint8}};
+
+/// Where the appended data ends: at its end tag, which must be there as that of the file.
+Result<std::size_t> end_of_data(const ByteSource& source) {
+    Scratch scratch;
+    const std::size_t from = source.size() - std::min(source.size(), tail_bytes);
+    const auto tail = source.view(from, source.size() - from, scratch);
+    if (!tail) return tail.error();
+    const auto file = tail->rfind("</VTKFile");
+    if (file == std::string_view::npos)
+        return invalid_data(
+            fmt::format("the file ends after {} bytes without </VTKFile>: it is cut short", source.size()));
+    const auto data = tail->rfind("</AppendedData", file);
+    return from + (data == std::string_view::npos ? file : data);
+}
+
+Result<void> find_appended(Document& document, std::size_t behind_tag) {
+    const auto encoding =
+        std::string_view(document.tree.child("VTKFile").child("AppendedData").attribute("encoding").value());
+    if (encoding != "raw" && encoding != "base64")
+        return invalid_data(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
+    document.appended_raw = encoding == "raw";
+    const auto end = end_of_data(document.source);
+    if (!end) return end.error();
+    Scratch scratch;
+    const std::size_t most = std::min(tail_bytes, std::max(*end, behind_tag) - behind_tag);
+    const auto start = document.source.view(behind_tag, most, scratch);
+    if (!start) return start.error();
+    const auto underscore = start->find_first_not_of(" \t\r\n");
+    if (underscore == std::string_view::npos || (*start)[underscore] != '_')
+        return invalid_data("the appended data does not start with an underscore");
+    document.appended = {behind_tag + underscore + 1, *end};
+    document.appended_left = document.appended.size();
+    return {};
+}
+
+Result<void> take_root(Document& document, const pugi::xml_node& root) {
+    if (!root) {
+        const char* const first = document.tree.first_child().name();
+        return invalid_data(fmt::format("the first element is {}, not VTKFile", in_quotes(first)));
+    }
+    document.type = root.attribute("type").value();
+    const std::string_view order = root.attribute("byte_order").as_string("LittleEndian"),
+                           header = root.attribute("header_type").as_string("UInt32"),
+                           compressor = root.attribute("compressor").value();
+    if (order != "LittleEndian" && order != "BigEndian")
+        return invalid_data(fmt::format("the byte order {} is not known", in_quotes(order)));
+    if (header != "UInt32" && header != "UInt64")
+        return invalid_data(fmt::format("the header type {} is not UInt32 or UInt64", in_quotes(header)));
+    const auto codec = codec_of(compressor);
+    if (!codec) return invalid_data(fmt::format("the compressor {} is not known", in_quotes(compressor)));
+    document.order = order == "BigEndian" ? std::endian::big : std::endian::little;
+    document.wide_header = header == "UInt64";
+    document.codec = *codec;
+    return {};
+}
+
+Error wrong(std::string_view name, std::string_view what) {
+    return invalid_data(fmt::format("the array {}: {}", in_quotes(name), what));
+}
+
+Result<void> place_appended(const Document& document, const pugi::xml_node& element, DataArray& array) {
+    const std::string_view stated = element.attribute("offset").value();
+    std::uint64_t offset = 0;
+    if (!parse_number(stated, offset))
+        return wrong(array.name, fmt::format("its offset is {}, not a number", in_quotes(stated)));
+    if (offset > document.appended.size())
+        return wrong(array.name, fmt::format("offset {} lies behind the appended data, which has {} bytes", offset,
+                                             document.appended.size()));
+    array.place = {document.appended.begin + static_cast<std::size_t>(offset), document.appended.end};
+    array.form = document.appended_raw ? DataArray::Form::raw : DataArray::Form::base64;
+    return {};
+}
+
+} // namespace
+
+Result<Document> open_document(const ByteSource& source, const Progress& progress) {
+    auto outline = outline_of(source, progress);
+    if (!outline) return outline.error();
+    Document document(source);
+    const auto parsed = document.tree.load_buffer(outline->text.data(), outline->text.size(), pugi::parse_default);
+    if (!parsed) {
+        if (parsed.status == pugi::status_end_element_mismatch && !outline->ended)
+            return invalid_data("the file ends before </VTKFile>");
+        return invalid_data(fmt::format("broken XML near byte {}: {}",
+                                        outline->position_of(static_cast<std::size_t>(parsed.offset)),
+                                        parsed.description()));
+    }
+    if (auto taken = take_root(document, document.tree.child("VTKFile")); !taken) return taken.error();
+    if (outline->appended) {
+        if (auto found = find_appended(document, *outline->appended); !found) return found.error();
+    }
+    return document;
+}
+
+Result<std::optional<DataArray>> describe_array(const Document& document, const pugi::xml_node& element) {
+    DataArray array;
+    array.name = element.attribute("Name").value();
+    const std::string_view tag = element.name(), type = element.attribute("type").value();
+    if (tag != "DataArray" && tag != "Array")
+        return invalid_data(fmt::format("an element {} where an array should be", in_quotes(tag)));
+    if (type == "String") return std::optional<DataArray>();
+    const auto* const known = std::ranges::find(type_names, type, &TypeName::name);
+    if (known == type_names.end())
+        return wrong(array.name, fmt::format("its type is {}, which is not known", in_quotes(type)));
+    array.type = known->type;
+    array.bits = type == "Bit";
+    const std::string_view components = element.attribute("NumberOfComponents").as_string("1");
+    if (!parse_number(components, array.components) || array.components == 0 || array.components > most_components)
+        return wrong(array.name,
+                     fmt::format("it has {} components, not 1 to {}", in_quotes(components), most_components));
+    const std::string_view form = element.attribute("format").as_string("ascii");
+    if (form == "appended") {
+        if (auto placed = place_appended(document, element, array); !placed) return placed.error();
+        return std::optional(std::move(array));
+    }
+    if (form != "ascii" && form != "binary")
+        return wrong(array.name, fmt::format("its format is {}, not ascii, binary or appended", in_quotes(form)));
+    array.inside = true;
+    array.form = form == "ascii" ? DataArray::Form::ascii : DataArray::Form::base64;
+    TextScanner place(element.child_value()); // of outline_of()
+    if (place.number(array.place.begin)) place.number(array.place.end);
+    return std::optional(std::move(array));
+}
+
+Result<std::uint64_t> count_of(const pugi::xml_node& element, const char* attribute,
+                               std::optional<std::uint64_t> otherwise) {
+    const pugi::xml_attribute stated = element.attribute(attribute);
+    std::uint64_t count = 0;
+    if (!stated && otherwise) return *otherwise;
+    if (!stated) return invalid_data(fmt::format("a {} has no {}", element.name(), attribute));
+    if (!parse_number(stated.value(), count))
+        return invalid_data(fmt::format("{} is {}, not a count", attribute, in_quotes(stated.value())));
+    return count;
+}
+
+} // namespace isotet::io::vtk_xml
