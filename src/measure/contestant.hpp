@@ -2,7 +2,6 @@
 // A method and a search index on one grid, measured by GridBench.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -10,7 +9,11 @@
 #include <isotet/pack.hpp>
 #include <isotet/render.hpp>
 
+#include "core/stopwatch.hpp"
+
 namespace isotet::measure {
+
+using core::Stopwatch;
 
 /// What all contestants share: the grid, packed once for those that need it, and what draws.
 struct Bed {
@@ -25,15 +28,6 @@ struct Bed {
 
     /// Packs the grid if that has not been done.
     Result<void> pack();
-};
-
-class Stopwatch {
-public:
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_ = Clock::now();
 };
 
 class Contestant {

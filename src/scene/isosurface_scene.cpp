@@ -2,7 +2,6 @@
 #include <isotet/isosurface_scene.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <iterator>
 #include <utility>
@@ -11,21 +10,13 @@
 #include <isotet/device_grid.hpp>
 
 #include "core/guard.hpp"
+#include "core/stopwatch.hpp"
 
 namespace isotet {
 
 namespace {
 
 constexpr double opacity_among_several = 0.35;
-
-class SceneClock {
-public:
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_ = Clock::now();
-};
 
 /// Isosurfaces have colours of their own: from the dark to the light of the map, in the order of their values.
 Color color_among(const std::vector<ShownSurface>& surfaces, std::size_t which, ColorMap map) {
@@ -79,7 +70,7 @@ struct IsosurfaceScene::Data {
 
 /// The boundary if it is drawn, and the box around the grid.
 Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run) {
-    const SceneClock looking;
+    const core::Stopwatch looking;
     if (look.boundary_opacity > 0) {
         Result<Surface> found = boundary_of(grid, run);
         if (!found) return found.error();
@@ -123,14 +114,14 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options);
     if (!created) return created.error();
     contour = *std::move(created);
-    const SceneClock packing;
+    const core::Stopwatch packing;
     if (Result<void> ready = contour->prepare(run); !ready) return ready;
     if (contour->packed()) report.pack_seconds = packing.seconds();
     return {};
 }
 
 Result<void> IsosurfaceScene::Data::load_tets(const IsosurfaceOptions& options, const Run& run) {
-    const SceneClock uploading;
+    const core::Stopwatch uploading;
     const PackedGrid packed = *contour->packed();
     report.field = packed.field();
     TetStoreOptions store_options;
@@ -292,7 +283,7 @@ Result<void> IsosurfaceScene::show(std::span<const double> isovalues, const Run&
     return core::guarded("making a scene", [&]() -> Result<void> {
         Data& data = *data_;
         data.clear();
-        const SceneClock extracting;
+        const core::Stopwatch extracting;
         const Result<void> done = data.surface ? data.add_mesh(*data.surface)
                                   : data.store ? data.show_tets(isovalues)
                                                : data.show_extracted(isovalues, run);

@@ -48,6 +48,7 @@ TEST(Includes, AgainstTheDirectionAreFound) {
     EXPECT_NE(objection("include/isotet/grid.hpp", "fmt/format.h"), "");
     EXPECT_NE(objection("src/core/parallel.hpp", "tbb/task_arena.h"), "");
     EXPECT_NE(objection("apps/cli/extract.cpp", "cpu/emit.hpp"), "");
+    EXPECT_NE(objection("apps/cli/extract.cpp", "core/parallel.hpp"), "") << "the program sees public headers only";
     EXPECT_NE(objection("src/new_folder/new.cpp", "core/packed.hpp"), "") << "a folder without a rule";
     EXPECT_EQ(objection("src/cpu/emit.cpp", "ops/extract.hpp"), "");
     EXPECT_EQ(objection("src/io/vtk/child.cpp", "vtkCellArray.h"), "");
