@@ -446,7 +446,8 @@ private:
         return before_here(fmt::format("{} is not an attribute that is read", in_quotes(keyword)));
     }
 
-    /// Values of an array with a name, which is announced, and kept if it is wanted. Of two of one name the last counts.
+    /// Values of an array with a name, which is announced, and kept if it is wanted.
+    /// Of two of one name the last counts.
     Result<void> read_array(const std::string& word, const LegacyType& type, std::uint64_t tuples,
                             std::uint64_t components, bool normals = false) {
         const Association association = data_ == Data::points ? Association::point : Association::cell;

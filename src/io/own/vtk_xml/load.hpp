@@ -24,8 +24,8 @@ std::string_view type_of(std::string_view head);
 ///
 /// `type`     that it must have
 /// `ids`      global numbers are read, too, to join files by
-/// Errors     invalid_data: not such a file, arrays that are missing or too short, pieces that do not cover a structured
-///            grid; what open_document() and StoredArray give; out_of_memory; cancelled
+/// Errors     invalid_data: not such a file, arrays that are missing or too short, pieces that do not cover a box;
+///            what open_document() and StoredArray give; out_of_memory; cancelled
 /// Cost       the memory of the arrays that are wanted, and a few MB a thread
 Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadOptions& options, Depth depth, bool ids,
                     const Progress& progress);
