@@ -37,6 +37,10 @@ function(isotet_target target)
     target_compile_features(${target} PUBLIC cxx_std_20)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
     target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wpedantic)
+    if(ISOTET_UNITY)
+        # clang, not g++, takes a local name for a shadow of what another file of the group keeps to itself.
+        target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
+    endif()
     if(ISOTET_WERROR)
         # g++ 12 suspects its own AVX-512 intrinsics (GCC bug 105593) and strings (GCC bug 105651).
         target_compile_options(${target} PRIVATE -Werror
@@ -59,7 +63,8 @@ function(isotet_target target)
             PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
             PRIVATE ${PROJECT_SOURCE_DIR}/src)
-        set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+        set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+            CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON DEFINE_SYMBOL ""
             UNITY_BUILD ${ISOTET_UNITY} UNITY_BUILD_MODE GROUP)
         if(ISOTET_UNITY)
             # g++ takes what is private to an included file for shared; and it inlines less in what it takes for large.
@@ -69,6 +74,15 @@ function(isotet_target target)
     else()
         target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
     endif()
+endfunction()
+
+# isotet_library(NAME): a library of the project, isotet::isotet or isotet::PART for isotet_PART.
+function(isotet_library name)
+    string(REPLACE "isotet_" "" part ${name})
+    add_library(${name})
+    add_library(isotet::${part} ALIAS ${name})
+    isotet_target(${name})
+    set_target_properties(${name} PROPERTIES EXPORT_NAME ${part})
 endfunction()
 
 # isotet_sources(TARGET GROUP FILES...): adds files, which ISOTET_UNITY compiles as one. So names that are private to a

@@ -41,7 +41,7 @@ build_release() {
 build_address() {
     CC=clang-19 CXX=clang++-19 build_source=$root/tests/install/consumer \
         build address "$trees/address" -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS='-O1 -D_GLIBCXX_ASSERTIONS' \
-        -DISOTET_TREE="$root" -DISOTET_FUZZ=ON -DISOTET_IO=OFF \
+        -DISOTET_TREE="$root" -DISOTET_WERROR=ON -DISOTET_FUZZ=ON -DISOTET_IO=OFF \
         -DISOTET_TESTS=ON -DISOTET_TEST_PREFIX=address. -DISOTET_TEST_KINDS="$(kinds_for_address)"
 }
 

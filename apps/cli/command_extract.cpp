@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <isotet/contour.hpp>
+#include <isotet/device_grid.hpp>
 #include <isotet/levels.hpp>
 #include <isotet/process_memory.hpp>
 #include <isotet/write.hpp>
@@ -56,7 +57,7 @@ private:
     Console& console_;
     std::optional<GridSource> source_;
     ExtractPlan plan_;
-    std::optional<ContourDevice> device_;
+    std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
     Grid grid_;         ///< of the step at hand
     Array field_;       ///< its values
@@ -81,8 +82,8 @@ Result<void> ExtractRun::open_device() {
         return usage_error("--engine vulkan needs a device, but --device is none");
     Result<std::optional<Device>> device = isotet::cli::open_device(command_.device, console_);
     if (device) {
-        device_ = ContourDevice{**std::move(device), required};
-        numbers_.device = device_->device.info().name;
+        device_ = vulkan_engine(**device);
+        numbers_.device = (*device)->info().name;
         return {};
     }
     if (required || !is_of_device(device.error().code)) return device.error();
@@ -126,11 +127,11 @@ Result<Contour> ExtractRun::start(ContourInput input) {
     const std::size_t isovalues =
         command_.isovalues.empty() ? std::max<std::uint64_t>(command_.levels, 1) : command_.isovalues.size();
     options.surfaces = isovalues * plan_.steps.size();
-    options.device = device_;
-    numbers_.why = device_ ? "devices take packed grids"
-                   : options.method
-                       ? "asked for"
-                       : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
+    if (device_) options.engine = device_;
+    options.engine_required = command_.engine == EngineChoice::vulkan;
+    numbers_.why = device_          ? "devices take packed grids"
+                   : options.method ? "asked for"
+                                    : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
     predict(input);
     numbers_.peak_before = peak_resident_memory().value_or(0);
     if (reset_peak_memory()) resident_before_ = resident_memory();
@@ -287,8 +288,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     console_.notes(result->notes);
     const double seconds = result->extract_seconds / static_cast<double>(isovalues.size());
     numbers_.method = result->method;
-    numbers_.on_device = result->on_device;
-    numbers_.reference = command_.engine == EngineChoice::reference;
+    numbers_.engine = result->engine;
     numbers_.field = result->field;
     numbers_.cells_left_out = result->cells_left_out;
     numbers_.pack_seconds += result->pack_seconds;
@@ -299,7 +299,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         const Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));
         SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
         numbers.extract_seconds = seconds;
-        if (result->on_device) numbers.device = result->work;
+        if (result->engine == "vulkan") numbers.device = result->work;
         numbers.isovalue = isovalues[i];
         numbers.time = time_of(source_->info(), step);
         numbers.report = result->surfaces[i].report;
@@ -333,7 +333,7 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
 
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const bool one_file = goes_into_one_file();
-    std::size_t at_once = contour_->has_device() ? 1 : isovalues_together(isovalues_.size());
+    std::size_t at_once = contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));

@@ -7,6 +7,7 @@
 
 #include <isotet/annotation.hpp>
 #include <isotet/compare_pictures.hpp>
+#include <isotet/picture_file.hpp>
 #include <isotet/render.hpp>
 
 #include "commands.hpp"
@@ -49,9 +50,9 @@ Result<Picture> draw_annotated(Renderer& renderer, const RenderInput& input, con
     }
     if (room) {
         for (const std::string& text : {annotation.title, annotation.caption}) {
-            const Result<bool> writable = can_be_written(text);
-            if (!writable) return writable.error();
-            if (*writable) continue;
+            const Result<std::size_t> missing = count_missing_letters(text);
+            if (!missing) return missing.error();
+            if (*missing == 0) continue;
             console.note(fmt::format("the font of isotet lacks letters of '{}': they are boxes in the picture", text));
             break; // the caption has the title's as a rule
         }

@@ -112,7 +112,7 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     plan.read = fields_to_read(plan);
 
     plan.contour.method = command.method;
-    plan.contour.by_reference = command.engine == EngineChoice::reference;
+    if (command.engine == EngineChoice::reference) plan.contour.engine = reference_engine();
     plan.contour.precision = command.precision;
     plan.contour.ties = command.keep_degenerate ? Ties::keep : Ties::merge;
     plan.contour.normals = command.normals;

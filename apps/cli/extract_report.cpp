@@ -98,7 +98,7 @@ std::string choice_text(const ExtractNumbers& numbers) {
 }
 
 std::string engine_text(const ExtractNumbers& numbers) {
-    return numbers.on_device ? "vulkan on " + numbers.device : numbers.engine();
+    return numbers.on_device() ? "vulkan on " + numbers.device : std::string(numbers.engine);
 }
 
 std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
@@ -116,7 +116,7 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
                                      numbers.threads == 1 ? "" : "s")});
     table.row({"memory", memory_text(numbers)});
     table.row({"time", time_text(numbers)});
-    if (numbers.on_device) table.row({"device", device_text(numbers)});
+    if (numbers.on_device()) table.row({"device", device_text(numbers)});
     return table.text();
 }
 
@@ -156,7 +156,7 @@ Json extract_json(const ExtractNumbers& numbers) {
     const bool finite = numbers.field.lower <= numbers.field.upper;
     report["range"] = finite ? Json::array({numbers.field.lower, numbers.field.upper}) : Json(nullptr);
     report["no_data_points"] = numbers.field.no_data;
-    report["engine"] = numbers.engine();
+    report["engine"] = std::string(numbers.engine);
     report["method"] = name_of(numbers.method);
     report["method_why"] = numbers.why;
     report["predicted"] = numbers.predicted

@@ -38,12 +38,12 @@ struct ExtractNumbers {
     std::size_t steps = 1; ///< time steps
     bool averaged = false;
     Precision precision = Precision::float32;
-    Method method = Method::direct;            ///< of the last surface
-    std::string why;                           ///< the method, in words
-    std::optional<Estimate> predicted;         ///< nothing for devices and the reference engine
-    std::optional<std::uint64_t> peak_bytes;   ///< taken beyond the first grid, if the system tells
-    bool on_device = false, reference = false; ///< of the last surface
-    std::string device;                        ///< its name
+    Method method = Method::direct;          ///< of the last surface
+    std::string why;                         ///< the method, in words
+    std::optional<Estimate> predicted;       ///< nothing for devices and the reference engine
+    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, if the system tells
+    std::string_view engine;                 ///< of the last surface
+    std::string device;                      ///< its name
     unsigned threads = 1;
     double read_seconds = 0;
     double pack_seconds = 0;       ///< uploading included
@@ -55,7 +55,7 @@ struct ExtractNumbers {
 
     std::uint64_t transient_peak() const;
     double work_seconds() const; ///< packing, uploading, extracting: what is predicted
-    const char* engine() const { return on_device ? "vulkan" : reference ? "reference" : "cpu"; }
+    bool on_device() const { return engine == "vulkan"; }
 };
 
 /// The surfaces, then the grid and the field; `verbose`: also how they were made.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <isotet/picture_file.hpp>
+
 #include "number_format.hpp"
 #include "output_names.hpp"
 

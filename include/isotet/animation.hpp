@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include <isotet/export.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/result.hpp>
 
@@ -12,7 +13,7 @@ namespace isotet {
 
 /// Pictures one after another in one file, for ever: animated WebP, which browsers and slides show. The file is there
 /// when finish() has written it; without that nothing is written. Moving is cheap.
-class Animation {
+class ISOTET_API Animation {
 public:
     /// `path`                 ends in .webp
     /// `pictures_per_second`  above 0, at most 100

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/render.hpp>
 #include <isotet/result.hpp>
@@ -32,9 +33,9 @@ struct Annotation {
     bool empty() const noexcept { return !scale && legend.empty() && caption.empty(); }
 };
 
-/// Whether the font has all letters of a text.
+/// How many letters of a text the font lacks, each of which is drawn as a box. Bytes that are not UTF-8 count, too.
 /// Errors   internal when the font cannot be opened
-Result<bool> can_be_written(std::string_view text);
+ISOTET_API Result<std::size_t> count_missing_letters(std::string_view text);
 
 struct PictureSize {
     std::uint32_t width = 0, height = 0;
@@ -43,14 +44,14 @@ struct PictureSize {
 /// What an annotation leaves, in a picture of `whole`, for what is drawn; nothing when that would be less than half of
 /// its width or height: then the picture is too small for text.
 /// Errors   internal when the font cannot be opened
-Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole);
+ISOTET_API Result<std::optional<PictureSize>> room_beside(const Annotation& annotation, PictureSize whole);
 
 /// A picture of `whole`, with a scene of the size that room_beside() says in its upper left corner, and the annotation
 /// beside it: dark on light backgrounds, light on dark ones. An empty background stays empty.
 ///
 /// Guarantees   the same bytes for the same version of FreeType
 /// Errors       invalid_argument when the scene has another size; internal when the font cannot be opened
-Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole,
-                         const Color& background);
+ISOTET_API Result<Picture> annotate(const Picture& scene, const Annotation& annotation, PictureSize whole,
+                                    const Color& background);
 
 } // namespace isotet

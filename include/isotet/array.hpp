@@ -11,15 +11,17 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/export.hpp>
+
 namespace isotet {
 
 enum class ScalarType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
 /// Bytes of one scalar.
-std::size_t size_of(ScalarType type) noexcept;
+ISOTET_API std::size_t size_of(ScalarType type) noexcept;
 
 /// "float32", "int64" and so on.
-std::string_view name_of(ScalarType type) noexcept;
+ISOTET_API std::string_view name_of(ScalarType type) noexcept;
 
 inline bool is_floating(ScalarType type) noexcept { return type == ScalarType::float32 || type == ScalarType::float64; }
 
@@ -40,7 +42,7 @@ constexpr ScalarType scalar_type_of() {
 ///
 /// Guarantees   the scalars never move or change while any copy of the Array lives (if borrowed: the caller's promise)
 /// Threads      safe to read from many threads
-class Array {
+class ISOTET_API Array {
 public:
     Array() = default;
 

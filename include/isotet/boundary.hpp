@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -16,7 +17,7 @@ namespace isotet {
 /// Errors       out_of_memory; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       faces cancel within each cluster first; those left over are sorted
-Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
+ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
 /// The boundary of a grid that is not packed: all faces that its tets, repeated ones aside, do not use equally often in
 /// both directions. Triangles face outwards; a face that is used more than once too often stands there once. Positions
@@ -27,6 +28,6 @@ Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 /// Errors       invalid_data as survey(); out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
 /// Method       tets are dealt into buckets that fit a processor's cache, where their faces are hashed
-Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
+ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
 
 } // namespace isotet

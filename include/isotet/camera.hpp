@@ -6,13 +6,14 @@
 #include <optional>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet {
 
 /// A box along the axes; empty while lower > upper.
-struct Box {
+struct ISOTET_API Box {
     std::array<double, 3> lower{1, 1, 1}, upper{-1, -1, -1};
 
     bool empty() const noexcept { return !(lower[0] <= upper[0]); }
@@ -22,16 +23,16 @@ struct Box {
 
 /// The box of all points that packed tets use, or of all vertices of a surface that are finite.
 /// Cost   one pass
-Box bounds_of(const PackedGrid& packed);
-Box bounds_of(const Surface& surface);
+ISOTET_API Box bounds_of(const PackedGrid& packed);
+ISOTET_API Box bounds_of(const Surface& surface);
 
 /// From where one looks: obliquely from the front, the right and above; or from the end of an axis. z is up, except
 /// that from +z and -z y is.
 enum class View : std::uint8_t { iso, plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
 
 /// "iso", "+x", "-x" and so on, and back.
-std::string_view name_of(View view) noexcept;
-std::optional<View> parse_view(std::string_view name) noexcept;
+ISOTET_API std::string_view name_of(View view) noexcept;
+ISOTET_API std::optional<View> parse_view(std::string_view name) noexcept;
 
 enum class Projection : std::uint8_t { perspective, parallel };
 
@@ -42,7 +43,7 @@ enum class Projection : std::uint8_t { perspective, parallel };
 /// `distance`    of the eye from the target
 /// `angle`       of view, in degrees, from the lower to the upper edge of a perspective picture
 /// `height`      of what a parallel picture shows
-struct Camera {
+struct ISOTET_API Camera {
     Projection projection = Projection::perspective;
     std::array<double, 3> target{};
     std::array<double, 3> direction{0, 0, 1};
@@ -78,6 +79,6 @@ struct Camera {
 };
 
 /// A camera with the direction of a view; fit() does the rest.
-Camera camera_of(View view, Projection projection = Projection::perspective);
+ISOTET_API Camera camera_of(View view, Projection projection = Projection::perspective);
 
 } // namespace isotet

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -68,6 +69,6 @@ struct CheckOptions {
 /// Errors   invalid_data when a triangle has a vertex out of range or a position is not finite; invalid_argument when
 ///          `grid` is given but the surface has no edge ends; cancelled
 /// Cost     O(V log V + F log F)
-Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options = {}, const Run& run = {});
+ISOTET_API Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options = {}, const Run& run = {});
 
 } // namespace isotet

@@ -4,13 +4,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include <isotet/device_grid.hpp>
+#include <isotet/device_work.hpp>
+#include <isotet/engine.hpp>
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
@@ -28,22 +32,15 @@ struct ContourInput {
     std::vector<Field> cell_fields;  ///< as ExtractOptions::cell_fields
 };
 
-/// A device to extract on.
-struct ContourDevice {
-    Device device;
-    bool required = false; ///< what the device cannot do is an error; else the CPU does it, with a note
-    DeviceGridOptions options = {};
-};
-
 struct ContourOptions {
     /// Nothing: by the rule of method_for() for `surfaces`; where packing then finds too little memory, direct
-    /// extraction if that fits, with a note. A device takes clusters only.
+    /// extraction if that fits, with a note. Some engines take clusters only.
     std::optional<Method> method = {};
     /// How many surfaces will be asked for, over all fields and time steps. 0: not known; then those that have been
     /// asked for are counted, and the grid is packed when the rule says so.
     std::uint64_t surfaces = 0;
-    bool by_reference = false; ///< the slow reference extracts (reference.hpp), to compare with; not with a device
-    std::optional<ContourDevice> device = {};
+    std::shared_ptr<const Engine> engine = cpu_engine(); ///< or vulkan_engine(), device_grid.hpp
+    bool engine_required = false; ///< what the engine cannot do is an error; else the CPU does it, with a note
     Precision precision = Precision::float32;
     Ties ties = Ties::merge;
     Normals normals = Normals::none;
@@ -63,14 +60,14 @@ enum class ContourUpdate : std::uint8_t {
 struct ContourResult {
     std::vector<Extraction> surfaces; ///< in the order of the isovalues
     Method method = Method::direct;
-    bool on_device = false;
+    std::string_view engine; ///< Engine::name() of the one that extracted the last surface
     FieldReport field;
     std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
     std::uint64_t coarse_tets = 0;    ///< of direct extraction, as DirectExtraction::coarse_tets
     double pack_seconds = 0;          ///< packing, or storing another field or points, and uploading; 0 where nothing
                                       ///< was to be done
     double extract_seconds = 0;       ///< downloading included
-    DeviceWork work;                  ///< of the device
+    DeviceWork work;                  ///< on the device, of the last surface
     std::vector<std::string> notes;   ///< sentences for the user
 };
 
@@ -81,7 +78,7 @@ struct ContourResult {
 /// Threads      extract() of many threads at once where nothing is to be packed and no device is used, else one call at
 ///              a time: calls wait for each other. A call is stopped through its own Run::progress; a slider cancels
 ///              the call for a stale isovalue and makes the next
-class Contour {
+class ISOTET_API Contour {
 public:
     /// Checks that the field fits the grid; nothing is packed yet.
     ///
@@ -106,10 +103,16 @@ public:
     Result<ContourResult> extract(std::span<const double> isovalues, const Run& run = {});
     Result<ContourResult> extract(double isovalue, const Run& run = {});
 
-    /// Surfaces that stay on the device, to be drawn there.
+    /// Calls `work` with the grid that the engine keeps, packed and up to date, and with what surfaces of the session
+    /// have, while no other call of the session runs.
+    /// For engines with more to offer than surfaces in memory: extract_on_device(), say.
     ///
-    /// Errors   as DeviceGrid::extract(); invalid_argument when the session has no device, or has given it up
-    Result<std::vector<DeviceSurface>> extract_on_device(std::span<const double> isovalues, const Run& run = {});
+    /// `surfaces`   how many will be asked for
+    /// Errors   as pack(); of the engine; invalid_argument when the engine keeps no grid, or was given up; those of
+    ///          `work`
+    Result<void> use_grid(std::size_t surfaces,
+                          const std::function<Result<void>(EngineGrid&, const ExtractOptions&)>& work,
+                          const Run& run = {});
 
     /// Packs now what the first extract() would pack; nothing where surfaces are extracted directly.
     /// Errors   as pack()
@@ -132,11 +135,8 @@ public:
     /// The packed grid; nothing where surfaces are extracted directly, or before the first of them.
     std::optional<PackedGrid> packed() const;
 
-    /// What the last extraction on the device took; nothing without a device.
-    DeviceWork device_work() const;
-
-    /// Whether a device extracts; false after it failed and the CPU took over.
-    bool has_device() const;
+    /// Engine::name() of the one that extracts next: "cpu" after a device failed and the CPU took over.
+    std::string_view engine() const;
 
 private:
     struct Data;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet {
@@ -22,7 +23,7 @@ class Context;
 enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_gpu, software, other };
 
 /// "discrete GPU", "integrated GPU", "virtual GPU", "software", "other".
-std::string_view name_of(DeviceKind kind) noexcept;
+ISOTET_API std::string_view name_of(DeviceKind kind) noexcept;
 
 /// A Vulkan device, as its driver describes it.
 struct DeviceInfo {
@@ -59,7 +60,7 @@ struct DeviceList {
 /// Cost      about 50 ms
 /// Errors    out_of_memory; no Vulkan and no device are none
 /// Threads   safe from many threads
-Result<DeviceList> list_devices();
+ISOTET_API Result<DeviceList> list_devices();
 
 struct DeviceOptions {
     /// "": the best real GPU that can be used (discrete before integrated before virtual, then the most memory), never
@@ -73,7 +74,7 @@ struct DeviceOptions {
 /// A device that is ready to work. Copies share it.
 ///
 /// Threads   one operation at a time on one device; different devices are independent
-class Device {
+class ISOTET_API Device {
 public:
     /// Opens a device and tests its arithmetic on the device itself (docs/inside/gpu.md).
     ///

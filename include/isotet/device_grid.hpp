@@ -9,7 +9,11 @@
 #include <string>
 #include <vector>
 
+#include <isotet/contour.hpp>
 #include <isotet/device.hpp>
+#include <isotet/device_work.hpp>
+#include <isotet/engine.hpp>
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
@@ -41,28 +45,10 @@ struct DeviceGridNeeds {
     std::uint64_t least() const noexcept { return resident_bytes + largest_page_bytes; }
 };
 
-/// How long a pass took on the device: "select", "count", "scan", "emit" and so on.
-struct DevicePass {
-    std::string name;
-    double seconds = 0;
-};
-
-/// What a call cost.
-struct DeviceWork {
-    std::vector<DevicePass> passes;   ///< in order; empty where the device has no timestamps
-    double device_seconds = 0;        ///< from the beginning of the first pass to the end of the last, waits between
-                                      ///< aside
-    double waited_seconds = 0;        ///< for the device, as seen from here
-    std::uint64_t uploaded_bytes = 0; ///< over the bus
-    std::uint64_t downloaded_bytes = 0;
-    std::uint64_t page_loads = 0;  ///< pages that had to be uploaded
-    std::uint32_t submissions = 0; ///< one, unless arrays had to grow or pages to come
-};
-
 /// A surface in a device's memory, ready to be drawn. Moving is cheap; it keeps the device open.
 ///
 /// `vertices`, `triangle_count`   fewer than 2^32
-class DeviceSurface {
+class ISOTET_API DeviceSurface {
 public:
     DeviceSurface();
     DeviceSurface(DeviceSurface&&) noexcept;
@@ -95,7 +81,7 @@ private:
 ///              notice
 /// Threads      one call at a time on one device
 /// Method       marching tetrahedra over clusters in compute shaders; docs/inside/gpu.md
-class DeviceGrid {
+class ISOTET_API DeviceGrid {
 public:
     /// What upload() will need, told before anything is taken.
     /// Cost   a pass over the links of the packed grid
@@ -172,5 +158,17 @@ private:
                               const ExtractOptions& options, const Run& run);
     std::unique_ptr<Data> data_;
 };
+
+/// The engine that extracts on a device, for a session: ContourOptions::engine. Grids are uploaded in pages of at most a
+/// sixteenth of the memory that is free.
+ISOTET_API std::shared_ptr<const Engine> vulkan_engine(const Device& device, const DeviceGridOptions& options = {});
+
+/// Surfaces of a session whose engine is vulkan_engine(), in the order of the isovalues. They stay on the device, to be
+/// drawn there.
+///
+/// Errors   as Contour::extract() and DeviceGrid::extract(); invalid_argument when the session has another engine, or
+///          has given the device up
+ISOTET_API Result<std::vector<DeviceSurface>> extract_on_device(Contour& contour, std::span<const double> isovalues,
+                                                                const Run& run = {});
 
 } // namespace isotet

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <isotet/device.hpp>
+#include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -38,8 +39,8 @@ inline constexpr std::array all_draw_methods{DrawMethod::registers, DrawMethod::
                                              DrawMethod::textures, DrawMethod::mesh};
 
 /// The name as written here, and back.
-std::string_view name_of(DrawMethod method) noexcept;
-std::optional<DrawMethod> parse_draw_method(std::string_view name) noexcept;
+ISOTET_API std::string_view name_of(DrawMethod method) noexcept;
+ISOTET_API std::optional<DrawMethod> parse_draw_method(std::string_view name) noexcept;
 
 struct TetStoreOptions {
     bool gradients = false; ///< shading by the gradients of the packed grid, `textures` and `mesh` only; without them
@@ -49,7 +50,8 @@ struct TetStoreOptions {
 };
 
 /// What a store takes, in bytes.
-std::uint64_t tet_store_bytes(DrawMethod method, std::uint64_t tets, std::uint64_t points, bool gradients) noexcept;
+ISOTET_API std::uint64_t tet_store_bytes(DrawMethod method, std::uint64_t tets, std::uint64_t points,
+                                         bool gradients) noexcept;
 
 struct TetStoreReport {
     std::uint64_t tets = 0, points = 0;
@@ -61,7 +63,7 @@ struct TetStoreReport {
 
 /// Tets that are drawn at an isovalue, `DrawnSurface::tets` of a scene. Keeps what it needs of its store alive. Moving
 /// is cheap.
-class TetSurface {
+class ISOTET_API TetSurface {
 public:
     TetSurface(TetSurface&&) noexcept;
     TetSurface& operator=(TetSurface&&) noexcept;
@@ -96,7 +98,7 @@ private:
 ///
 /// Threads   one call at a time on one device
 /// Method    docs/inside/render.md
-class TetStore {
+class ISOTET_API TetStore {
 public:
     /// Uploads a store. The packed grid is not needed any more; with another field the store must be uploaded again.
     ///

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
@@ -66,8 +67,8 @@ struct Extraction {
 ///              out_of_memory; cancelled
 /// Threads      safe from many threads on one packed grid
 /// Method       marching tetrahedra over clusters; docs/inside/clusters.md
-Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options = {},
-                           const Run& run = {});
+ISOTET_API Result<Extraction> extract(const PackedGrid& packed, double isovalue, const ExtractOptions& options = {},
+                                      const Run& run = {});
 
 /// Extracts the surfaces of several isovalues in one pass: the ranges of all clusters are looked at once, and a cluster
 /// that several isovalues cut is read once. The more clusters they have in common, the more this saves.
@@ -78,11 +79,11 @@ Result<Extraction> extract(const PackedGrid& packed, double isovalue, const Extr
 /// Cost         O(C + V + F) of all surfaces; they are in memory together, and so is the transient memory of each:
 ///              limits as above, a cluster counted once for every isovalue that selects it
 /// Errors       as above; all or nothing
-Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
-                                        const ExtractOptions& options = {}, const Run& run = {});
+ISOTET_API Result<std::vector<Extraction>> extract(const PackedGrid& packed, std::span<const double> isovalues,
+                                                   const ExtractOptions& options = {}, const Run& run = {});
 
 /// The nearest value that the type of the field can hold: 0.7 becomes 0.699999988 on a float32 field, 3.2 becomes 3 on
 /// integers.
-double snap(const Array& values, double isovalue);
+ISOTET_API double snap(const Array& values, double isovalue);
 
 } // namespace isotet

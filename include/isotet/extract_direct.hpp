@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
@@ -46,7 +47,8 @@ struct DirectExtraction {
 ///              out_of_memory, before memory is taken, with the amount needed and the amount free; cancelled
 /// Threads      safe from many threads on one grid
 /// Method       marching tetrahedra over all tets, welded by sorted edges; docs/inside/direct.md
-Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
-                                        const DirectOptions& options = {}, const Run& run = {});
+ISOTET_API Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field,
+                                                   std::span<const double> isovalues, const DirectOptions& options = {},
+                                                   const Run& run = {});
 
 } // namespace isotet

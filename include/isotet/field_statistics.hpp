@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -26,7 +27,7 @@ struct ComponentStatistics {
 /// Cost         one parallel pass
 /// Errors       cancelled; out_of_memory
 /// Threads      safe from many threads on one array
-Result<std::vector<ComponentStatistics>> statistics_of(const Array& values, const Run& run = {});
+ISOTET_API Result<std::vector<ComponentStatistics>> statistics_of(const Array& values, const Run& run = {});
 
 /// Two ends of a range; lower > upper: there is no value.
 struct ValueRange {
@@ -37,7 +38,7 @@ struct ValueRange {
 /// nothing but one value is left then. Not finite values are passed over; vectors count by their magnitude.
 ///
 /// Cost   up to 200,000 values, spread evenly, are sorted
-ValueRange typical_range(const Array& values);
+ISOTET_API ValueRange typical_range(const Array& values);
 
 /// The field to show where none was named: the one whose values are spread most evenly over its range, by the entropy
 /// of a histogram of 64 bins. Scalars and vectors of three components are judged, vectors by their magnitude. Fields of
@@ -46,6 +47,6 @@ ValueRange typical_range(const Array& values);
 ///
 /// Returns   a name for find_field(), "velocity:mag" of a vector; empty when no field has two different values
 /// Cost      up to 200,000 values of each field are looked at
-std::string most_varied_field(const Grid& grid);
+ISOTET_API std::string most_varied_field(const Grid& grid);
 
 } // namespace isotet

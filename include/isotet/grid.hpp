@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
@@ -22,7 +23,7 @@ enum class Association : std::uint8_t { point, cell };
 enum class CellType : std::uint8_t { tetrahedron = 10, voxel = 11, hexahedron = 12, wedge = 13, pyramid = 14 };
 
 /// "tetrahedron", "quadratic tetrahedron", "polygon" and so on for any of VTK's numbers; "cell type 97" otherwise.
-std::string name_of_cell_type(std::uint8_t vtk_type);
+ISOTET_API std::string name_of_cell_type(std::uint8_t vtk_type);
 
 /// The cells of a grid: corners of all cells one after another, and where each cell's corners start.
 ///
@@ -30,7 +31,7 @@ std::string name_of_cell_type(std::uint8_t vtk_type);
 /// `offsets`       int32, uint32, int64 or uint64, one component, one more than there are cells; or empty: then every
 ///                 cell is a `uniform_type` and cell c starts at c times its number of corners
 /// `types`         uint8, one a cell (VTK's numbers); or empty: every cell is a `uniform_type`
-struct Cells {
+struct ISOTET_API Cells {
     Array connectivity;
     Array offsets;
     Array types;
@@ -87,7 +88,7 @@ struct SurveyOptions {
 ///              offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
 ///              nothing left that can be contoured; out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
-Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Run& run = {});
+ISOTET_API Result<GridReport> survey(const Grid& grid, const SurveyOptions& options = {}, const Run& run = {});
 
 /// Tets, and where they come from.
 struct TetList {
@@ -103,7 +104,7 @@ struct TetList {
 ///
 /// Guarantees   the same tets for any thread count
 /// Errors       as survey()
-Result<TetList> split(const Grid& grid, const Run& run = {});
+ISOTET_API Result<TetList> split(const Grid& grid, const Run& run = {});
 
 /// A grid after welding.
 struct MergedPoints {
@@ -118,7 +119,7 @@ struct MergedPoints {
 /// Errors   invalid_argument when the tolerance is negative or not finite, or so large that every contoured cell
 ///          collapses; invalid_data as survey(); out_of_memory
 /// Cost     O(P log P), 24 bytes a point, and a new connectivity
-Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Run& run = {});
+ISOTET_API Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Run& run = {});
 
 /// A field to contour: one scalar per point of the grid, and how it was found.
 struct PointField {
@@ -143,8 +144,8 @@ struct FindFieldOptions {
 ///
 /// Errors   invalid_argument when there is no such field (what there is, nearest first), when it is ambiguous or has
 ///          several components, or when a field's length is not that of the grid
-Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {},
-                              const Run& run = {});
+ISOTET_API Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options = {},
+                                         const Run& run = {});
 
 /// A field's name and the component that is meant.
 struct FieldName {
@@ -154,9 +155,9 @@ struct FieldName {
 
 /// The name taken apart by the rule of find_field() against a list of names; used by readers to load only what is
 /// needed.
-std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
+ISOTET_API std::optional<FieldName> match_field_name(std::string_view name, const std::vector<std::string>& names);
 
 /// `names`, nearest to `wanted` first (edit distance, upper and lower case alike), for error messages.
-std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names);
+ISOTET_API std::vector<std::string> nearest_first(std::string_view wanted, std::vector<std::string> names);
 
 } // namespace isotet

@@ -14,6 +14,7 @@
 
 #include <isotet/device.hpp>
 #include <isotet/draw_tets.hpp>
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/render.hpp>
@@ -40,22 +41,22 @@ inline constexpr std::array all_bench_methods{
     BenchMethod::mesh};
 
 /// The name as written here.
-std::string_view name_of(BenchMethod method) noexcept;
+ISOTET_API std::string_view name_of(BenchMethod method) noexcept;
 
 /// The method of drawing tets; nothing for methods that extract, which find active tets themselves.
-std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept;
-bool needs_device(BenchMethod method) noexcept;
+ISOTET_API std::optional<DrawMethod> draw_method_of(BenchMethod method) noexcept;
+ISOTET_API bool needs_device(BenchMethod method) noexcept;
 
 /// A method, and for one that draws tets the search index that finds them.
 struct BenchPair {
     BenchMethod method = BenchMethod::direct;
     SearchIndex index = SearchIndex::none;
 
-    std::string name() const; ///< "textures + interval_tree", "clusters"
+    ISOTET_API std::string name() const; ///< "textures + interval_tree", "clusters"
 };
 
 /// Each method that draws tets with each index, the others once.
-std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& indexes);
+ISOTET_API std::vector<BenchPair> pairs_of(const std::vector<BenchMethod>& methods, const std::vector<SearchIndex>& indexes);
 
 /// What happens once.
 struct BenchCosts {
@@ -96,12 +97,12 @@ struct BenchRow {
 };
 
 /// Pictures of measurements: 512 x 512 pixels of one sample, shaded by faces.
-PictureOptions bench_picture();
+ISOTET_API PictureOptions bench_picture();
 
 /// Measures methods on one grid, which is packed at most once.
 ///
 /// Threads   one call at a time on one object
-class GridBench {
+class ISOTET_API GridBench {
 public:
     /// `device`   draws; nothing: surfaces are made, and not drawn
     /// Errors     as FieldSample::create() and Renderer::create()
@@ -133,10 +134,10 @@ struct BenchAdvice {
 
 /// Which row is the fastest from one surface on, which from more, by the best rounds: preparing, and then so much for
 /// each surface. Rows that are missing do not count.
-std::vector<BenchAdvice> advice_of(const std::vector<BenchRow>& rows);
+ISOTET_API std::vector<BenchAdvice> advice_of(const std::vector<BenchRow>& rows);
 
 /// How many times as fast a method is with the interval tree, the mean over the grids; nothing where it was not
 /// measured.
-std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, BenchMethod method);
+ISOTET_API std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, BenchMethod method);
 
 } // namespace isotet

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 
 namespace isotet {
@@ -13,10 +14,10 @@ namespace isotet {
 ///
 /// Guarantees   the same for any thread count; an empty map when Cells::types is no array of uint8
 /// Cost         one parallel pass over the types; none where all cells have the same type
-std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells);
+ISOTET_API std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells);
 
 /// True for the types of which isotet makes tets: tetrahedron, voxel, hexahedron, wedge and pyramid.
-bool is_contoured(std::uint8_t cell_type) noexcept;
+ISOTET_API bool is_contoured(std::uint8_t cell_type) noexcept;
 
 /// Points that have the coordinates of another point. Topology goes by point numbers, so surfaces are open there, until
 /// merge_points() joins them.
@@ -32,6 +33,6 @@ struct CoincidentPoints {
 /// Guarantees   the same for any thread count; 0 where fewer than a thousandth of the points coincide
 /// Cost         one parallel pass over the points, about 65,000 of which are sorted; another over the connectivity only
 ///              where points coincide
-CoincidentPoints estimate_coincident_points(const Grid& grid);
+ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid);
 
 } // namespace isotet

@@ -12,6 +12,7 @@
 #include <isotet/camera.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/draw_tets.hpp>
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/render.hpp>
@@ -84,7 +85,7 @@ struct SceneReport {
 ///
 /// Guarantees   the surfaces of Contour; on a device they stay there, and a field colours them where they are
 /// Threads      one call at a time
-class IsosurfaceScene {
+class ISOTET_API IsosurfaceScene {
 public:
     /// Finds the boundary, starts the session, and packs and uploads what all isovalues share.
     ///

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <isotet/export.hpp>
+
 namespace isotet {
 
 /// Whether levels are computed exactly or moved to short decimals.
@@ -18,7 +20,7 @@ enum class LevelRounding : std::uint8_t {
 /// `lower`, `upper`   in the unit of the field; finite. Nothing is returned where lower > upper or one is not finite
 /// Returns            the levels, ascending; with `short_decimals` without repetitions, so perhaps fewer
 /// Guarantees         finite, also where upper - lower is too large for a double
-std::vector<double> evenly_spaced_levels(double lower, double upper, std::uint64_t count,
+ISOTET_API std::vector<double> evenly_spaced_levels(double lower, double upper, std::uint64_t count,
                                          LevelRounding rounding = LevelRounding::none);
 
 } // namespace isotet

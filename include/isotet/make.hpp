@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -47,12 +48,12 @@ struct MakeOptions {
 /// Errors       invalid_argument for an unknown shape or field (what there is, nearest first), a field asked for twice,
 ///              or a side out of range; out_of_memory; cancelled
 /// Cost         memory of the grid itself: 12 bytes a point, 4 a point and field, 4 a corner (8 above 2^31 points)
-Result<Grid> make_grid(const MakeOptions& options, const Run& run = {});
+ISOTET_API Result<Grid> make_grid(const MakeOptions& options, const Run& run = {});
 
-std::vector<std::string> make_shapes();
-std::vector<std::string> make_fields();
+ISOTET_API std::vector<std::string> make_shapes();
+ISOTET_API std::vector<std::string> make_fields();
 
 /// "kuhn:64:gyroid,sphere" -> options; "make:" has been taken off. The fields may be left out.
-Result<MakeOptions> parse_make(std::string_view text);
+ISOTET_API Result<MakeOptions> parse_make(std::string_view text);
 
 } // namespace isotet

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include <isotet/export.hpp>
+
 namespace isotet {
 
 /// Returns memory that isotet keeps for its next call to the system: large arrays that were given back, at most 1/64 of
@@ -11,6 +13,6 @@ namespace isotet {
 /// Returns      how many bytes that were; 0 also when there was no memory for that
 /// Guarantees   nothing that an object of yours holds is touched
 /// Threads      safe from many threads, also while operations run
-std::size_t release_memory() noexcept;
+ISOTET_API std::size_t release_memory() noexcept;
 
 } // namespace isotet

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -60,7 +61,7 @@ struct FieldReport {
 /// false ties; not a borrowed one, without which nothing is told of them.
 ///
 /// Threads   safe from many threads
-class PackedGrid {
+class ISOTET_API PackedGrid {
 public:
     PackedGrid();
     explicit PackedGrid(std::shared_ptr<const core::Packed> data);
@@ -107,7 +108,7 @@ private:
 ///              memory is taken, with the amount needed and the amount free; cancelled
 /// Threads      safe from many threads
 /// Method       docs/inside/packing.md
-Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options = {},
-                        const Run& run = {});
+ISOTET_API Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options = {},
+                                   const Run& run = {});
 
 } // namespace isotet

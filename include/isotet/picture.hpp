@@ -1,14 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include <isotet/result.hpp>
+#include <isotet/export.hpp>
 
 namespace isotet {
 
@@ -20,7 +20,7 @@ struct Color {
 };
 
 /// "#1f77b4", "#1f77b480" (with opacity), "white", "black", "transparent" and a few more names; nothing for other text.
-std::optional<Color> parse_color(std::string_view text) noexcept;
+ISOTET_API std::optional<Color> parse_color(std::string_view text) noexcept;
 
 /// Pixels, row by row from the top.
 ///
@@ -32,15 +32,11 @@ struct Picture {
     const std::array<std::uint8_t, 4>& at(std::uint32_t x, std::uint32_t y) const noexcept {
         return pixels[std::size_t{y} * width + x];
     }
-    bool opaque() const noexcept; ///< no pixel lets anything through
-};
 
-/// Writes a PNG file, with an alpha channel only where the picture is not opaque. Written beside and renamed, as all
-/// files.
-///
-/// Guarantees   the same bytes for the same picture (and version of libpng and zlib)
-/// Errors       invalid_argument when the ending is not .png, or the picture has no pixels; file, cannot_write as
-///              write_surface()
-Result<std::uint64_t> write_picture(const Picture& picture, const std::string& path);
+    /// No pixel lets anything through.
+    bool opaque() const noexcept {
+        return std::ranges::all_of(pixels, [](const auto& pixel) { return pixel[3] == 255; });
+    }
+};
 
 } // namespace isotet

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 
@@ -18,7 +19,7 @@ enum class Method : std::uint8_t {
 };
 
 /// "direct", "clusters".
-std::string_view name_of(Method method) noexcept;
+ISOTET_API std::string_view name_of(Method method) noexcept;
 
 /// Packing pays from so many surfaces of one grid on, isovalues times fields: direct extraction takes longer than
 /// packing and extracting from clusters (docs/performance/choice.md). With gradient normals, for which direct
@@ -34,7 +35,7 @@ constexpr Method method_for(std::uint64_t surfaces, bool gradient_normals) noexc
 }
 
 /// A few of a grid's cells, to tell beforehand how large surfaces will be.
-class FieldSample {
+class ISOTET_API FieldSample {
 public:
     static constexpr std::uint64_t max_cells = std::uint64_t{1} << 14;
 
@@ -47,10 +48,8 @@ public:
     static Result<FieldSample> create(const Grid& grid, const PointField& field);
 
     std::uint64_t points() const noexcept { return points_; } ///< of the grid
-    std::uint64_t tets() const noexcept {
-        return tets_;
-    }                                                ///< of the grid, estimated where cells are not tets;
-                                                     ///< exact where they are
+    std::uint64_t tets() const noexcept { return tets_; }     ///< of the grid, estimated where cells are not tets;
+    ///< exact where they are
     double lower() const noexcept { return lower_; } ///< of the values seen; lower > upper: none is finite
     double upper() const noexcept { return upper_; }
 
@@ -86,6 +85,6 @@ struct Estimate {
 };
 
 /// `workload`   numbers that are finite and not negative
-Estimate estimate(Method method, const Workload& workload) noexcept;
+ISOTET_API Estimate estimate(Method method, const Workload& workload) noexcept;
 
 } // namespace isotet

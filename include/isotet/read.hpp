@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -22,7 +23,7 @@ struct Format {
     bool reads_grid = false, writes_grid = false, reads_surface = false, writes_surface = false;
     bool needs_vtk = false; ///< read by VTK's reader, in a child process
 };
-std::vector<Format> formats();
+ISOTET_API std::vector<Format> formats();
 
 /// A field as a file announces it, before its values are read.
 struct FieldInfo {
@@ -62,7 +63,7 @@ struct ReadResult {
 };
 
 /// Tells what a file holds without reading more of it than the format makes necessary.
-Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
+ISOTET_API Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
 /// Reads a grid. Fields have the names of the file; coordinates are those of the file.
 ///
@@ -72,7 +73,7 @@ Result<FileInfo> inspect(const std::string& path, const ReadOptions& options = {
 ///
 /// Errors   file: not there, not readable, format not recognized; invalid_data: broken content; invalid_argument: an
 ///          unknown field, step or format; out_of_memory; system; cancelled
-Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
+ISOTET_API Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
 struct ReadSurfaceOptions {
     std::string format; ///< empty: by content, then by name
@@ -86,10 +87,11 @@ struct SurfaceFile {
 
 /// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared
 /// vertices: weld it.
-Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options = {}, const Run& run = {});
+ISOTET_API Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options = {},
+                                            const Run& run = {});
 
 /// What a program that serves as reader_program must call first in main(): does the reading and returns the exit status
 /// when it was started as a reader process, nothing otherwise.
-std::optional<int> run_as_reader(int argc, char** argv);
+ISOTET_API std::optional<int> run_as_reader(int argc, char** argv);
 
 } // namespace isotet

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/extract_direct.hpp>
 
@@ -14,12 +15,14 @@ namespace isotet {
 ///
 /// Cost     10 to 100 times the time of extract(); memory for a map of all edges of the surface
 /// Errors   as extract()
-Result<std::vector<Extraction>> extract_by_reference(const PackedGrid& packed, std::span<const double> isovalues,
-                                                     const ExtractOptions& options = {}, const Run& run = {});
+ISOTET_API Result<std::vector<Extraction>> extract_by_reference(const PackedGrid& packed,
+                                                                std::span<const double> isovalues,
+                                                                const ExtractOptions& options = {},
+                                                                const Run& run = {});
 
 /// What extract_direct() gives, byte for byte. Cost and errors as above.
-Result<DirectExtraction> extract_direct_by_reference(const Grid& grid, const PointField& field,
-                                                     std::span<const double> isovalues,
-                                                     const DirectOptions& options = {}, const Run& run = {});
+ISOTET_API Result<DirectExtraction> extract_direct_by_reference(const Grid& grid, const PointField& field,
+                                                                std::span<const double> isovalues,
+                                                                const DirectOptions& options = {}, const Run& run = {});
 
 } // namespace isotet

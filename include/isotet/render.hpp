@@ -11,9 +11,10 @@
 #include <isotet/camera.hpp>
 #include <isotet/device.hpp>
 #include <isotet/device_grid.hpp>
+#include <isotet/export.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/progress.hpp>
-#include <isotet/read.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/result.hpp>
 #include <isotet/surface.hpp>
 
@@ -30,17 +31,17 @@ class FieldBuffer;
 enum class ColorMap : std::uint8_t { viridis, cividis, plasma, turbo, cool_warm };
 
 /// "viridis", "cool-warm" and so on, and back.
-std::string_view name_of(ColorMap map) noexcept;
-std::optional<ColorMap> parse_color_map(std::string_view name) noexcept;
+ISOTET_API std::string_view name_of(ColorMap map) noexcept;
+ISOTET_API std::optional<ColorMap> parse_color_map(std::string_view name) noexcept;
 
 /// The colour at a place of the map; places outside 0 to 1 have those of its ends.
-Color color_at(ColorMap map, double place) noexcept;
+ISOTET_API Color color_at(ColorMap map, double place) noexcept;
 
 /// Which value has which colour.
 ///
 /// `lower`, `upper`   values at the ends of the map, lower < upper, both finite; on a logarithmic scale lower > 0
 /// `no_data`          where a value is NaN. Values beyond the ends have the colours of the ends
-struct ColorScale {
+struct ISOTET_API ColorScale {
     ColorMap map = ColorMap::viridis;
     double lower = 0, upper = 1;
     bool logarithmic = false;
@@ -51,7 +52,7 @@ struct ColorScale {
 };
 
 /// Triangles in a device's memory that were uploaded, ready to be drawn. Moving is cheap; it keeps the device open.
-class DeviceMesh {
+class ISOTET_API DeviceMesh {
 public:
     /// Uploads positions, triangles and, where there is one a vertex, normals.
     ///
@@ -75,7 +76,7 @@ private:
 };
 
 /// Values in a device's memory that colour a mesh, or surfaces of a grid. Moving is cheap; it keeps the device open.
-class DeviceColors {
+class ISOTET_API DeviceColors {
 public:
     /// For a mesh: a scalar a vertex, or a triangle.
     /// Errors   invalid_argument when `values` has several components, or the scale is wrong; out_of_memory;
@@ -122,7 +123,7 @@ struct DrawnLines {
 };
 
 /// The twelve edges of a box.
-DrawnLines outline_of(const Box& box);
+ISOTET_API DrawnLines outline_of(const Box& box);
 
 /// What is drawn; nothing at all is fine, and gives the background.
 ///
@@ -150,7 +151,7 @@ struct PictureOptions {
 /// Guarantees   the same picture every time on one device and driver
 /// Threads      one call at a time on one device
 /// Method       a depth buffer for what is opaque, lists of fragments for what is not; docs/inside/render.md
-class Renderer {
+class ISOTET_API Renderer {
 public:
     /// Cost     pipelines are built when they are first needed, 5 to 500 ms each
     /// Errors   no_device when the device cannot draw, with the reason

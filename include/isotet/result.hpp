@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include <isotet/export.hpp>
+
 namespace isotet {
 
 /// Who has to act on an error.
@@ -35,7 +37,7 @@ struct Error {
 };
 
 /// Thrown by Result::value() and by nothing else in isotet.
-class Exception : public std::runtime_error {
+class ISOTET_API Exception : public std::runtime_error {
 public:
     explicit Exception(Error error) : std::runtime_error(error.message), error_(std::move(error)) {}
     const Error& error() const noexcept { return error_; }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -29,7 +30,7 @@ inline constexpr std::array all_search_indexes{SearchIndex::none,       SearchIn
                                                SearchIndex::span_space, SearchIndex::cluster_ranges};
 
 /// The name as written here.
-std::string_view name_of(SearchIndex index) noexcept;
+ISOTET_API std::string_view name_of(SearchIndex index) noexcept;
 
 struct TetIndexReport {
     std::uint64_t tets = 0;                      ///< of the packed grid
@@ -48,7 +49,7 @@ class IndexedTets;
 /// index.
 ///
 /// Threads   const functions are safe from many threads; find() needs the object alone
-class TetIndex {
+class ISOTET_API TetIndex {
 public:
     /// Errors   invalid_argument for a grid packed in double; invalid_data with 2^32 - 1 tets or more; out_of_memory;
     ///          cancelled

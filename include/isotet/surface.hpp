@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 
 namespace isotet {
 
@@ -42,9 +43,9 @@ struct Surface {
 /// Joins surfaces into one, vertices and triangles one after another; fields that not all of them have are dropped,
 /// empty surfaces aside. Arrays of different types become float64.
 /// With `isovalues` (one a surface) the result has a cell field "isovalue", float64.
-Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues);
+ISOTET_API Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues);
 
 /// Area of all triangles, summed in double in a fixed order; NaN when check() would call the surface invalid.
-double area(const Surface& surface);
+ISOTET_API double area(const Surface& surface);
 
 } // namespace isotet

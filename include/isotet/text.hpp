@@ -7,10 +7,12 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
+
 namespace isotet {
 
 /// "512 B", "1.2 MB", "2500.0 TB": a MB is 10^6 bytes.
-std::string format_bytes(std::uint64_t bytes);
+ISOTET_API std::string format_bytes(std::uint64_t bytes);
 
 /// A character of UTF-8 text.
 struct Utf8Character {
@@ -21,6 +23,6 @@ struct Utf8Character {
 
 /// The character at the start of a text that is not empty. A byte that begins no character (of an overlong form, a
 /// surrogate, a number above U+10FFFF or a sequence cut short) is one by itself, and not valid.
-Utf8Character first_utf8_character(std::string_view text) noexcept;
+ISOTET_API Utf8Character first_utf8_character(std::string_view text) noexcept;
 
 } // namespace isotet

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -32,11 +33,11 @@ struct WriteOptions {
 /// Errors   invalid_argument: unknown format, arrays that do not fit together, `path` is a folder or not a plain file;
 ///          invalid_data: a triangle with a vertex that is not there; file: the folder of `path` is not there;
 ///          cannot_write: disk full, not writable; out_of_memory; cancelled
-Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const WriteOptions& options = {},
-                                  const Run& run = {});
+ISOTET_API Result<WriteReport> write_surface(const Surface& surface, const std::string& path,
+                                             const WriteOptions& options = {}, const Run& run = {});
 
 /// Writes a grid: vtu (raw appended), vtk (legacy binary); the same guarantees.
-Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const WriteOptions& options = {},
-                               const Run& run = {});
+ISOTET_API Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const WriteOptions& options = {},
+                                          const Run& run = {});
 
 } // namespace isotet

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
@@ -15,11 +16,11 @@ namespace isotet {
 ///
 /// Errors   invalid_argument: `path` is a folder or not a plain file; file: its folder is not there; cannot_write:
 ///          disk full, not writable; cancelled. The old file is then as before
-Result<void> write_text(std::string_view text, const std::string& path, const Run& run = {});
+ISOTET_API Result<void> write_text(std::string_view text, const std::string& path, const Run& run = {});
 
 /// Whether a file could be written: creates one beside `path` and removes it again. To be called before long work.
 /// Errors   as write_text()
-Result<void> check_writable(const std::string& path);
+ISOTET_API Result<void> check_writable(const std::string& path);
 
 /// A file of a series, and when it is.
 struct CollectionEntry {
@@ -32,7 +33,7 @@ struct CollectionEntry {
 /// Files below the folder of `path` are named relative to it, so that the folder can be moved.
 ///
 /// Errors   as write_text()
-Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
+ISOTET_API Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
                               const Run& run = {});
 
 } // namespace isotet

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
 #include "core/packed.hpp"
@@ -15,13 +16,13 @@
 namespace isotet::api {
 
 /// Errors   invalid_argument for an isovalue that is not finite
-Result<void> check_isovalues(std::span<const double> isovalues);
+ISOTET_API Result<void> check_isovalues(std::span<const double> isovalues);
 
 /// Geometry, normals and fields in the user's coordinates and units. `storages` are those of the point fields of
 /// `options`, in their order.
 template <class Real>
-Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
-               std::span<const core::Storage> storages, const ops::RawSurface& raw);
+ISOTET_API Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
+                          std::span<const core::Storage> storages, const ops::RawSurface& raw);
 
 /// Bytes at most that finish() adds to each vertex and triangle of the surface of an engine that interpolates point
 /// fields itself.
@@ -31,6 +32,6 @@ struct MoreBytes {
 MoreBytes more_bytes(const ExtractOptions& options, const std::array<double, 3>& origin);
 
 /// All arrays of a surface.
-std::uint64_t bytes_of(const Surface& surface);
+ISOTET_API std::uint64_t bytes_of(const Surface& surface);
 
 } // namespace isotet::api

@@ -2,6 +2,7 @@
 // Whether what is asked for can be had from a packed grid.
 #pragma once
 
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
 #include "core/packed.hpp"
@@ -9,6 +10,6 @@
 namespace isotet::api {
 
 /// Errors   invalid_argument when something was not packed, or a field has another length
-Result<void> check_fit(const ExtractOptions& options, const core::Packed& packed);
+ISOTET_API Result<void> check_fit(const ExtractOptions& options, const core::Packed& packed);
 
 } // namespace isotet::api

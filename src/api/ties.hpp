@@ -2,6 +2,7 @@
 // Counting ties: the certificate that comes with every surface.
 #pragma once
 
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 
 #include "core/packed.hpp"
@@ -15,7 +16,7 @@ namespace isotet::api {
 ///                when there are tied points; the same for the nearest value of the field's type when it is stored
 ///                differently
 template <class Real>
-void report_ties(const core::Packed& packed, double isovalue, const core::StoredIsovalue<Real>& stored,
-                 std::uint64_t tied_points, ExtractReport& report);
+ISOTET_API void report_ties(const core::Packed& packed, double isovalue, const core::StoredIsovalue<Real>& stored,
+                            std::uint64_t tied_points, ExtractReport& report);
 
 } // namespace isotet::api

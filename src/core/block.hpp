@@ -6,6 +6,8 @@
 
 #include <cstddef>
 
+#include <isotet/export.hpp>
+
 namespace isotet::core {
 
 /// A piece of memory, aligned for every type. `bytes` may be more than was asked for.
@@ -17,10 +19,10 @@ struct Block {
 /// Guarantees   not cleared; aligned for every type, to a huge page when it holds one
 /// Errors       throws std::bad_alloc
 /// Threads      safe from many threads
-Block take_block(std::size_t bytes);
+ISOTET_API Block take_block(std::size_t bytes);
 
 /// Gives a block of take_block() back. Up to 1/64 of the machine's memory is kept for later.
-void give_back(Block block) noexcept;
+ISOTET_API void give_back(Block block) noexcept;
 
 /// Gives what is kept to the system; returns how many bytes that were.
 std::size_t drop_kept_blocks() noexcept;

@@ -4,9 +4,11 @@
 
 #include <filesystem>
 
+#include <isotet/export.hpp>
+
 namespace isotet::core {
 
 /// $XDG_CACHE_HOME/isotet, or ~/.cache/isotet; empty where neither is set. It need not exist.
-std::filesystem::path cache_folder();
+ISOTET_API std::filesystem::path cache_folder();
 
 } // namespace isotet::core

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 
 namespace isotet::core {
@@ -29,10 +30,10 @@ struct CellTets {
 };
 
 /// True for the types that are contoured.
-bool is_contoured(std::uint8_t vtk_type);
+ISOTET_API bool is_contoured(std::uint8_t vtk_type);
 
 /// Corners of a contoured type; 0 for all others.
-int corners_of(std::uint8_t vtk_type);
+ISOTET_API int corners_of(std::uint8_t vtk_type);
 
 /// A point number or offset as 64 bits; a negative one becomes a huge one.
 template <class T>
@@ -68,7 +69,7 @@ private:
 };
 
 /// The cells of a grid. Borrows the grid's arrays.
-class CellReader {
+class ISOTET_API CellReader {
 public:
     /// Checks lengths and types of the arrays, not their content (see check_cells).
     static Result<CellReader> open(const Grid& grid);
@@ -144,7 +145,7 @@ private:
 /// contoured cells use (finite, below 2^91). Parallel; one pass.
 ///
 /// Errors   invalid_data, the lowest-numbered cell first; cancelled
-Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progress& progress);
+ISOTET_API Result<void> check_cells(const Grid& grid, const CellReader& cells, const Progress& progress);
 
 /// The error for a grid of which no tet is left: what cells there are.
 Error nothing_to_contour(const Grid& grid, const CellReader& cells);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 
 #include "core/array_identity.hpp"
@@ -47,6 +48,6 @@ private:
 /// Offset and scale for a field with any number of components (one pair for all of them); from the packed grid's cache
 /// where it can be.
 /// Cost   parallel; one pass over the values at packed points, one more for an offset
-Storage choose_storage(const Array& values, const Packed& packed);
+ISOTET_API Storage choose_storage(const Array& values, const Packed& packed);
 
 } // namespace isotet::core

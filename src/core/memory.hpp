@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/process_memory.hpp>
 #include <isotet/result.hpp>
 #include <isotet/text.hpp>
@@ -14,7 +15,7 @@ namespace isotet::core {
 
 /// Bytes this process can still take: the smallest of what the system has free, what the control group allows, and what
 /// the limit on address space leaves. Huge where none of these can be told.
-std::uint64_t free_memory();
+ISOTET_API std::uint64_t free_memory();
 
 /// What the control group of a process (version 2, or 1) and those above it leave; huge where there is no limit. Files
 /// that are only cached are counted as used there, but give way.
@@ -22,7 +23,7 @@ std::uint64_t free_memory();
 std::uint64_t control_group_free(const std::string& membership, const std::string& mount);
 
 /// An out_of_memory error when `bytes` are more than free_memory(): "packing needs 12.3 GB, but 4.5 GB are free".
-Result<void> require_memory(std::string_view what, std::uint64_t bytes);
+ISOTET_API Result<void> require_memory(std::string_view what, std::uint64_t bytes);
 
 using isotet::format_bytes;
 using isotet::peak_resident_memory;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 
+#include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 
 namespace isotet::core {
@@ -12,18 +13,19 @@ namespace isotet::core {
 /// Runs `work` in an arena of `threads` threads (0 or less: all that the process may use; 1024 at most). Parallel
 /// algorithms called inside use that many, even more than there are cores; oneTBB's limit for the process is raised as
 /// long as the work lasts.
-void with_threads(int threads, const std::function<void()>& work);
+ISOTET_API void with_threads(int threads, const std::function<void()>& work);
 
 /// How many threads parallel algorithms use where this is called.
-int threads_here();
+ISOTET_API int threads_here();
 
 /// Calls body(begin, end) for pieces of [0, count) of about `grain`, in parallel, in any order.
-void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+ISOTET_API void parallel_ranges(std::size_t count, std::size_t grain,
+                                const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Calls body(begin, end) for pieces of [0, count) of at most `grain`, in parallel, in any order; after a cancel for no
 /// further ones.
-void parallel_pieces(std::size_t count, std::size_t grain, const Progress& progress,
-                     const std::function<void(std::size_t, std::size_t)>& body);
+ISOTET_API void parallel_pieces(std::size_t count, std::size_t grain, const Progress& progress,
+                                const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Calls body(index) for every index of [0, count), in parallel; for bodies that are worth a call each.
 template <class Body>

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include <isotet/export.hpp>
+
 namespace isotet::core {
 
 /// Something by its number, on its way to its place.
@@ -17,6 +19,6 @@ struct Keyed {
 ///
 /// `scratch`   as long as `items`; its content is lost
 /// Cost        O(n) moves for each digit in which keys differ, three in all for evenly spread keys
-void radix_sort(std::span<Keyed> items, std::span<Keyed> scratch);
+ISOTET_API void radix_sort(std::span<Keyed> items, std::span<Keyed> scratch);
 
 } // namespace isotet::core

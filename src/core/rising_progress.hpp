@@ -2,6 +2,7 @@
 // Progress as the user is promised it: one call at a time, and never backwards.
 #pragma once
 
+#include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 
 namespace isotet::core {
@@ -11,6 +12,6 @@ namespace isotet::core {
 ///
 /// `progress`   borrowed; must outlive what is returned
 /// Threads      what is returned may be called from many threads
-Progress rising(const Progress& progress);
+ISOTET_API Progress rising(const Progress& progress);
 
 } // namespace isotet::core

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "core/buffer.hpp"
@@ -64,6 +65,6 @@ private:
 
 /// Writes a packed grid out into tables: 16 bytes a tet, 16 a point. Parallel.
 /// Errors   invalid_argument for a grid packed in double; invalid_data with 2^32 - 1 tets or more
-Result<TetTable> make_tet_table(const Packed& packed);
+ISOTET_API Result<TetTable> make_tet_table(const Packed& packed);
 
 } // namespace isotet::core

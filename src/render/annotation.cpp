@@ -171,11 +171,11 @@ void Layout::paint(Picture& picture, const Color& ink) const {
 
 } // namespace
 
-Result<bool> can_be_written(std::string_view text) {
-    return core::guarded("looking for letters", [&]() -> Result<bool> {
+Result<std::size_t> count_missing_letters(std::string_view text) {
+    return core::guarded("looking for letters", [&]() -> Result<std::size_t> {
         const auto painter = TextPainter::open(12);
         if (!painter) return painter.error();
-        return (*painter)->has_all(text);
+        return (*painter)->count_missing(text);
     });
 }
 

@@ -42,8 +42,4 @@ std::optional<Color> parse_color(std::string_view text) noexcept {
     return Color{parts[0], parts[1], parts[2], parts[3]};
 }
 
-bool Picture::opaque() const noexcept {
-    return std::ranges::all_of(pixels, [](const auto& pixel) { return pixel[3] == 255; });
-}
-
 } // namespace isotet

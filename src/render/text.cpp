@@ -88,12 +88,13 @@ double TextPainter::width(std::string_view text) const {
     return data_->each_glyph(text, [](FT_GlyphSlot, double) {});
 }
 
-bool TextPainter::has_all(std::string_view text) const {
+std::size_t TextPainter::count_missing(std::string_view text) const {
+    std::size_t missing = 0;
     while (!text.empty()) {
         const char32_t character = next_character(text);
-        if (character == U'\uFFFD' || FT_Get_Char_Index(data_->face, character) == 0) return false;
+        missing += character == U'\uFFFD' || FT_Get_Char_Index(data_->face, character) == 0;
     }
-    return true;
+    return missing;
 }
 
 double TextPainter::ascent() const noexcept {

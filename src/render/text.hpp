@@ -22,9 +22,9 @@ public:
     TextPainter(const TextPainter&) = delete;
     TextPainter& operator=(const TextPainter&) = delete;
 
-    double width(std::string_view text) const; ///< pixels
-    bool has_all(std::string_view text) const; ///< its letters: no box
-    double ascent() const noexcept;            ///< of capitals and digits above the baseline
+    double width(std::string_view text) const;              ///< pixels
+    std::size_t count_missing(std::string_view text) const; ///< letters that are boxes
+    double ascent() const noexcept;                         ///< of capitals and digits above the baseline
 
     /// Paints text over a picture, its baseline beginning at (x, y); what does not fit is cut off.
     void paint(Picture& picture, double x, double y, std::string_view text, const Color& color) const;

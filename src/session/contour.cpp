@@ -9,9 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <isotet/extract_direct.hpp>
-#include <isotet/reference.hpp>
-
 #include "core/array_identity.hpp"
 #include "core/errors.hpp"
 #include "core/guard.hpp"
@@ -60,10 +57,10 @@ struct PointsMark {
 };
 
 Result<void> check(const ContourOptions& options) {
-    if (options.device && options.method == Method::direct)
-        return invalid_argument("a device extracts from clusters, but direct extraction was asked for");
-    if (options.device && options.by_reference)
-        return invalid_argument("a device was given, but the reference was asked for, which uses none");
+    if (!options.engine) return invalid_argument("the session has no engine");
+    if (!options.engine->extracts_directly() && options.method == Method::direct)
+        return invalid_argument(fmt::format("the {} engine extracts from clusters, but direct extraction was asked for",
+                                            options.engine->name()));
     return {};
 }
 
@@ -92,8 +89,7 @@ struct Contour::Data {
     std::optional<CellsMark> cells;
     std::optional<PointsMark> points;
     std::optional<core::ArrayIdentity> field;
-    std::optional<DeviceGrid> on_device;
-    DeviceSurface surface;            ///< used again for the next isovalue
+    std::unique_ptr<EngineGrid> grid; ///< of an engine that keeps one
     std::optional<FieldReport> range; ///< found by a look at the grid
     double update_seconds = 0;
     std::vector<std::string> notes;
@@ -104,18 +100,17 @@ struct Contour::Data {
     Result<void> pack_grid(const Run& run);
     Result<void> change_points(const Run& run);
     Result<void> change_field(const Run& run);
-    Result<void> upload(const Run& run);
-    Result<void> without_device(const Error& error);
-    Result<void> extract_on_device(std::span<const double> isovalues, const Run& run, ContourResult& result);
+    Result<void> create_grid(const Run& run);
+    Result<void> without_engine(const Error& error);
+    Result<void> extract_from_grid(std::span<const double> isovalues, const Run& run, ContourResult& result);
 };
 
 namespace {
 
 Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
                                        std::span<const double> isovalues, const Run& run) {
-    const auto extract = options.by_reference ? extract_direct_by_reference : extract_direct;
-    Result<DirectExtraction> direct =
-        extract(input.grid, input.field, isovalues, {extract_options(options, input), options.precision}, run);
+    Result<DirectExtraction> direct = options.engine->extract_direct(
+        input.grid, input.field, isovalues, {extract_options(options, input), options.precision}, run);
     if (!direct) return std::move(direct).error();
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
@@ -128,7 +123,7 @@ Result<ContourResult> extract_directly(const ContourInput& input, const ContourO
 } // namespace
 
 Method Contour::Data::method_of_next(std::size_t isovalues) const {
-    if (options.device) return Method::clusters;
+    if (!options.engine->extracts_directly()) return Method::clusters;
     if (options.method) return *options.method;
     if (direct_for_memory) return Method::direct;
     if (packed) return Method::clusters;
@@ -137,33 +132,25 @@ Method Contour::Data::method_of_next(std::size_t isovalues) const {
 }
 
 /// The error, or nothing after a note where the CPU may stand in.
-Result<void> Contour::Data::without_device(const Error& error) {
-    if (options.device->required || error.code == ErrorCode::cancelled) return error;
+Result<void> Contour::Data::without_engine(const Error& error) {
+    if (options.engine_required || options.engine->is_stateless() || error.code == ErrorCode::cancelled) return error;
     notes.push_back(error.message + ": the CPU extracts instead");
-    surface = {};
-    on_device.reset();
-    options.device.reset();
+    grid.reset();
+    options.engine = cpu_engine();
     return {};
 }
 
-Result<void> Contour::Data::upload(const Run& run) {
-    if (!options.device || on_device) return {};
-    DeviceGridOptions device_options = options.device->options;
-    constexpr std::uint64_t smallest_page = 16 << 10, pages_at_least = 16;
-    const std::uint64_t page = std::max(smallest_page, options.device->device.memory_free() / pages_at_least);
-    device_options.page_bytes = std::min(device_options.page_bytes, page);
-    Result<DeviceGrid> uploaded = DeviceGrid::upload(options.device->device, *packed, device_options, run);
-    if (!uploaded) return without_device(uploaded.error());
-    on_device = *std::move(uploaded);
-    if (!on_device->complete())
-        notes.push_back(
-            fmt::format("not all of the packed grid, {}, fits into the device's memory: its parts come and go",
-                        core::format_bytes(DeviceGrid::needs(*packed, device_options).all())));
+Result<void> Contour::Data::create_grid(const Run& run) {
+    if (options.engine->is_stateless() || grid) return {};
+    auto created = options.engine->create_grid(*packed, run);
+    if (!created) return without_engine(created.error());
+    grid = *std::move(created);
+    std::ranges::move(grid->notes(), std::back_inserter(notes));
     return {};
 }
 
 Result<void> Contour::Data::pack_grid(const Run& run) {
-    on_device.reset();
+    grid.reset();
     packed.reset(); // the old one goes before the new one comes
     PackOptions pack_options;
     pack_options.precision = options.precision;
@@ -180,13 +167,13 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
 }
 
 Result<void> Contour::Data::change_points(const Run& run) {
-    if (on_device) {
-        const Result<void> changed = on_device->set_points(input.grid.points, run);
-        if (changed) packed = on_device->packed();
+    if (grid) {
+        const Result<void> changed = grid->set_points(input.grid.points, run);
+        if (changed) packed = grid->packed();
         else if (changed.error().code == ErrorCode::invalid_data) return changed;
-        else if (auto instead = without_device(changed.error()); !instead) return instead;
+        else if (auto instead = without_engine(changed.error()); !instead) return instead;
     }
-    if (!on_device) {
+    if (!grid) {
         Result<PackedGrid> changed = packed->with_points(input.grid.points, run);
         if (!changed) return changed.error();
         packed = *changed;
@@ -196,13 +183,13 @@ Result<void> Contour::Data::change_points(const Run& run) {
 }
 
 Result<void> Contour::Data::change_field(const Run& run) {
-    if (on_device) {
-        const Result<void> changed = on_device->set_field(input.field, run);
+    if (grid) {
+        const Result<void> changed = grid->set_field(input.field, run);
         if (changed) {
-            packed = on_device->packed();
+            packed = grid->packed();
             return {};
         }
-        if (auto instead = without_device(changed.error()); !instead) return instead;
+        if (auto instead = without_engine(changed.error()); !instead) return instead;
     }
     Result<PackedGrid> changed = packed->with_field(input.field, run);
     if (!changed) return changed.error();
@@ -228,7 +215,7 @@ Result<void> Contour::Data::bring_up_to_date(const Run& run) {
     behind = ContourUpdate::nothing;
     field.emplace(input.field.values);
     input.grid = {};
-    if (auto ok = upload(run); !ok) return ok;
+    if (auto ok = create_grid(run); !ok) return ok;
     update_seconds += seconds_since(start);
     return {};
 }
@@ -236,9 +223,11 @@ Result<void> Contour::Data::bring_up_to_date(const Run& run) {
 /// For so many more isovalues: afterwards method_of_next() tells what can be done.
 Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
     if (method_of_next(isovalues) == Method::direct) return {};
-    if (packed && behind == ContourUpdate::nothing) return upload(run);
+    if (packed && behind == ContourUpdate::nothing) return create_grid(run);
     const Result<void> ready = bring_up_to_date(run);
-    if (ready || ready.error().code != ErrorCode::out_of_memory || options.method || options.device) return ready;
+    if (ready || ready.error().code != ErrorCode::out_of_memory || options.method ||
+        !options.engine->extracts_directly())
+        return ready;
     Workload work;
     work.points = sample.points();
     work.tets = sample.tets();
@@ -248,21 +237,19 @@ Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
     return {};
 }
 
-Result<void> Contour::Data::extract_on_device(std::span<const double> isovalues, const Run& run,
+/// One isovalue after another: what was extracted before an error is kept.
+Result<void> Contour::Data::extract_from_grid(std::span<const double> isovalues, const Run& run,
                                               ContourResult& result) {
     const ExtractOptions extract = extract_options(options, input);
-    while (on_device && result.surfaces.size() < isovalues.size()) {
-        const auto one = [&]() -> Result<Extraction> {
-            if (auto ok = on_device->extract(isovalues[result.surfaces.size()], surface, extract, run); !ok)
-                return ok.error();
-            result.work = on_device->work();
-            Result<Extraction> down = on_device->download(surface, run);
-            if (down) result.work.downloaded_bytes += on_device->work().downloaded_bytes;
-            return down;
-        };
-        Result<Extraction> extraction = one();
-        if (extraction) result.surfaces.push_back(*std::move(extraction));
-        else if (auto instead = without_device(extraction.error()); !instead) return instead;
+    while (grid && result.surfaces.size() < isovalues.size()) {
+        auto extraction = grid->extract(isovalues.subspan(result.surfaces.size(), 1), extract, run);
+        if (extraction) {
+            result.surfaces.push_back(std::move(extraction->front()));
+            result.engine = options.engine->name();
+            result.work = grid->work();
+        } else if (auto instead = without_engine(extraction.error()); !instead) {
+            return instead;
+        }
     }
     return {};
 }
@@ -343,21 +330,22 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             const ContourOptions options = data.options;
             lock.unlock();
             result = extract_directly(input, options, isovalues, run);
+            if (result) result->engine = options.engine->name();
         } else {
-            if (auto ok = data.extract_on_device(isovalues, run, *result); !ok) return ok.error();
+            if (auto ok = data.extract_from_grid(isovalues, run, *result); !ok) return ok.error();
             std::ranges::move(std::exchange(data.notes, {}), std::back_inserter(head.notes));
-            result->on_device = data.on_device.has_value();
             const PackedGrid packed = *data.packed;
-            const bool by_reference = data.options.by_reference;
+            const std::shared_ptr<const Engine> engine = data.options.engine;
             const ExtractOptions options = extract_options(data.options, data.input);
             lock.unlock();
             result->field = packed.field();
             result->cells_left_out = packed.report().cells_left_out;
             if (result->surfaces.size() < isovalues.size()) {
-                const auto left = isovalues.subspan(result->surfaces.size());
-                auto rest = by_reference ? extract_by_reference(packed, left, options, run)
-                                         : isotet::extract(packed, left, options, run);
+                const auto grid = engine->create_grid(packed, run);
+                if (!grid) return grid.error();
+                auto rest = (*grid)->extract(isovalues.subspan(result->surfaces.size()), options, run);
                 if (!rest) return rest.error();
+                result->engine = engine->name();
                 std::ranges::move(*rest, std::back_inserter(result->surfaces));
             }
         }
@@ -370,15 +358,19 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
     });
 }
 
-Result<std::vector<DeviceSurface>> Contour::extract_on_device(std::span<const double> isovalues, const Run& run) {
-    return core::guarded("extraction", [&]() -> Result<std::vector<DeviceSurface>> {
+Result<void> Contour::use_grid(std::size_t surfaces,
+                               const std::function<Result<void>(EngineGrid&, const ExtractOptions&)>& work,
+                               const Run& run) {
+    return core::guarded("extraction", [&]() -> Result<void> {
         if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
-        if (auto ok = data.prepare(isovalues.size(), run); !ok) return ok.error();
-        if (!data.on_device) return invalid_argument("the session extracts on the CPU: it has no device");
-        data.asked += isovalues.size();
-        return data.on_device->extract(isovalues, extract_options(data.options, data.input), run);
+        if (auto ok = data.prepare(surfaces, run); !ok) return ok;
+        if (!data.grid)
+            return invalid_argument(
+                fmt::format("the session extracts by the {} engine, which keeps no grid", data.options.engine->name()));
+        data.asked += surfaces;
+        return work(*data.grid, extract_options(data.options, data.input));
     });
 }
 
@@ -429,15 +421,10 @@ std::optional<PackedGrid> Contour::packed() const {
     return data_->behind == ContourUpdate::nothing ? data_->packed : std::nullopt;
 }
 
-DeviceWork Contour::device_work() const {
+std::string_view Contour::engine() const {
+    if (!data_) return {};
     const std::lock_guard lock(data_->mutex);
-    return data_->on_device ? data_->on_device->work() : DeviceWork{};
-}
-
-bool Contour::has_device() const {
-    if (!data_) return false;
-    const std::lock_guard lock(data_->mutex);
-    return data_->options.device.has_value();
+    return data_->options.engine->name();
 }
 
 } // namespace isotet

@@ -32,7 +32,7 @@ struct Capabilities {
     std::vector<QueueFamily> queues;
     bool memory_budget = false; ///< VK_EXT_memory_budget: heap_free is known, and changes
 
-    bool mesh_shaders = false;  ///< VK_EXT_mesh_shader with the feature
+    bool mesh_shaders = false; ///< VK_EXT_mesh_shader with the feature
 
     static constexpr std::uint32_t none = UINT32_MAX;
     std::uint32_t compute_family = none;
@@ -49,7 +49,7 @@ void refresh_free_memory(Capabilities& capabilities, const InstanceFunctions& ca
 std::string why_unusable(const Capabilities& capabilities);
 
 /// Why isotet cannot draw on a device that it can otherwise use; empty: it can.
-std::string why_unable_to_draw(const Capabilities& capabilities);
+ISOTET_API std::string why_unable_to_draw(const Capabilities& capabilities);
 
 /// The public description. `index` is the device's place in the list.
 DeviceInfo describe(const Capabilities& capabilities, std::size_t index);

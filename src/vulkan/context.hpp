@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <isotet/device.hpp>
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/capabilities.hpp"
@@ -41,7 +42,7 @@ struct Settings {
 /// Opening it runs the self-test: notices() says when it failed.
 ///
 /// Threads   one operation at a time
-class Context {
+class ISOTET_API Context {
 public:
     static Result<std::shared_ptr<Context>> open(const DeviceOptions& options, const Settings& settings = {});
     ~Context();

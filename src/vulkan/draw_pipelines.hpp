@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/context.hpp"
@@ -37,7 +38,7 @@ enum class Surfaces : std::uint8_t {
 /// seen by all stages, and reach buffers by address. Triangles are seen from both sides.
 ///
 /// Threads   one thread at a time
-class DrawPipelines {
+class ISOTET_API DrawPipelines {
 public:
     static constexpr std::uint32_t push_bytes = 128;
 

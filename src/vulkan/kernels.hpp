@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/capabilities.hpp"
@@ -29,7 +30,7 @@ struct Kernel {
 /// descriptor sets.
 ///
 /// Threads   one thread at a time
-class Kernels {
+class ISOTET_API Kernels {
 public:
     static constexpr std::uint32_t push_bytes = 128; ///< what every Vulkan device allows
 

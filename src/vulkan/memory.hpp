@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/capabilities.hpp"
@@ -46,7 +47,7 @@ struct Pool {
 
 /// A buffer with an address on the device. Gives its memory back when it goes; must not outlive its Context, nor be
 /// given back while the device works on it (Recorder::run and Staging wait, so nothing can be under way between calls).
-class Buffer {
+class ISOTET_API Buffer {
 public:
     Buffer() = default;
     Buffer(Buffer&& other) noexcept { swap(other); }
@@ -57,9 +58,11 @@ public:
     ~Buffer();
 
     VkBuffer handle() const noexcept { return handle_; }
-    VkDeviceAddress address() const noexcept { return address_; } ///< a multiple of 256 where memory begins at one, as
-                                                                  ///< it does on every known driver; at least of 16
-    std::uint64_t size() const noexcept { return size_; }         ///< bytes, as asked for
+    VkDeviceAddress address() const noexcept {
+        return address_;
+    }                                                     ///< a multiple of 256 where memory begins at one, as
+                                                          ///< it does on every known driver; at least of 16
+    std::uint64_t size() const noexcept { return size_; } ///< bytes, as asked for
     explicit operator bool() const noexcept { return handle_ != VK_NULL_HANDLE; }
 
     /// The bytes, for the processor; empty where it cannot reach them.
@@ -86,7 +89,7 @@ private:
 /// The memory of one device.
 ///
 /// Threads   safe from many threads
-class Memory {
+class ISOTET_API Memory {
 public:
     struct Options {
         std::uint64_t limit = 0;   ///< bytes that buffers in Where::device may take in all; 0: what is free

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/groups.hpp"
@@ -57,7 +58,7 @@ struct Timings {
 /// returned.
 ///
 /// Threads   one recorder of a Context at a time
-class Recorder {
+class ISOTET_API Recorder {
 public:
     explicit Recorder(Context& context);
     ~Recorder();

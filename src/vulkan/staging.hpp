@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/memory.hpp"
@@ -21,7 +22,7 @@ class Context;
 ///
 /// Guarantees   nothing is under way when a call returns, be it with an error
 /// Threads      one call at a time
-class Staging {
+class ISOTET_API Staging {
 public:
     Staging(Context& context, std::uint64_t chunk_bytes);
     ~Staging();

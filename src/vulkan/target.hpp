@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "vulkan/context.hpp"
@@ -23,7 +24,7 @@ enum class Images : std::uint8_t {
 /// The formats of a target, and what becomes of its images in a pass of draws: both are cleared or kept at the
 /// beginning, and the colour can be copied afterwards. Its dependencies order one use of the images after the other, so
 /// that nobody else need.
-class RenderPass {
+class ISOTET_API RenderPass {
 public:
     static Result<std::unique_ptr<RenderPass>> make(Context& context);
     ~RenderPass();
@@ -43,7 +44,7 @@ private:
 };
 
 /// Threads   one thread at a time; not while the device draws into it
-class Target {
+class ISOTET_API Target {
 public:
     static constexpr std::uint64_t texel_bytes = 8; ///< of the colour
     static constexpr std::uint64_t bytes_of(std::uint64_t texels) { return texels * (texel_bytes + 4); }

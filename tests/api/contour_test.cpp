@@ -22,9 +22,7 @@ Grid kuhn(std::uint64_t side = 8) {
     return make_grid({.shape = "kuhn", .side = side, .fields = {"gyroid", "sphere"}}).value();
 }
 
-ContourInput input_of(const Grid& grid, std::size_t field = 0) {
-    return {grid, point_field(grid, field), {}, {}};
-}
+ContourInput input_of(const Grid& grid, std::size_t field = 0) { return {grid, point_field(grid, field), {}, {}}; }
 
 /// The same contents in memory of their own.
 Array copy_of(const Array& array) {
@@ -42,7 +40,8 @@ Grid copy_of(const Grid& grid) {
 }
 
 std::string direct_bytes(const Grid& grid, std::size_t field, double isovalue) {
-    return bytes_of(extract_direct(grid, point_field(grid, field), std::span(&isovalue, 1)).value().surfaces[0].surface);
+    return bytes_of(
+        extract_direct(grid, point_field(grid, field), std::span(&isovalue, 1)).value().surfaces[0].surface);
 }
 
 std::string packed_bytes(const Grid& grid, std::size_t field, double isovalue) {
@@ -242,7 +241,10 @@ TEST(Contour, RefusesOptionsThatContradictEachOther) {
     const Grid grid = kuhn(2);
     Contour contour = Contour::create(input_of(grid)).value();
     EXPECT_EQ(contour.extract(std::nan("")).error().code, ErrorCode::invalid_argument);
-    EXPECT_EQ(contour.extract_on_device(std::array{0.5}).error().code, ErrorCode::invalid_argument);
+    const auto unused = [](EngineGrid&, const ExtractOptions&) -> Result<void> { return {}; };
+    EXPECT_EQ(contour.use_grid(1, unused).error().message,
+              "the session extracts by the cpu engine, which keeps no grid");
+    EXPECT_EQ(Contour::create(input_of(grid), {.engine = nullptr}).error().message, "the session has no engine");
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <png.h>
 
 #include <isotet/compare_pictures.hpp>
+#include <isotet/picture_file.hpp>
 
 #include "support/temporary_folder.hpp"
 

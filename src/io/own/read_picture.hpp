@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include <isotet/compare_pictures.hpp>
+#include <isotet/picture_file.hpp>
 
 namespace isotet::io {
 

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 #include <png.h>
 
-#include <isotet/picture.hpp>
+#include <isotet/picture_file.hpp>
 
 #include "io/own/output_file.hpp"
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/result.hpp>
 
@@ -28,7 +29,7 @@ struct SurfaceParts {
 /// Arrays are made for more than is needed, so that the next surface is likely to fit, and only ever grow.
 ///
 /// Threads   one thread at a time
-class SurfaceBuffers {
+class ISOTET_API SurfaceBuffers {
 public:
     Buffer head; ///< layout::Output
     Buffer positions, triangles, normals, lowest, ends, weights, sources;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <isotet/boundary.hpp>
+#include <isotet/device_grid.hpp>
 
 #include "core/guard.hpp"
 #include "core/stopwatch.hpp"
@@ -104,7 +105,8 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     required = wanted.where == ExtractOn::device;
     const bool use_device = !wanted.draw && (required || (card && wanted.where == ExtractOn::best));
     if (use_device) {
-        options.device = ContourDevice{device, required};
+        options.engine = vulkan_engine(device);
+        options.engine_required = required;
         options.edge_ends = by_points;
         options.source_cells = by_cells;
         without_device = std::move(carrying);
@@ -159,7 +161,7 @@ Result<void> IsosurfaceScene::Data::show_tets(std::span<const double> isovalues)
 
 /// By the session: surfaces stay on its device, or come from the CPU.
 Result<void> IsosurfaceScene::Data::show_extracted(std::span<const double> isovalues, const Run& run) {
-    if (contour->has_device()) {
+    if (contour->engine() == "vulkan") {
         const Result<void> done = show_on_device(isovalues, run);
         if (done || required || done.error().code == ErrorCode::cancelled) return done;
         notes.push_back(done.error().message + ": the CPU extracts instead");
@@ -187,12 +189,16 @@ Result<void> IsosurfaceScene::Data::show_on_device(std::span<const double> isova
         if (!colors) return colors.error();
         grid_colors = *std::move(colors);
     }
-    Result<std::vector<DeviceSurface>> surfaces = contour->extract_on_device(isovalues, run);
+    Result<std::vector<DeviceSurface>> surfaces = extract_on_device(*contour, isovalues, run);
     if (!surfaces) return surfaces.error();
     on_device = *std::move(surfaces);
     report.on_device = true;
     report.method = Method::clusters;
-    report.extract_work = contour->device_work();
+    const auto take_work = [&](EngineGrid& grid, const ExtractOptions&) -> Result<void> {
+        report.extract_work = grid.work();
+        return {};
+    };
+    if (auto taken = contour->use_grid(0, take_work, run); !taken) return taken;
     report.field = packed.field();
     for (const DeviceSurface& one : on_device) {
         DrawnSurface& drawn = scene.surfaces.emplace_back();

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+# shared.sh STAGE CONSUMER FOLDER CXX: links shared libraries from the objects of the installed static ones, which were
+# compiled for both, and a consumer against them by what pkg-config says. Nothing but isotet's own names may be shown.
+set -euo pipefail
+stage=$1 consumer=$2 folder=$3 cxx=$4
+
+rm -rf "$folder"
+mkdir -p "$folder"
+cp -r "$stage" "$folder/prefix"
+lib=$(dirname "$(find "$folder/prefix" -name libisotet.a)")
+export PKG_CONFIG_PATH=$lib/pkgconfig
+
+# link NAME NEEDED...: a library without names that are nowhere.
+link() {
+    local name=$1
+    shift
+    "$cxx" -shared -Wl,--no-undefined -Wl,-soname,"lib$name.so" -o "$lib/lib$name.so" \
+        -Wl,--whole-archive "$lib/lib$name.a" -Wl,--no-whole-archive -L"$lib" "$@"
+    local foreign
+    foreign=$(nm -DC --defined-only "$lib/lib$name.so" | cut -d' ' -f3- |
+        grep -vE '^(typeinfo|vtable|VTT|typeinfo name|guard variable|construction vtable)|isotet::' || true)
+    if [[ -n $foreign ]]; then
+        echo "lib$name.so shows what is not isotet's:"
+        head <<<"$foreign"
+        return 1
+    fi
+}
+link isotet -ltbb -lfmt -lpthread
+link isotet_vulkan -lisotet -lfmt -ldl
+link isotet_render -lisotet_vulkan -lisotet -lfmt -lfreetype
+rm "$lib"/libisotet.a "$lib"/libisotet_vulkan.a "$lib"/libisotet_render.a
+
+read -ra flags < <(pkg-config --cflags --libs isotet-render)
+for component in isotet vulkan render; do
+    "$cxx" "$consumer/$component.cpp" "${flags[@]}" -Wl,-rpath,"$lib" -o "$folder/$component"
+    "$folder/$component"
+done
+echo "$(nm -DC --defined-only "$lib/libisotet.so" | wc -l) names of libisotet.so"
