@@ -52,7 +52,7 @@ struct ISOTET_API BenchPair {
     BenchMethod method = BenchMethod::direct;
     SearchIndex index = SearchIndex::none;
 
-    std::string name() const; ///< "textures + interval_tree", "clusters"
+    ISOTET_API std::string name() const; ///< "textures + interval_tree", "clusters"
 };
 
 /// Each method that draws tets with each index, the others once.

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "measure/contestant.hpp"
+#include "scene/contestant.hpp"
 
 #include <span>
 #include <utility>

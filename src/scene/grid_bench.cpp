@@ -9,7 +9,7 @@
 #include <isotet/plan.hpp>
 
 #include "core/guard.hpp"
-#include "measure/contestant.hpp"
+#include "scene/contestant.hpp"
 
 namespace isotet {
 
