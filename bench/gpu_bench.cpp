@@ -120,7 +120,7 @@ int main(int count, char** words) {
     const auto begin = Clock::now();
     const std::string choice = count > 1 ? words[1] : "";
     const double budget = count > 2 ? std::atof(words[2]) : 400;
-    const double most_tets = count > 3 ? std::atof(words[3]) : 1e9;
+    const double max_tets = count > 3 ? std::atof(words[3]) : 1e9;
     const Result<Device> device = Device::open({choice, 0});
     if (!device) {
         std::fprintf(stderr, "gpu_bench: %s\n", device.error().message.c_str());
@@ -137,7 +137,7 @@ int main(int count, char** words) {
     for (const std::uint64_t side : {20, 55, 94, 170, 255, 368, 550}) {
         const double tets = 6.0 * static_cast<double>(side) * static_cast<double>(side) * static_cast<double>(side);
         // The next grid is five times as large: it takes five times as long.
-        if (tets > most_tets || seconds_since(begin) + 5 * last > budget) break;
+        if (tets > max_tets || seconds_since(begin) + 5 * last > budget) break;
         const auto start = Clock::now();
         try {
             print(measure(*device, side, 10), bandwidth);

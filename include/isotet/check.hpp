@@ -56,7 +56,7 @@ struct CheckOptions {
                                 ///< tets; needs surface.edge_ends
     const PointField* field = nullptr; ///< with `grid`: tets with a corner of no data are not valid
     bool weld = false;                 ///< weld by exact coordinates first (STL)
-    int most_findings = 5;             ///< of each kind
+    int max_findings = 5;              ///< of each kind
 };
 
 /// Measures a surface and looks for what should not be there. An empty surface is closed and clean.

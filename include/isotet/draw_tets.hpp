@@ -73,7 +73,7 @@ public:
     std::uint64_t tets() const noexcept;       ///< that are drawn, cut or not
     std::uint64_t sent_bytes() const noexcept; ///< over the bus for this isovalue: the numbers of the tets, if it has a
                                                ///< list
-    std::uint64_t bytes_a_picture() const noexcept; ///< of the store, over the bus for each part of a picture
+    std::uint64_t bytes_per_picture() const noexcept; ///< of the store, over the bus for each part of a picture
 
     /// The triangles, in the user's coordinates, worked out by a kernel of the same source as the vertex shader. Half a
     /// table of cases loses which side is above, so it is not told which way they face; triangles of which two corners

@@ -40,7 +40,7 @@ public:
           mesh_(mesh),
           options_(options),
           progress_(progress),
-          most_(static_cast<std::size_t>(std::max(options.most_findings, 0))) {}
+          most_(static_cast<std::size_t>(std::max(options.max_findings, 0))) {}
 
     Result<SurfaceReport> run() {
         report_.vertices = mesh_.vertex_count();

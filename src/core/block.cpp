@@ -37,7 +37,7 @@ std::size_t page_size() {
 
 std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
-std::size_t most_to_keep() {
+std::size_t max_to_keep() {
     static const std::size_t bytes = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) / 64 * page_size();
     return bytes;
 }
@@ -110,7 +110,7 @@ public:
     bool keep(Block block) {
         const std::lock_guard lock(mutex_);
         in_use_ -= block.bytes;
-        if (!reuses_ && block.bytes > most_to_keep()) return false;
+        if (!reuses_ && block.bytes > max_to_keep()) return false;
         if (blocks_.size() == blocks_.capacity()) blocks_.reserve(2 * blocks_.size() + 16);
         blocks_.push_back(block);
         bytes_ += block.bytes;
@@ -148,7 +148,7 @@ private:
     void let_go_of_too_many() {
         if (reuses_) return;
         std::size_t old = 0;
-        while (bytes_ > most_to_keep()) release(blocks_[old++]);
+        while (bytes_ > max_to_keep()) release(blocks_[old++]);
         forget(old);
     }
 

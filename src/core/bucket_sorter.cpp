@@ -18,7 +18,7 @@ struct ByRank {
 };
 
 ByRank by_rank(const TetBuckets& all, std::size_t bucket) {
-    const std::size_t ranks = all.ranks_a_bucket();
+    const std::size_t ranks = all.ranks_per_bucket();
     const std::size_t size = all.dealt(bucket);
     ByRank out{std::vector<std::uint32_t>(ranks + 1, 0), Buffer<RankedTet>(size), {}};
     if (all.has_origins()) out.origins = Buffer<TetOrigin>(size);

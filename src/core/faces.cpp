@@ -33,7 +33,7 @@ DirectedFace face_of(const Tet& tet, std::size_t f) {
 }
 
 constexpr std::uint64_t tets_per_bucket = 1 << 13; ///< faces and tets of a bucket stay in the second cache
-constexpr std::uint64_t max_buckets = 4096;     ///< so many lines that are written at once do, too
+constexpr std::uint64_t max_buckets = 4096;        ///< so many lines that are written at once do, too
 constexpr std::size_t min_chunk = 1 << 14, max_chunks = 256;
 
 PointBuckets buckets_for(std::uint64_t points, std::uint64_t tets) {
@@ -73,9 +73,9 @@ public:
         const std::uint64_t bytes = 2 * survey_.tets * sizeof(AscendingTet<Point>); // a tet is in at most two buckets
         const std::uint64_t rounds =
             std::min<std::uint64_t>(1 + bytes / std::max<std::uint64_t>(memory, 1), bucket_count_);
-        const std::size_t buckets_a_round = (bucket_count_ + rounds - 1) / rounds;
-        for (std::size_t first = 0; first < bucket_count_ && !progress_.cancelled(); first += buckets_a_round)
-            count(first, std::min(first + buckets_a_round, bucket_count_));
+        const std::size_t buckets_per_round = (bucket_count_ + rounds - 1) / rounds;
+        for (std::size_t first = 0; first < bucket_count_ && !progress_.cancelled(); first += buckets_per_round)
+            count(first, std::min(first + buckets_per_round, bucket_count_));
         if (progress_.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
         return FaceSurvey{total_.repeated, total_.unbalanced};
     }

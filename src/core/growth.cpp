@@ -125,7 +125,7 @@ private:
     std::vector<std::int16_t> scores_;
 };
 
-/// Sorts different numbers below tets_a_block.
+/// Sorts different numbers below tets_per_block.
 class TetSorter {
 public:
     void add(std::uint32_t tet) {
@@ -145,8 +145,8 @@ public:
     }
 
 private:
-    std::array<std::uint64_t, tets_a_block / 64> words_{};
-    std::array<std::uint64_t, tets_a_block / 4096> full_words_{}; ///< which words are not 0
+    std::array<std::uint64_t, tets_per_block / 64> words_{};
+    std::array<std::uint64_t, tets_per_block / 4096> full_words_{}; ///< which words are not 0
 };
 
 /// How far a tet is from completion, in one word that a joining corner changes without looking at the others: how many
@@ -167,7 +167,7 @@ public:
 
 private:
     static constexpr std::uint32_t one_inside = 1u << 24, taken_word = ~0u;
-    static_assert(4 * tets_a_block <= one_inside, "all corners may be different points");
+    static_assert(4 * tets_per_block <= one_inside, "all corners may be different points");
 
     explicit TetState(std::uint32_t word) : word_(word) {}
 
@@ -396,7 +396,7 @@ private:
     std::size_t next_ = 0;
     bool full_ = false;
 };
-static_assert(tets_a_block <= 65536, "tets of points are numbers of 16 bits");
+static_assert(tets_per_block <= 65536, "tets of points are numbers of 16 bits");
 
 } // namespace
 

@@ -13,7 +13,7 @@ namespace isotet::core {
 
 /// Tets along the curve are cut into blocks of this many, and clusters are grown inside each block on its own: fixed,
 /// so that the number of threads does not matter.
-constexpr std::size_t tets_a_block = 65536;
+constexpr std::size_t tets_per_block = 65536;
 
 /// The clusters of one block. Points of a cluster stand in the order in which they joined; corners of tets are
 /// positions in that list.
@@ -34,7 +34,7 @@ struct BlockClusters {
 /// gain(v) * (1 + 20 / left(v)): gain = tets that v completes, left = tets of v not yet in a cluster. The second factor
 /// favours points that are nearly used up: without it, leftovers become tiny clusters.
 ///
-/// `tets`   at most tets_a_block
+/// `tets`   at most tets_per_block
 /// Cost     O(n) for n tets, about 100 candidates looked at for each point that joins
 BlockClusters grow_clusters(Buffer<RankedTet> tets);
 

@@ -28,7 +28,7 @@ BlockClusters grow_block(TetBuckets& tets, std::uint64_t first, std::size_t size
     return block;
 }
 
-std::size_t blocks_for(std::uint64_t tets) { return (tets + tets_a_block - 1) / tets_a_block; }
+std::size_t blocks_for(std::uint64_t tets) { return (tets + tets_per_block - 1) / tets_per_block; }
 
 std::size_t groups_for(std::size_t tets) { return (tets + group_size - 1) / group_size; }
 
@@ -49,7 +49,8 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
         for (std::size_t b = next_block++; b < block_count; b = next_block++) {
             if (progress.cancelled()) return;
             try {
-                blocks[b] = grow_block(order.tets, b * tets_a_block, std::min(tets_a_block, count - b * tets_a_block));
+                blocks[b] =
+                    grow_block(order.tets, b * tets_per_block, std::min(tets_per_block, count - b * tets_per_block));
             } catch (...) {
                 next_block = block_count; // nobody begins another one
                 throw;
@@ -92,7 +93,7 @@ Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, co
     parallel_each(block_count, 1, [&](std::size_t b) {
         const BlockClusters block = std::move(blocks[b]);
         std::vector<TetOrigin> origins(source_cells ? block.tets.size() : 0);
-        order.tets.copy_origins(b * tets_a_block, origins);
+        order.tets.copy_origins(b * tets_per_block, origins);
         Start at = starts[b];
         std::copy(block.points.begin(), block.points.end(), draft.locals.begin() + at.local);
         std::size_t tet = 0;

@@ -17,7 +17,7 @@
 
 namespace isotet::core {
 
-inline constexpr std::size_t clusters_a_task = 64; // of the stages that run over clusters
+inline constexpr std::size_t clusters_per_task = 64; // of the stages that run over clusters
 
 /// A point by the cluster that owns it and its place among that cluster's own points. Ordered as packed points are.
 struct PointRef {

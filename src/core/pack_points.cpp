@@ -16,7 +16,7 @@ Buffer<std::uint32_t> find_owners(const Draft& draft) {
     parallel_ranges(owners.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         std::fill(owners.begin() + begin, owners.begin() + end, std::numeric_limits<std::uint32_t>::max());
     });
-    parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
+    parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i) {
             std::atomic_ref<std::uint32_t> owner(owners[draft.locals[i]]);
             std::uint32_t seen = owner.load(std::memory_order_relaxed);
@@ -35,7 +35,7 @@ void number_points(std::uint64_t user_points, Draft& draft) {
 
     // Own points of a cluster ascend by rank.
     Buffer<std::uint8_t> place(owners.size());
-    parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
+    parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         std::uint64_t own[max_cluster_points];
         std::size_t count = 0;
         for (std::size_t i = draft.first_local[c]; i < draft.first_local[c + 1]; ++i)
@@ -55,7 +55,7 @@ void number_points(std::uint64_t user_points, Draft& draft) {
     else packed.point_ids = SharedBuffer<std::uint32_t>(points);
 
     // Local points in packed order, and the tets' corners with them.
-    parallel_each(draft.clusters(), clusters_a_task, [&](std::size_t c) {
+    parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         std::uint64_t foreign[max_cluster_points]; // by PointRef; the lowest byte is the place so far
         std::uint8_t after[max_cluster_points];
         std::size_t foreign_count = 0;

@@ -14,16 +14,16 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t words_a_row = max_cluster_points / 64;
+constexpr std::size_t words_per_row = max_cluster_points / 64;
 
 /// A set of local points.
 struct PointSet {
-    std::uint64_t words[words_a_row] = {};
+    std::uint64_t words[words_per_row] = {};
 
     constexpr void add(std::size_t point) { words[point / 64] |= std::uint64_t{1} << point % 64; }
     bool holds(std::size_t point) const { return words[point / 64] >> point % 64 & 1; }
     void add(const PointSet& other) {
-        for (std::size_t w = 0; w < words_a_row; ++w) words[w] |= other.words[w];
+        for (std::size_t w = 0; w < words_per_row; ++w) words[w] |= other.words[w];
     }
 };
 
@@ -167,14 +167,14 @@ public:
     }
     void write_links() {
         number_own_seams();
-        const std::size_t n = draft_.clusters(), tasks = (n + clusters_a_task - 1) / clusters_a_task;
+        const std::size_t n = draft_.clusters(), tasks = (n + clusters_per_task - 1) / clusters_per_task;
         std::vector<std::vector<std::uint32_t>> lists(tasks);
         parallel_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
             Neighbourhood neighbourhood;
             std::vector<std::uint32_t> list;
             for (std::size_t task = from; task < to; ++task) {
                 list.clear();
-                for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c)
+                for (std::size_t c = task * clusters_per_task; c < std::min(n, (task + 1) * clusters_per_task); ++c)
                     add_links(c, neighbourhood, list);
                 lists[task].assign(list.begin(), list.end()); // no longer than it need be
             }
@@ -187,7 +187,7 @@ public:
         packed_.links = SharedBuffer<std::uint32_t>(words);
         parallel_each(tasks, 1, [&](std::size_t task) {
             std::copy(lists[task].begin(), lists[task].end(),
-                      packed_.links.begin() + packed_.headers[task * clusters_a_task].first_link);
+                      packed_.links.begin() + packed_.headers[task * clusters_per_task].first_link);
             lists[task] = {};
         });
     }
@@ -201,7 +201,7 @@ private:
         parallel_ranges(points, 1 << 16, [&](std::size_t begin, std::size_t end) {
             std::fill(shared_.begin() + begin, shared_.begin() + end, 0);
         });
-        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) {
+        parallel_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
             for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k) {
                 const PointRef point = ref(c, k);
                 std::atomic_ref<std::uint8_t>(shared_[packed_.headers[point.owner()].first_point + point.index()])
@@ -221,7 +221,7 @@ private:
         for (const StoredTet& tet : packed_.cluster_tets(c)) matrix.add(tet);
         for (std::size_t a = 0; a < draft_.local_count(c); ++a) {
             if (!shared.holds(a)) continue;
-            for (std::size_t word = a / 64; word < words_a_row; ++word) {
+            for (std::size_t word = a / 64; word < words_per_row; ++word) {
                 std::uint64_t bits = matrix.rows[a].words[word] & shared.words[word];
                 if (word == a / 64) bits &= ~std::uint64_t{1} << a % 64; // the higher ones
                 for (; bits; bits &= bits - 1)
@@ -234,13 +234,13 @@ private:
     void list_candidates() {
         const std::size_t n = draft_.clusters();
         first_candidate_ = Buffer<std::uint64_t>(n + 1);
-        const std::size_t tasks = (n + clusters_a_task - 1) / clusters_a_task;
+        const std::size_t tasks = (n + clusters_per_task - 1) / clusters_per_task;
         std::vector<std::vector<SeamEdge>> lists(tasks);
         parallel_ranges(tasks, 1, [&](std::size_t from, std::size_t to) {
             std::vector<SeamEdge> list;
             for (std::size_t task = from; task < to; ++task) {
                 list.clear();
-                for (std::size_t c = task * clusters_a_task; c < std::min(n, (task + 1) * clusters_a_task); ++c) {
+                for (std::size_t c = task * clusters_per_task; c < std::min(n, (task + 1) * clusters_per_task); ++c) {
                     const std::size_t before = list.size();
                     for_candidates(c, [&](std::uint8_t a, std::uint8_t b) { list.push_back({a, b}); });
                     first_candidate_[c + 1] = list.size() - before;
@@ -253,7 +253,7 @@ private:
         candidates_ = Buffer<SeamEdge>(first_candidate_[n]);
         parallel_each(tasks, 1, [&](std::size_t task) {
             std::copy(lists[task].begin(), lists[task].end(),
-                      candidates_.begin() + first_candidate_[task * clusters_a_task]);
+                      candidates_.begin() + first_candidate_[task * clusters_per_task]);
             lists[task] = {};
         });
     }
@@ -284,7 +284,7 @@ private:
     void exchange() {
         const std::size_t n = draft_.clusters();
         std::vector<std::uint64_t> next(n + 1, 0); // letters to each cluster; then where its next letter goes
-        parallel_each(n, clusters_a_task, [&](std::size_t c) {
+        parallel_each(n, clusters_per_task, [&](std::size_t c) {
             for_runs(c, 0, n, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
                 std::atomic_ref<std::uint64_t>(next[owner + 1]).fetch_add(end - begin, std::memory_order_relaxed);
             });
@@ -308,7 +308,7 @@ private:
     void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first,
                  std::vector<std::uint64_t>& next, Buffer<Letter>& letters) {
         Letter* const to_first = letters.data();
-        parallel_each(draft_.clusters() - from, clusters_a_task, [&](std::size_t behind) {
+        parallel_each(draft_.clusters() - from, clusters_per_task, [&](std::size_t behind) {
             const std::size_t c = from + behind;
             const SeamEdge* const all = candidates(c).data();
             for_runs(c, from, to, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
@@ -321,7 +321,7 @@ private:
             });
         });
         // Letters arrive in any order; sorting makes it one.
-        parallel_ranges(to - from, clusters_a_task, [&](std::size_t begin, std::size_t end) {
+        parallel_ranges(to - from, clusters_per_task, [&](std::size_t begin, std::size_t end) {
             std::vector<Letter> scratch;
             for (std::size_t c = from + begin; c < from + end; ++c) {
                 const std::span<Letter> mail(to_first + (first[c] - first[from]), first[c + 1] - first[c]);
@@ -345,7 +345,7 @@ private:
 
     /// Afterwards the answers to the clusters' own seams hold their numbers among these.
     void number_own_seams() {
-        parallel_each(draft_.clusters(), clusters_a_task, [&](std::size_t c) {
+        parallel_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
             const auto self = static_cast<std::uint32_t>(c);
             std::uint16_t own = 0;
             for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k)

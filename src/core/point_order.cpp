@@ -55,11 +55,11 @@ private:
 } // namespace
 
 Buffer<Keyed> sort_points(const PointReader& points, const Buffer<std::uint8_t>& used) {
-    constexpr std::size_t points_a_chunk = 1 << 16;
-    const std::size_t chunks = (used.size() + points_a_chunk - 1) / points_a_chunk;
+    constexpr std::size_t points_per_chunk = 1 << 16;
+    const std::size_t chunks = (used.size() + points_per_chunk - 1) / points_per_chunk;
     const auto chunk_of = [&](std::size_t chunk) {
         return std::span(used.data(), used.size())
-            .subspan(chunk * points_a_chunk, std::min(points_a_chunk, used.size() - chunk * points_a_chunk));
+            .subspan(chunk * points_per_chunk, std::min(points_per_chunk, used.size() - chunk * points_per_chunk));
     };
     std::vector<std::size_t> first(chunks + 1, 0);
     parallel_each(chunks, 1, [&](std::size_t chunk) {
@@ -71,7 +71,7 @@ Buffer<Keyed> sort_points(const PointReader& points, const Buffer<std::uint8_t>&
     Buffer<Keyed> sorted(first[chunks]), scratch(first[chunks]);
     parallel_each(chunks, 1, [&](std::size_t chunk) {
         Keyed* out = sorted.data() + first[chunk];
-        const std::size_t begin = chunk * points_a_chunk;
+        const std::size_t begin = chunk * points_per_chunk;
         for (std::size_t i = begin; i < begin + chunk_of(chunk).size(); ++i)
             if (used[i]) *out++ = {curve.key(points[i]), i};
     });

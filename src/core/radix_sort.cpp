@@ -15,7 +15,7 @@ namespace isotet::core {
 
 namespace {
 
-constexpr int most_digit_bits = 11; // 2,048 parts: as many lines as the first cache holds twice over
+constexpr int max_digit_bits = 11; // 2,048 parts: as many lines as the first cache holds twice over
 constexpr std::size_t insertion_limit = 24;
 constexpr std::size_t parallel_limit = std::size_t{1} << 18;
 
@@ -68,8 +68,8 @@ void sort_serial(const Part& part) {
         return;
     }
     const Digit digit =
-        digit_for(differing, std::min<int>(most_digit_bits, static_cast<int>(std::bit_width(part.size)) - 2));
-    std::array<std::uint32_t, (std::size_t{1} << most_digit_bits) + 1> next;
+        digit_for(differing, std::min<int>(max_digit_bits, static_cast<int>(std::bit_width(part.size)) - 2));
+    std::array<std::uint32_t, (std::size_t{1} << max_digit_bits) + 1> next;
     std::fill_n(next.begin(), digit.mask + 2, 0);
     for (std::size_t i = 0; i < part.size; ++i) ++next[digit.of(part.here[i]) + 1];
     for (std::size_t d = 0; d < digit.mask; ++d) next[d + 1] += next[d];
@@ -126,7 +126,7 @@ void sort_parallel(const Part& part) {
         bring_home(part);
         return;
     }
-    const std::vector<std::size_t> begin = split_parallel(part, digit_for(differing, most_digit_bits));
+    const std::vector<std::size_t> begin = split_parallel(part, digit_for(differing, max_digit_bits));
     const auto part_of = [&](std::size_t d) { return part.moved(begin[d], begin[d + 1] - begin[d]); };
     parallel_each(begin.size() - 1, 1, [&](std::size_t d) {
         if (part_of(d).size <= parallel_limit) sort_serial(part_of(d));

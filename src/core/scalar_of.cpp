@@ -13,7 +13,7 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t tuples_a_task = 1 << 14;
+constexpr std::size_t tuples_per_task = 1 << 14;
 
 template <class Value>
 double magnitude(const Value* tuple, std::size_t components) {
@@ -36,7 +36,7 @@ double magnitude(const Value* tuple, std::size_t components) {
 template <class Result, class At>
 Array fill(std::size_t count, const At& at) {
     Buffer<Result> values(count);
-    parallel_each(count, tuples_a_task, [&](std::size_t tuple) { values[tuple] = static_cast<Result>(at(tuple)); });
+    parallel_each(count, tuples_per_task, [&](std::size_t tuple) { values[tuple] = static_cast<Result>(at(tuple)); });
     return std::move(values).to_array();
 }
 

@@ -16,7 +16,7 @@ namespace isotet::core {
 namespace {
 
 constexpr std::size_t lanes = 16;
-constexpr std::size_t clusters_a_task = 64;
+constexpr std::size_t clusters_per_task = 64;
 
 // The second where the first is NaN.
 template <class Real>
@@ -97,7 +97,7 @@ void store_ranges(Packed& packed, std::size_t cluster, const LocalPoints& points
 template <class Real>
 void store_ranges(Packed& packed, std::size_t first, std::size_t last, const Progress& progress) {
     const Real* const values = packed.as<Real>().values.data();
-    parallel_ranges(last - first, clusters_a_task, [&](std::size_t from, std::size_t to) {
+    parallel_ranges(last - first, clusters_per_task, [&](std::size_t from, std::size_t to) {
         if (progress.cancelled()) return;
         const std::size_t begin = first + from, end = first + to;
         std::array<LocalPoints, 2> points; // of the cluster at hand and the next, in turn

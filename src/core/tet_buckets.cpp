@@ -8,13 +8,13 @@ namespace isotet::core {
 
 namespace {
 
-constexpr unsigned least_shift = 12;       ///< 4,096 ranks: some 25,000 tets, 400 kB
-constexpr std::size_t most_buckets = 2048; ///< a writer has a line of each in its second cache
+constexpr unsigned least_shift = 12;      ///< 4,096 ranks: some 25,000 tets, 400 kB
+constexpr std::size_t max_buckets = 2048; ///< a writer has a line of each in its second cache
 
 } // namespace
 
 TetBuckets::TetBuckets(std::size_t ranks, std::uint64_t tets, std::size_t writers, bool origins) {
-    shift_ = std::max(least_shift, static_cast<unsigned>(std::bit_width(ranks / most_buckets)));
+    shift_ = std::max(least_shift, static_cast<unsigned>(std::bit_width(ranks / max_buckets)));
     buckets_.resize((ranks >> shift_) + 1);
     next_.resize(writers * buckets());
     stream_pages_.resize(next_.size());

@@ -36,7 +36,7 @@ public:
     TetBuckets(std::size_t ranks, std::uint64_t tets, std::size_t writers, bool origins);
 
     std::size_t buckets() const { return buckets_.size(); }
-    std::size_t ranks_a_bucket() const { return std::size_t{1} << shift_; }
+    std::size_t ranks_per_bucket() const { return std::size_t{1} << shift_; }
     bool has_origins() const { return !origins_.empty(); }
 
     /// Deals out tets; for one thread at a time.
@@ -128,7 +128,8 @@ private:
     template <class F>
     void for_pieces(std::uint64_t first, std::size_t size, const F& f) const {
         auto bucket = std::upper_bound(buckets_.begin(), buckets_.end(), first,
-                                       [](std::uint64_t number, const Bucket& b) { return number < b.first; }) - 1;
+                                       [](std::uint64_t number, const Bucket& b) { return number < b.first; }) -
+                      1;
         for (std::size_t at = 0; at < size;) {
             const std::size_t inside = static_cast<std::size_t>(first + at - bucket->first);
             if (inside == bucket->size) {
@@ -142,8 +143,8 @@ private:
         }
     }
 
-    unsigned shift_ = 0;     ///< from a rank to its bucket
-    unsigned page_bits_ = 0; ///< a page has 2^page_bits_ tets
+    unsigned shift_ = 0;        ///< from a rank to its bucket
+    unsigned page_bits_ = 0;    ///< a page has 2^page_bits_ tets
     Buffer<RankedTet> tets_;    ///< page by page
     Buffer<TetOrigin> origins_; ///< beside them, or empty
     std::size_t pages_ = 0;     ///< taken so far, by all writers

@@ -13,7 +13,7 @@ namespace isotet::core {
 
 namespace {
 
-constexpr std::size_t cells_a_chunk = 1 << 14;
+constexpr std::size_t cells_per_chunk = 1 << 14;
 
 /// Counts of some cells.
 struct Partial {
@@ -78,7 +78,7 @@ TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress&
     survey.used = Buffer<std::uint8_t>(cells.points());
     clear(survey.used);
     std::mutex mutex;
-    parallel_pieces(cells.count(), cells_a_chunk, progress, [&](std::size_t begin, std::size_t end) {
+    parallel_pieces(cells.count(), cells_per_chunk, progress, [&](std::size_t begin, std::size_t end) {
         Partial part;
         add_cells(cells, points, begin, end, survey.used.data(), part);
         const std::lock_guard lock(mutex);
@@ -104,7 +104,7 @@ TetCounts count_tets(const CellReader& cells) {
     counts.used = Buffer<std::uint8_t>(cells.points());
     clear(counts.used);
     std::atomic<std::uint64_t> all_tets{0}, all_collapsed{0}, all_left_out{0};
-    parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(cells.count(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
         std::uint64_t tets = 0, collapsed = 0, left_out = 0;
         cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
             tets += static_cast<std::uint64_t>(pieces.count);

@@ -57,26 +57,26 @@ struct Cutting {
 template <class Real>
 struct CutScratch {
     static constexpr std::size_t points = core::max_cluster_points;
-    static constexpr std::size_t padded = most_vertices + 128; ///< SIMD code writes more than it counts
+    static constexpr std::size_t padded = max_vertices + 128; ///< SIMD code writes more than it counts
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
     std::size_t cluster = none, next_cluster = none;
     std::array<core::LocalPoints, 2> found;
-    core::LocalPoints* local = &found[0]; ///< of `cluster`
-    core::LocalPoints* next = &found[1];  ///< of `next_cluster`
-    alignas(64) std::array<Real, points> values{}; ///< of `cluster`
+    core::LocalPoints* local = &found[0];                 ///< of `cluster`
+    core::LocalPoints* next = &found[1];                  ///< of `next_cluster`
+    alignas(64) std::array<Real, points> values{};        ///< of `cluster`
     alignas(64) std::array<std::uint8_t, points> above{}; ///< 1 or 0
     std::array<std::uint8_t, points> special;             ///< tied or without data; for any_cluster.cpp
     CutTets cut;
-    std::array<VertexKey, 4 * core::max_cluster_tets> keys;  ///< of the polygons of cut tets, four each
-    KeyTable used; ///< empty between places
+    std::array<VertexKey, 4 * core::max_cluster_tets> keys; ///< of the polygons of cut tets, four each
+    KeyTable used;                                          ///< empty between places
     std::array<core::ForeignSeam, padded> crossed_seams;
     std::array<std::uint16_t, padded> crossed_places; ///< of these, in the list
     ShortList<VertexKey, padded> listed;
     std::array<EndPair, padded> ends; ///< of listed vertices
     std::array<Real, padded> weights;
-    ShortList<SharedVertex, most_vertices> shared;
-    ShortList<VertexKey, most_vertices> shared_keys;
+    ShortList<SharedVertex, max_vertices> shared;
+    ShortList<VertexKey, max_vertices> shared_keys;
     std::array<std::uint16_t, points * points> numbers; ///< see with_numbers()
     Arena arena;
     std::size_t record_bytes = 0; ///< of all records made

@@ -45,12 +45,12 @@ struct OwnVertices {
 template <class Real>
 struct Scratch {
     std::array<FoundPoints, 2> found;
-    FoundPoints* points = &found[0];         ///< of the cluster at hand, where its ends are looked at
-    FoundPoints* next = &found[1];           ///< of the one after it
-    std::array<EndPair, most_vertices> ends; ///< of vertices that only masks know
-    std::array<Real, most_vertices> weights;
-    std::array<std::uint32_t, most_vertices> numbers; ///< of vertices, by local number
-    std::array<std::uint64_t, most_vertices> wide_numbers;
+    FoundPoints* points = &found[0];        ///< of the cluster at hand, where its ends are looked at
+    FoundPoints* next = &found[1];          ///< of the one after it
+    std::array<EndPair, max_vertices> ends; ///< of vertices that only masks know
+    std::array<Real, max_vertices> weights;
+    std::array<std::uint32_t, max_vertices> numbers; ///< of vertices, by local number
+    std::array<std::uint64_t, max_vertices> wide_numbers;
 };
 
 template <class Real>

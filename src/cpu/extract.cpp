@@ -35,7 +35,7 @@ public:
     std::uint64_t at_most() const { return at_most_; }
 
     std::uint64_t of(const std::vector<Total>& totals, std::size_t record_bytes) const {
-        std::uint64_t bytes = fixed_ + Arena::most_bytes(record_bytes, threads_);
+        std::uint64_t bytes = fixed_ + Arena::max_bytes(record_bytes, threads_);
         for (const Total& total : totals)
             bytes += SurfaceArrays<Real>::bytes(request_, total) + total.vertices * request_.more_vertex_bytes +
                      total.triangles * request_.more_triangle_bytes;

@@ -19,7 +19,7 @@ struct EndPair {
 };
 
 /// Of a cluster: those at its points, and those on edges, of which a tet crosses at most four.
-constexpr std::size_t most_vertices = 4 * core::max_cluster_tets + core::max_cluster_points;
+constexpr std::size_t max_vertices = 4 * core::max_cluster_tets + core::max_cluster_points;
 
 /// A vertex that a cluster uses and a mask of its owner knows: on a seam edge, or at a tied point.
 struct SharedVertex {
@@ -98,7 +98,7 @@ public:
     }
     std::size_t bytes() const { return total_; }
 
-    static std::size_t most_bytes(std::size_t used, std::size_t threads) {
+    static std::size_t max_bytes(std::size_t used, std::size_t threads) {
         return used + used / 4 + threads * first_block;
     }
 

@@ -12,7 +12,7 @@ namespace isotet::cpu {
 
 namespace {
 
-constexpr std::size_t clusters_a_task = 1 << 12;
+constexpr std::size_t clusters_per_task = 1 << 12;
 
 /// What some clusters add to a selection.
 struct Sums {
@@ -26,7 +26,8 @@ void for_selected(const Packed& packed, std::span<const core::StoredIsovalue<Rea
     const auto& ranges = packed.as<Real>().ranges;
     constexpr auto value = &core::StoredIsovalue<Real>::value;
     const Real lowest = isovalues.front().value, highest = isovalues.back().value;
-    for (std::size_t c = task * clusters_a_task; c < std::min(packed.clusters(), (task + 1) * clusters_a_task); ++c) {
+    for (std::size_t c = task * clusters_per_task; c < std::min(packed.clusters(), (task + 1) * clusters_per_task);
+         ++c) {
         const core::Range<Real> range = ranges[c];
         if (!(range.lower <= highest && lowest <= range.upper)) continue;
         const auto first = std::ranges::lower_bound(isovalues, range.lower, {}, value);
@@ -44,7 +45,7 @@ Result<Selection> select(const Packed& packed, std::span<const core::StoredIsova
     const auto words_of = [&](std::size_t c) {
         return Masks::tied_words + core::words_of_bits(packed.headers[c].own_seams);
     };
-    const std::size_t tasks = (packed.clusters() + clusters_a_task - 1) / clusters_a_task;
+    const std::size_t tasks = (packed.clusters() + clusters_per_task - 1) / clusters_per_task;
     std::vector<Sums> before(tasks + 1);
     core::parallel_each(tasks, 1, [&](std::size_t task) {
         Sums sums;

@@ -57,7 +57,7 @@ std::uint64_t ChosenTets::tets() const noexcept {
     return tets;
 }
 
-std::uint64_t ChosenTets::bytes_a_picture() const noexcept {
+std::uint64_t ChosenTets::bytes_per_picture() const noexcept {
     std::uint64_t bytes = 0;
     for (const Part& part : parts_)
         if (!part.page->on_device) bytes += part.page->records.size();

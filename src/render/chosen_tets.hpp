@@ -34,7 +34,7 @@ public:
     const std::vector<Part>& parts() const noexcept { return parts_; }
     std::uint64_t tets() const noexcept;
     std::uint64_t sent_bytes() const noexcept { return numbers_.size(); }
-    std::uint64_t bytes_a_picture() const noexcept; ///< of pages that are not on the device
+    std::uint64_t bytes_per_picture() const noexcept; ///< of pages that are not on the device
 
     /// What shaders need to know of a part, the look aside.
     layout::TetPage describe(const Part& part) const;

@@ -54,7 +54,7 @@ Result<std::unique_ptr<Frame>> Frame::make(std::shared_ptr<vulkan::Context> cont
     return std::unique_ptr<Frame>(new Frame(std::move(context), *std::move(pass)));
 }
 
-std::uint32_t Frame::most_samples_an_axis() const {
+std::uint32_t Frame::max_samples_per_axis() const {
     const VkPhysicalDeviceLimits& limits = context_->capabilities().properties.limits;
     return std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight,
                      limits.maxViewportDimensions[0], limits.maxViewportDimensions[1]});

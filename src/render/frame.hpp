@@ -28,8 +28,8 @@ public:
     vulkan::DrawPipelines& pipelines() noexcept { return pipelines_; }
 
     /// How large parts of a picture may be: as many samples as memory is meant for, no more an axis than images have.
-    static constexpr std::uint64_t most_samples = std::uint64_t{1} << 24;
-    std::uint32_t most_samples_an_axis() const;
+    static constexpr std::uint64_t max_samples = std::uint64_t{1} << 24;
+    std::uint32_t max_samples_per_axis() const;
 
     /// The index buffer that all pages of tets are drawn with, made when it is first asked for.
     Result<const vulkan::Buffer*> quad_corners();

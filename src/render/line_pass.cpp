@@ -14,8 +14,8 @@ namespace isotet::render {
 
 namespace {
 
-constexpr std::uint32_t corners_a_line = 6;
-constexpr std::size_t most_lines = std::numeric_limits<std::uint32_t>::max() / corners_a_line;
+constexpr std::uint32_t corners_per_line = 6;
+constexpr std::size_t max_lines = std::numeric_limits<std::uint32_t>::max() / corners_per_line;
 
 } // namespace
 
@@ -23,8 +23,8 @@ Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines&
                                 const DrawnLines& drawn, std::uint32_t samples) {
     if (!(drawn.width > 0 && std::isfinite(drawn.width)))
         return invalid_argument(fmt::format("lines {} pixels wide, but the width must be positive", drawn.width));
-    if (drawn.lines.size() > most_lines)
-        return invalid_argument(fmt::format("{} lines, but {} can be drawn at most", drawn.lines.size(), most_lines));
+    if (drawn.lines.size() > max_lines)
+        return invalid_argument(fmt::format("{} lines, but {} can be drawn at most", drawn.lines.size(), max_lines));
     core::Buffer<float> ends(drawn.lines.size() * 6);
     for (std::size_t i = 0; i < drawn.lines.size(); ++i) {
         for (std::size_t end = 0; end < 2; ++end) {
@@ -43,7 +43,7 @@ Result<LineDraw> make_line_draw(vulkan::Context& context, vulkan::DrawPipelines&
     draw.lines.ends = vulkan::address_of(draw.ends);
     draw.lines.color = linear_light(drawn.color);
     draw.lines.half_width = static_cast<float>(drawn.width / 2 * samples);
-    draw.corners = corners_a_line * static_cast<std::uint32_t>(drawn.lines.size());
+    draw.corners = corners_per_line * static_cast<std::uint32_t>(drawn.lines.size());
     const auto pipeline = pipelines.get(vulkan::drawing::line_corners, vulkan::drawing::line, vulkan::Surfaces::opaque);
     if (!pipeline) return pipeline.error();
     draw.pipeline = *pipeline;

@@ -60,7 +60,7 @@ TetSurface::~TetSurface() = default;
 double TetSurface::isovalue() const noexcept { return 0; }
 std::uint64_t TetSurface::tets() const noexcept { return 0; }
 std::uint64_t TetSurface::sent_bytes() const noexcept { return 0; }
-std::uint64_t TetSurface::bytes_a_picture() const noexcept { return 0; }
+std::uint64_t TetSurface::bytes_per_picture() const noexcept { return 0; }
 Result<std::vector<std::array<std::array<double, 3>, 3>>> TetSurface::triangles() const { return built_without(); }
 
 TetStore::TetStore(std::shared_ptr<render::TetPages> pages) : pages_(std::move(pages)) {}

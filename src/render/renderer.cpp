@@ -21,7 +21,7 @@ namespace isotet {
 
 namespace {
 
-constexpr std::uint32_t most_pixels_an_axis = 32768, most_samples = 8;
+constexpr std::uint32_t max_pixels_per_axis = 32768, max_samples = 8;
 
 Result<void> check_camera(const Camera& camera) {
     const auto is_unit = [](const std::array<double, 3>& v) { return std::abs(render::dot(v, v) - 1) < 1e-6; };
@@ -44,13 +44,13 @@ Result<void> check_camera(const Camera& camera) {
 
 Result<void> check_options(const PictureOptions& options) {
     for (const std::uint32_t pixels : {options.width, options.height}) {
-        if (pixels >= 1 && pixels <= most_pixels_an_axis) continue;
+        if (pixels >= 1 && pixels <= max_pixels_per_axis) continue;
         return invalid_argument(fmt::format("a picture of {} x {} pixels, but each must be from 1 to {}", options.width,
-                                            options.height, most_pixels_an_axis));
+                                            options.height, max_pixels_per_axis));
     }
-    if (options.samples < 1 || options.samples > most_samples)
+    if (options.samples < 1 || options.samples > max_samples)
         return invalid_argument(
-            fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, most_samples));
+            fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, max_samples));
     return check_camera(options.camera);
 }
 
@@ -164,11 +164,11 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
     const std::uint64_t up = staging.uploaded(), down = staging.downloaded();
     Picture picture{options.width, options.height, {}};
     picture.pixels.resize(std::size_t{options.width} * options.height);
-    const std::uint32_t widest = std::max(1U, frame->most_samples_an_axis() / options.samples);
+    const std::uint32_t widest = std::max(1U, frame->max_samples_per_axis() / options.samples);
     render::Part part;
     part.width = std::min(options.width, widest);
     const std::uint64_t rows =
-        render::Frame::most_samples / (std::uint64_t{part.width} * options.samples * options.samples);
+        render::Frame::max_samples / (std::uint64_t{part.width} * options.samples * options.samples);
     const auto highest = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, 1, widest));
     for (part.y = 0; part.y < options.height; part.y += highest) {
         for (part.x = 0; part.x < options.width; part.x += widest) {

@@ -11,15 +11,15 @@ namespace isotet::render {
 
 namespace {
 
-constexpr std::uint32_t corners_a_quad = 6, vertices_a_quad = 4;
+constexpr std::uint32_t corners_per_quad = 6, vertices_per_quad = 4;
 
 } // namespace
 
 Result<vulkan::Buffer> make_quad_corners(vulkan::Context& context) {
-    constexpr std::uint32_t corners[corners_a_quad] = {0, 1, 2, 0, 2, 3};
-    core::Buffer<std::uint32_t> numbers(std::size_t{layout::page_tets} * corners_a_quad);
+    constexpr std::uint32_t corners[corners_per_quad] = {0, 1, 2, 0, 2, 3};
+    core::Buffer<std::uint32_t> numbers(std::size_t{layout::page_tets} * corners_per_quad);
     for (std::uint32_t i = 0; i < numbers.size(); ++i)
-        numbers[i] = i / corners_a_quad * vertices_a_quad + corners[i % corners_a_quad];
+        numbers[i] = i / corners_per_quad * vertices_per_quad + corners[i % corners_per_quad];
     return send(context, numbers, "corners of quads");
 }
 
@@ -64,7 +64,7 @@ void record(const TetDraw& draw, const layout::DrawPush& push, const vulkan::Dev
     call.vkCmdPushConstants(commands, draw.pipeline->layout, draw.pipeline->stages, 0, sizeof push, &push);
     if (!draw.quad_corners) return call.vkCmdDrawMeshTasksEXT(commands, (draw.tets - 1) / layout::tet_group + 1, 1, 1);
     call.vkCmdBindIndexBuffer(commands, draw.quad_corners, 0, VK_INDEX_TYPE_UINT32);
-    call.vkCmdDrawIndexed(commands, corners_a_quad * draw.tets, 1, 0, 0, 0);
+    call.vkCmdDrawIndexed(commands, corners_per_quad * draw.tets, 1, 0, 0, 0);
 }
 
 } // namespace isotet::render

@@ -18,7 +18,7 @@ TetSurface::~TetSurface() = default;
 double TetSurface::isovalue() const noexcept { return tets_ ? tets_->isovalue() : 0; }
 std::uint64_t TetSurface::tets() const noexcept { return tets_ ? tets_->tets() : 0; }
 std::uint64_t TetSurface::sent_bytes() const noexcept { return tets_ ? tets_->sent_bytes() : 0; }
-std::uint64_t TetSurface::bytes_a_picture() const noexcept { return tets_ ? tets_->bytes_a_picture() : 0; }
+std::uint64_t TetSurface::bytes_per_picture() const noexcept { return tets_ ? tets_->bytes_per_picture() : 0; }
 
 Result<std::vector<std::array<std::array<double, 3>, 3>>> TetSurface::triangles() const {
     return core::guarded("finding the triangles of tets", [&]() -> decltype(triangles()) {

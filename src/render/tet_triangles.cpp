@@ -37,7 +37,7 @@ Result<std::vector<Triangle>> ChosenTets::triangles() const {
     const auto constants = store_->constants(has_list_);
     const Result<const vulkan::Kernel*> twin = context.kernels().get(vulkan::drawing::tet_twin, constants);
     if (!twin) return twin.error();
-    constexpr std::uint64_t vertices_a_tet = 4, most = std::uint64_t{layout::page_tets} * vertices_a_tet;
+    constexpr std::uint64_t vertices_per_tet = 4, most = std::uint64_t{layout::page_tets} * vertices_per_tet;
     const Result<vulkan::Buffer> item =
         context.memory().take(sizeof(layout::TetPage), vulkan::Where::device, "a page of tets");
     if (!item) return item.error();
@@ -52,7 +52,7 @@ Result<std::vector<Triangle>> ChosenTets::triangles() const {
         if (!part.page->on_device) recorder.copy(part.page->records, 0, store_->guest, 0, part.page->records.size());
         std::vector<vulkan::Use> uses{vulkan::reads(*item), vulkan::writes(*vertices)};
         add_uses(part, vulkan::Access::kernel_read, uses);
-        const std::uint64_t count = part.tets * vertices_a_tet;
+        const std::uint64_t count = part.tets * vertices_per_tet;
         const layout::TwinPush push{vulkan::address_of(*item), vulkan::address_of(*vertices),
                                     static_cast<std::uint32_t>(count)};
         recorder.dispatch(**twin, push, (count + layout::twin_size - 1) / layout::twin_size, uses);
@@ -60,7 +60,7 @@ Result<std::vector<Triangle>> ChosenTets::triangles() const {
         const auto found = std::as_writable_bytes(std::span(places.data(), count));
         if (Result<void> fetched = context.staging().download(*vertices, 0, found); !fetched) return fetched.error();
         for (std::uint64_t tet = 0; tet < part.tets; ++tet)
-            add_triangles(places.data() + vertices_a_tet * tet, store_->origin, triangles);
+            add_triangles(places.data() + vertices_per_tet * tet, store_->origin, triangles);
     }
     return triangles;
 }

@@ -13,7 +13,7 @@ namespace isotet::search {
 
 namespace {
 
-constexpr std::uint32_t most_in_leaf = 32;
+constexpr std::uint32_t max_in_leaf = 32;
 constexpr unsigned levels = 21;
 
 std::array<float, 3> centroid(const core::TetTable& table, const std::array<std::uint32_t, 4>& tet) {
@@ -83,7 +83,7 @@ void Octree::divide(std::span<const core::Keyed> sorted) {
         const std::uint32_t begin = nodes_[n].begin, end = nodes_[n].end;
         const std::uint64_t differing =
             sorted[begin].key ^ sorted[end - 1].key; // sorted: nothing between differs higher up
-        if (end - begin <= most_in_leaf || differing == 0) continue;
+        if (end - begin <= max_in_leaf || differing == 0) continue;
         const unsigned shift = static_cast<unsigned>(std::bit_width(differing) - 1) / 3 * 3;
         const auto first_child = static_cast<std::uint32_t>(nodes_.size());
         for (std::uint32_t from = begin; from < end;) {

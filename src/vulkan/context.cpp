@@ -45,8 +45,9 @@ Result<std::shared_ptr<Context>> Context::open_unguarded(const DeviceOptions& op
     context->instance_ = std::move(found->instance);
     const Capabilities& capabilities = context->capabilities_;
     const auto& limits = capabilities.properties.limits.maxComputeWorkGroupCount;
-    context->groups_an_axis_ = *std::min_element(std::begin(limits), std::end(limits));
-    if (settings.groups_an_axis) context->groups_an_axis_ = std::min(context->groups_an_axis_, settings.groups_an_axis);
+    context->groups_per_axis_ = *std::min_element(std::begin(limits), std::end(limits));
+    if (settings.groups_per_axis)
+        context->groups_per_axis_ = std::min(context->groups_per_axis_, settings.groups_per_axis);
 
     auto device =
         LogicalDevice::open(*context->instance_, found->handles[*chosen], capabilities, settings.alter_functions);

@@ -29,9 +29,9 @@ namespace isotet::vulkan {
 struct Settings {
     Watch watch;
     bool force_staging = false;                            ///< as if the processor did not reach the device's memory
-    std::uint64_t most_items = std::uint64_t{0xffffffff};  ///< vertices of a surface, and triangles: what 32 bits can
+    std::uint64_t max_items = std::uint64_t{0xffffffff};   ///< vertices of a surface, and triangles: what 32 bits can
                                                            ///< number
-    std::uint32_t groups_an_axis = 0;                      ///< most workgroups an axis; 0: the device's own limit
+    std::uint32_t groups_per_axis = 0;                     ///< most workgroups an axis; 0: the device's own limit
     std::uint64_t staging_bytes = std::uint64_t{16} << 20; ///< of each of the two staging buffers
     std::chrono::milliseconds wait_limit = std::chrono::seconds(60);
     std::optional<std::filesystem::path> cache_folder;     ///< of compiled pipelines; empty path: none
@@ -53,7 +53,7 @@ public:
     const std::vector<std::string>& notices() const noexcept { return notices_; }
 
     /// Most workgroups of a dispatch in each of the three axes.
-    std::uint32_t groups_an_axis() const noexcept { return groups_an_axis_; }
+    std::uint32_t groups_per_axis() const noexcept { return groups_per_axis_; }
 
     LogicalDevice& device() noexcept { return *device_; }
     Memory& memory() noexcept { return *memory_; }
@@ -69,7 +69,7 @@ private:
     Capabilities capabilities_;
     Settings settings_;
     std::vector<std::string> notices_;
-    std::uint32_t groups_an_axis_ = 0;
+    std::uint32_t groups_per_axis_ = 0;
     // In the order of dependence: the last goes first.
     std::unique_ptr<Instance> instance_;
     std::unique_ptr<LogicalDevice> device_;

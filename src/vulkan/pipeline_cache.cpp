@@ -34,7 +34,7 @@ struct Head {
 constexpr char magic[8] = {'i', 's', 'o', 't', 'e', 't', 'P', '1'};
 
 /// Larger files are not ours.
-constexpr std::uint64_t most_bytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t max_bytes = std::uint64_t{256} << 20;
 
 /// FNV-1a: not against enemies (who could write into the folder as well), against broken disks and cut files.
 class Hash {
@@ -77,7 +77,7 @@ std::vector<std::byte> read_checked(const fs::path& path) {
     if (!file.read(reinterpret_cast<char*>(&head), sizeof head)) return {};
     std::error_code failed;
     const std::uintmax_t size = fs::file_size(path, failed);
-    if (failed || std::memcmp(head.magic, magic, sizeof magic) != 0 || head.bytes > most_bytes ||
+    if (failed || std::memcmp(head.magic, magic, sizeof magic) != 0 || head.bytes > max_bytes ||
         size != sizeof head + head.bytes)
         return {};
     std::vector<std::byte> bytes(head.bytes);
@@ -106,7 +106,7 @@ void tidy(const fs::path& folder) {
             fs::remove(entry->path(), gone);
     }
     std::ranges::sort(files, std::greater());
-    for (std::size_t i = PipelineCache::most_files; i < files.size(); ++i) fs::remove(files[i].second, failed);
+    for (std::size_t i = PipelineCache::max_files; i < files.size(); ++i) fs::remove(files[i].second, failed);
 }
 
 } // namespace
@@ -141,7 +141,7 @@ PipelineCache::~PipelineCache() {
 void PipelineCache::save() const {
     const DeviceFunctions& call = device_.call();
     std::size_t size = 0;
-    if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, nullptr) != VK_SUCCESS || size > most_bytes)
+    if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, nullptr) != VK_SUCCESS || size > max_bytes)
         return;
     std::vector<std::byte> bytes(size);
     if (call.vkGetPipelineCacheData(device_.handle(), handle_, &size, bytes.data()) != VK_SUCCESS) return;

@@ -13,11 +13,11 @@ namespace isotet::vulkan {
 /// One file a device, driver version and build of isotet: another driver or another build does not read it. It begins
 /// with a checksum, so that a broken file is never shown to the driver. Whatever goes wrong with the file costs time
 /// only, and is not an error: two processes may write at the same time, the disk may be full, the folder may be
-/// missing. Whoever writes also tidies up: of all devices, drivers and builds together the `most_files` files written
+/// missing. Whoever writes also tidies up: of all devices, drivers and builds together the `max_files` files written
 /// last stay.
 class PipelineCache {
 public:
-    static constexpr std::size_t most_files = 8;
+    static constexpr std::size_t max_files = 8;
 
     /// `folder`   empty: nothing is read or written
     PipelineCache(LogicalDevice& device, const Capabilities& capabilities, const std::filesystem::path& folder);

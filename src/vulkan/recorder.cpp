@@ -19,7 +19,7 @@ bool inside(const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes) {
     return offset <= buffer.size() && bytes <= buffer.size() - offset;
 }
 
-constexpr std::uint64_t most_written = 65536; // of vkCmdUpdateBuffer
+constexpr std::uint64_t max_written = 65536; // of vkCmdUpdateBuffer
 
 } // namespace
 
@@ -62,7 +62,7 @@ void Recorder::copy(const Buffer& from, std::uint64_t from_offset, const Buffer&
 }
 
 void Recorder::write(const Buffer& buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (!inside(buffer, offset, bytes.size()) || offset % 4 || bytes.size() % 4 || bytes.size() > most_written)
+    if (!inside(buffer, offset, bytes.size()) || offset % 4 || bytes.size() % 4 || bytes.size() > max_written)
         return complain(fmt::format("write of bytes {} + {} in a buffer of {}", offset, bytes.size(), buffer.size()));
     if (bytes.empty()) return;
     add({"write",
@@ -79,10 +79,10 @@ std::vector<BufferUse> Recorder::uses_of(std::span<const Use> uses) {
 void Recorder::add_dispatch(const Kernel& kernel, std::span<const std::byte> push, std::uint64_t groups,
                             std::span<const Use> uses) {
     if (groups == 0) return;
-    const auto folded = fold_groups(groups, context_.groups_an_axis());
+    const auto folded = fold_groups(groups, context_.groups_per_axis());
     if (!folded)
         return complain(fmt::format("{} workgroups of '{}', but the device takes {} in each of three axes", groups,
-                                    kernel.name, context_.groups_an_axis()));
+                                    kernel.name, context_.groups_per_axis()));
     add({kernel.name, uses_of(uses), Dispatch{&kernel, {push.begin(), push.end()}, *folded, VK_NULL_HANDLE, 0}});
 }
 

@@ -84,7 +84,7 @@ public:
     }
 
     /// The same, with three counts that stand in `arguments` at `offset` (a multiple of 4) when the pass begins; each
-    /// at most groups_an_axis(), see fold_groups() in kernels/shared/groups.glsl. `uses` need not name `arguments`.
+    /// at most groups_per_axis(), see fold_groups() in kernels/shared/groups.glsl. `uses` need not name `arguments`.
     template <class Push>
     void dispatch_indirect(const Kernel& kernel, const Push& push, const Buffer& arguments, std::uint64_t offset,
                            const std::vector<Use>& uses) {

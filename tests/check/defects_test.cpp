@@ -162,14 +162,14 @@ TEST(CheckDefects, ListsAsManyFindingsOfAKindAsAskedForTheSameEachTime) {
     Soup soup;
     for (int i = 0; i < 3000; ++i) soup.add(square().moved(static_cast<float>(2 * i), 0, 0));
     CheckOptions options;
-    options.most_findings = 3;
+    options.max_findings = 3;
     const SurfaceReport report = check_of(soup, options);
     EXPECT_EQ(report.boundary_edges, 12000u);
     ASSERT_EQ(report.findings.size(), 3u);
     EXPECT_EQ(report.findings[0].what, "edge 0-1 is used 1 time forward, 0 backward");
     EXPECT_EQ(report.findings[0].where, (std::array<double, 3>{0.5, 0, 0}));
     EXPECT_EQ(report.findings[2].what, "edge 1-2 is used 1 time forward, 0 backward");
-    options.most_findings = -1;
+    options.max_findings = -1;
     EXPECT_TRUE(check_of(soup, options).findings.empty());
 }
 

@@ -67,7 +67,7 @@ TEST_F(ProgramOnDevice, TellsWhatCrossedTheBus) {
 
 TEST_F(ProgramOnDevice, SaysSoWhenTheCpuStandsIn) {
     const RunResult run =
-        isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", "software", "--precision", "double"});
+        isotet({"extract", "make:kuhn:8:gyroid", "-i", "0", "--device", "software", "--precision", "double", "-v"});
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(run.err.find(
                   "note: the grid was packed in double precision, but the vulkan engine takes single precision only: "
@@ -82,7 +82,7 @@ TEST_F(ProgramOnDevice, RefusesWhatCannotBe) {
         more.insert(more.begin(), {"extract", "make:kuhn:8:gyroid", "-i", "0"});
         return isotet(more);
     };
-    RunResult run = extract({"--engine", "vulkan", "--device", "software", "--precision", "double"});
+    RunResult run = extract({"--engine", "vulkan", "--device", "software", "--precision", "double", "-v"});
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "packed in double precision"));
     run = extract({"--engine", "vulkan", "--device", "none"});

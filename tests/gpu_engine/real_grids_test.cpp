@@ -8,7 +8,7 @@
 namespace isotet::test {
 namespace {
 
-constexpr std::uint64_t most_forced_tets = 20'000;
+constexpr std::uint64_t max_forced_tets = 20'000;
 
 class RealGrids : public Engines {
 protected:
@@ -36,7 +36,7 @@ protected:
 
     /// Calls f(grid, packed) for every file with at most so many tets; returns how many there were.
     template <class F>
-    int for_grids(std::uint64_t most_tets, F&& f) {
+    int for_grids(std::uint64_t max_tets, F&& f) {
         int grids = 0;
         for (const GoldenFile& file : golden_files) {
             if (file.needs_vtk && !ISOTET_GOLDEN_VTK) continue;
@@ -44,7 +44,7 @@ protected:
             const Grid grid = read_golden(file.path).value().grid;
             PackedGrid packed =
                 pack(grid, find_field(grid, "x").value(), {.source_cells = true, .gradients = true}).value();
-            if (packed.report().tets > most_tets) continue;
+            if (packed.report().tets > max_tets) continue;
             f(grid, packed);
             ++grids;
         }
@@ -64,9 +64,9 @@ TEST_F(RealGrids, GiveTheSameBytesWithEverythingForcedAtOnce) {
     vulkan::Settings settings = watched();
     settings.force_staging = true;
     settings.staging_bytes = 10'000;
-    settings.groups_an_axis = 7;
+    settings.groups_per_axis = 7;
     reopen(settings);
-    const int grids = for_grids(most_forced_tets, [&](const Grid& grid, PackedGrid& packed) {
+    const int grids = for_grids(max_forced_tets, [&](const Grid& grid, PackedGrid& packed) {
         DeviceGrid on_device =
             DeviceGrid::upload(device(), packed, {.page_bytes = 30'000, .surface_bytes = {}}).value();
         expect_same_fields(grid, on_device);

@@ -39,7 +39,7 @@ TEST_F(Forced, StagingGivesTheSameBytes) {
 
 TEST_F(Forced, FoldingOfWorkgroupsGivesTheSameBytes) {
     vulkan::Settings settings = watched();
-    settings.groups_an_axis = 7;
+    settings.groups_per_axis = 7;
     reopen(settings);
     expect_same_on_a_nasty_grid();
 }
@@ -173,10 +173,10 @@ TEST_F(Forced, MoreThanCanBeNumberedIsRefusedWithTheNumber) {
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     const Surface expected = isotet::extract(packed, 0.7).value().surface;
     vulkan::Settings settings = watched();
-    settings.most_items = expected.triangle_count();
+    settings.max_items = expected.triangle_count();
     reopen(settings);
     EXPECT_TRUE(DeviceGrid::upload(device(), packed).value().extract(0.7));
-    --settings.most_items;
+    --settings.max_items;
     reopen(settings);
     DeviceGrid on_device = DeviceGrid::upload(device(), packed).value();
     const auto refused = on_device.extract(0.7);
@@ -185,7 +185,7 @@ TEST_F(Forced, MoreThanCanBeNumberedIsRefusedWithTheNumber) {
     EXPECT_EQ(refused.error().message, "the surface has " + std::to_string(expected.vertex_count()) + " vertices and " +
                                            std::to_string(expected.triangle_count()) +
                                            " triangles, but the vulkan engine can number " +
-                                           std::to_string(settings.most_items) + " of each");
+                                           std::to_string(settings.max_items) + " of each");
     EXPECT_EQ(on_device.extract(5).value().triangle_count(), 0u) << "the grid can still be used";
 }
 

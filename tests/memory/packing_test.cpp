@@ -11,7 +11,7 @@
 namespace isotet::test {
 namespace {
 
-double bytes_a_tet(const Grid& grid, int threads) {
+double bytes_per_tet(const Grid& grid, int threads) {
     core::drop_kept_blocks(); // what is kept from before would be used without being taken
     std::uint64_t tets = 0;
     const std::size_t peak =
@@ -22,12 +22,12 @@ double bytes_a_tet(const Grid& grid, int threads) {
 TEST(PackingMemory, StaysBelowFortyBytesATet) {
     for (const char* shape : {"kuhn", "shuffled", "layer"}) {
         const Grid grid = made_grid(shape, 52, {"gyroid"}); // over 800,000 tets
-        EXPECT_LE(bytes_a_tet(grid, 2), 40) << shape;
+        EXPECT_LE(bytes_per_tet(grid, 2), 40) << shape;
     }
 }
 
 TEST(PackingMemory, StaysBelowFortyBytesATetWithManyThreads) {
-    EXPECT_LE(bytes_a_tet(made_grid("kuhn", 72, {"gyroid"}), 64), 40); // 34 blocks, over two million tets
+    EXPECT_LE(bytes_per_tet(made_grid("kuhn", 72, {"gyroid"}), 64), 40); // 34 blocks, over two million tets
 }
 
 } // namespace

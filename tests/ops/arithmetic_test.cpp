@@ -170,7 +170,7 @@ TEST(RequireMemory, SaysWhatIsNeededAndWhatIsFree) {
     const auto refused = core::require_memory("a planet", std::uint64_t{1} << 60);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
-    EXPECT_EQ(refused.error().message.rfind("a planet needs 1152921504.6 GB, but ", 0), 0u) << refused.error().message;
+    EXPECT_EQ(refused.error().message.rfind("a planet needs 1152921.5 TB, but ", 0), 0u) << refused.error().message;
     EXPECT_EQ(core::format_bytes(999), "999 B");
     EXPECT_EQ(core::format_bytes(12300), "12.3 kB");
     EXPECT_EQ(core::format_bytes(12345678), "12.3 MB");

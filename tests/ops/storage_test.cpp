@@ -20,11 +20,11 @@ using core::Storage;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Doubles of all magnitudes, zeros and infinities among them, ascending.
-std::vector<double> wild_values(std::uint32_t seed, double least_power, double most_power) {
+std::vector<double> wild_values(std::uint32_t seed, double least_power, double max_power) {
     std::mt19937_64 random(seed);
     std::vector<double> values{0.0, -0.0, infinity, -infinity};
     for (int i = 0; i < 3000; ++i) {
-        const double power = std::uniform_real_distribution<double>(least_power, most_power)(random);
+        const double power = std::uniform_real_distribution<double>(least_power, max_power)(random);
         const double value = std::exp2(power) * (random() % 2 ? 1 : -1);
         values.insert(values.end(), {value, std::nextafter(value, infinity), value * (1 + 0x1p-30)});
     }

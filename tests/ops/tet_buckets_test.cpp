@@ -31,7 +31,7 @@ void expect_everything_comes_back(std::size_t ranks, std::size_t tets, std::size
             RankedTet tet;
             for (std::uint32_t& rank : tet) rank = static_cast<std::uint32_t>(random() % ranks);
             writer.put(tet, core::lowest_rank(tet), {i});
-            expected[core::lowest_rank(tet) / buckets.ranks_a_bucket()].push_back({tet, i});
+            expected[core::lowest_rank(tet) / buckets.ranks_per_bucket()].push_back({tet, i});
         }
     }
     std::vector<Dealt> all;

@@ -20,8 +20,8 @@ TEST_F(Pictures, ASphereCoversTheAreaOfItsShadow) {
     options_.background = {0, 0, 0, 0};
     options_.width = options_.height = 200;
     options_.camera.height = 1.25;
-    const double pixels_a_length = 200 / 1.25;
-    const double area = std::numbers::pi * 0.25 * pixels_a_length * pixels_a_length;
+    const double pixels_per_length = 200 / 1.25;
+    const double area = std::numbers::pi * 0.25 * pixels_per_length * pixels_per_length;
     EXPECT_NEAR(covered(draw()) / area, 1, 0.01);
 }
 

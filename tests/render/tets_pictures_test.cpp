@@ -127,7 +127,7 @@ TEST_F(TetPictures, AreTheSameWhereTheDeviceHasNoRoomForAllTets) {
         EXPECT_EQ(store.report().host_bytes, elsewhere);
         EXPECT_EQ(store.report().device_bytes + elsewhere, all_bytes);
         const TetSurface all = store.at(0.1).value();
-        EXPECT_EQ(all.bytes_a_picture(), elsewhere);
+        EXPECT_EQ(all.bytes_per_picture(), elsewhere);
         for (auto* known : {&opaque, &translucent}) {
             const Picture picture = drawn(all, known == &opaque ? 1 : 0.4);
             EXPECT_GE(renderer_->work().uploaded_bytes, elsewhere);
@@ -139,7 +139,7 @@ TEST_F(TetPictures, AreTheSameWhereTheDeviceHasNoRoomForAllTets) {
         // Of a page in which no tet is wanted nothing is sent.
         const std::vector<std::uint32_t> list{70'000, 65'536};
         const TetSurface two = store.at(0.1, list).value();
-        EXPECT_EQ(two.bytes_a_picture(), has_room ? 0 : page);
+        EXPECT_EQ(two.bytes_per_picture(), has_room ? 0 : page);
         EXPECT_LE(two.triangles().value().size(), 4u);
         EXPECT_TRUE(all.triangles().value().size() == extract(packed_, 0.1).value().surface.triangle_count());
     }

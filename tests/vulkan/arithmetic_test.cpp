@@ -96,7 +96,7 @@ protected:
     }
 };
 
-constexpr int most_units_off = 5;
+constexpr int max_units_off = 5;
 
 /// Pairs of 24-bit significands whose quotients lie as near as `nearness` steps can to the middle between two floats.
 void fill_hard(std::vector<float>& a, std::vector<float>& b, std::mt19937_64& random) {
@@ -138,7 +138,7 @@ TEST_F(DeviceArithmetic, CorrectsQuotientsThatAreOffByAFewUnits) {
     std::mt19937_64 random(2);
     std::vector<float> a(batch / 4), b(batch / 4);
     fill_hard(a, b, random);
-    for (int off = -most_units_off; off <= most_units_off; ++off) EXPECT_EQ(wrong_division(a, b, off), "");
+    for (int off = -max_units_off; off <= max_units_off; ++off) EXPECT_EQ(wrong_division(a, b, off), "");
     EXPECT_NE(wrong_division(a, b, 100), "") << "nothing corrects so much";
 }
 
@@ -158,7 +158,7 @@ TEST_F(DeviceArithmetic, DividesNumbersOfAnySizeAndSign) {
             b[i] = random() % 64 ? number() : a[i];
         } while (b[i] == 0 || std::isinf(a[i] / b[i]) || std::abs(a[i] / b[i]) == 0x1p-126f);
     }
-    for (const int off : {0, -most_units_off, most_units_off}) EXPECT_EQ(wrong_division(a, b, off), "");
+    for (const int off : {0, -max_units_off, max_units_off}) EXPECT_EQ(wrong_division(a, b, off), "");
 }
 
 TEST_F(DeviceArithmetic, RoundsTheRootOfEverySignificandAsTheProcessorDoes) {
@@ -168,7 +168,7 @@ TEST_F(DeviceArithmetic, RoundsTheRootOfEverySignificandAsTheProcessorDoes) {
 }
 
 TEST_F(DeviceArithmetic, CorrectsRootsThatAreOffByAFewUnits) {
-    for (int off = -most_units_off; off <= most_units_off; ++off) {
+    for (int off = -max_units_off; off <= max_units_off; ++off) {
         EXPECT_EQ(wrong_root(bits_of(1.0f), batch / 4, off), "");
         EXPECT_EQ(wrong_root(bits_of(2.0f) - batch / 8, batch / 4, off), "");
         EXPECT_EQ(wrong_root(bits_of(4.0f) - batch / 4, batch / 4, off), "");

@@ -99,7 +99,7 @@ TEST_F(CompiledPipelines, OfOtherBuildsGoWhenThereAreMany) {
     fs::last_write_time(of_this_build, fs::file_time_type::clock::now() - std::chrono::hours(100));
     EXPECT_GT(open(), 0u);
     for (std::size_t i = 0; i < others.size(); ++i)
-        EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::most_files)
+        EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::max_files)
             << "file " << i << " of others, newest first";
     EXPECT_TRUE(fs::exists(of_this_build)) << "it is the newest now";
     EXPECT_FALSE(fs::exists(killed));

@@ -88,7 +88,7 @@ TEST_F(Recording, TakesConstantsOfKernels) {
 
 TEST_F(Recording, FoldsManyWorkgroupsIntoShortAxes) {
     vulkan::Settings settings = watched();
-    settings.groups_an_axis = 7;
+    settings.groups_per_axis = 7;
     reopen(settings);
     for (const std::uint32_t count :
          {1u, 6 * 32u, 7 * 32u, 7 * 32u + 1, 49 * 32u, 49 * 32u + 1, 50 * 32u, 342 * 32u, 343 * 32u}) {

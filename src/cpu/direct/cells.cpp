@@ -20,7 +20,7 @@ namespace isotet::cpu::direct {
 
 namespace {
 
-constexpr std::size_t chunks_a_report = 1 << 10;
+constexpr std::size_t chunks_per_report = 1 << 10;
 
 using core::CellReader;
 
@@ -189,7 +189,7 @@ private:
 template <class Point>
 CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
     const CellReader& cells = context.input.cells;
-    const std::size_t chunks = (cells.count() + cells_a_chunk - 1) / cells_a_chunk;
+    const std::size_t chunks = (cells.count() + cells_per_chunk - 1) / cells_per_chunk;
     CutCells<Point> out;
     out.chunks.resize(chunks + 1);
     std::atomic<std::size_t> cutters{0};
@@ -198,7 +198,7 @@ CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
     const auto pass_chunk = [&](std::size_t chunk) {
         if (progress.cancelled() || context.broken.load(std::memory_order_relaxed)) return;
         Cutter<Point>& cutter = *local.local();
-        const std::size_t begin = chunk * cells_a_chunk, end = std::min(cells.count(), begin + cells_a_chunk);
+        const std::size_t begin = chunk * cells_per_chunk, end = std::min(cells.count(), begin + cells_per_chunk);
         cutter.begin(out.chunks[chunk], begin);
         ChunkPass<Point> pass(context, cutter);
         cells.connectivity().visit([&](const auto* corners) {
@@ -207,8 +207,8 @@ CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
         });
         if (!context.broken.load(std::memory_order_relaxed)) cutter.end();
     };
-    for (std::size_t first = 0; first < chunks; first += chunks_a_report) {
-        core::parallel_each(std::min(chunks_a_report, chunks - first), 1,
+    for (std::size_t first = 0; first < chunks; first += chunks_per_report) {
+        core::parallel_each(std::min(chunks_per_report, chunks - first), 1,
                             [&](std::size_t chunk) { pass_chunk(first + chunk); });
         if (progress.cancelled() || context.broken) break;
         progress("extract", static_cast<double>(first) / static_cast<double>(chunks));
@@ -222,7 +222,7 @@ template CutCells<std::uint32_t> cut_cells<std::uint32_t>(CutContext&, const Pro
 template CutCells<std::uint64_t> cut_cells<std::uint64_t>(CutContext&, const Progress&);
 
 void see_used_points(const CellReader& cells, Sides& sides) {
-    core::parallel_each(cells.count(), cells_a_chunk, [&](std::size_t cell) {
+    core::parallel_each(cells.count(), cells_per_chunk, [&](std::size_t cell) {
         for (const core::Tet& tet : cells.tets(cell))
             for (const std::uint64_t point : tet) sides.saw(point);
     });
@@ -230,7 +230,7 @@ void see_used_points(const CellReader& cells, Sides& sides) {
 
 std::uint64_t count_cut_tets(const CellReader& cells, const Sides& sides) {
     std::atomic<std::uint64_t> total{0};
-    core::parallel_ranges(cells.count(), cells_a_chunk, [&](std::size_t begin, std::size_t end) {
+    core::parallel_ranges(cells.count(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
         std::uint64_t count = 0;
         for (std::size_t cell = begin; cell < end; ++cell)
             for (const core::Tet& tet : cells.tets(cell)) {

@@ -9,12 +9,12 @@
 
 namespace isotet::cpu::direct {
 
-constexpr std::size_t cells_a_chunk = 1 << 15;
+constexpr std::size_t cells_per_chunk = 1 << 15;
 
 /// Edges found and polygons made of them, chunk by chunk.
 template <class Point>
 struct CutCells {
-    std::vector<Chunk<Point>> chunks; ///< and one more, with the totals, once they are counted up
+    std::vector<Chunk<Point>> chunks;                    ///< and one more, with the totals, once they are counted up
     std::vector<std::shared_ptr<Cutter<Point>>> cutters; ///< keep what the pieces point to
 
     CutCounts counts() const {

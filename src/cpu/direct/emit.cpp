@@ -9,7 +9,7 @@ namespace isotet::cpu::direct {
 
 namespace {
 
-constexpr std::size_t ranges_a_task = 4;
+constexpr std::size_t ranges_per_task = 4;
 
 template <class Real>
 struct Target {
@@ -42,7 +42,7 @@ void number_edges(const VertexSource<Real>& source, const Welded<Point>& welded,
                   Index* numbers, const Progress& progress) {
     constexpr std::uint64_t ahead =
         24; // edges: what is read while a higher end is waited for; lower ends follow each other
-    core::parallel_ranges(welded.first_edge.size() - 1, ranges_a_task, [&](std::size_t begin, std::size_t end) {
+    core::parallel_ranges(welded.first_edge.size() - 1, ranges_per_task, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
         std::uint64_t vertex = welded.first_vertex[begin];
         const FoundEdge<Point>* const edges = welded.edges.data();
@@ -73,7 +73,7 @@ void emit_triangles(const CutCells<Point>& cut, const Index* numbers, Index* tri
                 *out++ = a, *out++ = b, *out++ = d;
                 if (piece.triangles[i] == 2) *out++ = a, *out++ = d, *out++ = of_chunk[polygon[3]];
                 for (std::uint8_t t = 0; cell && t < piece.triangles[i]; ++t)
-                    *cell++ = static_cast<std::int64_t>(c * cells_a_chunk + piece.cells[i]);
+                    *cell++ = static_cast<std::int64_t>(c * cells_per_chunk + piece.cells[i]);
             }
     });
 }

@@ -52,14 +52,14 @@ private:
 
 struct Animation::Encoder {
     std::string path;
-    double seconds_a_picture = 0;
+    double seconds_per_picture = 0;
     std::unique_ptr<WebPAnimEncoder, DeleteEncoder> pictures; ///< made with the first one, whose size it has
     std::uint32_t width = 0, height = 0;
     std::uint64_t count = 0;
 
     /// When the next picture begins: no rounding adds up.
     int milliseconds() const {
-        return static_cast<int>(std::lround(1000 * seconds_a_picture * static_cast<double>(count)));
+        return static_cast<int>(std::lround(1000 * seconds_per_picture * static_cast<double>(count)));
     }
 
     Error failed() const {
@@ -81,7 +81,7 @@ Result<Animation> Animation::create(const std::string& path, double pictures_per
             fmt::format("{} pictures a second, but they must be above 0 and at most 100", pictures_per_second));
     auto encoder = std::make_unique<Encoder>();
     encoder->path = path;
-    encoder->seconds_a_picture = 1 / pictures_per_second;
+    encoder->seconds_per_picture = 1 / pictures_per_second;
     return Animation(std::move(encoder));
 }
 

@@ -24,7 +24,7 @@
 namespace isotet::io {
 namespace {
 
-constexpr std::uint64_t most_components = 1U << 20U;
+constexpr std::uint64_t max_components = 1U << 20U;
 constexpr std::size_t piece_values = std::size_t{1} << 18;
 
 /// A type of values, and how they are stored.
@@ -176,8 +176,8 @@ private:
     }
 
     Result<void> check_size(std::uint64_t tuples, std::uint64_t components, std::string_view what) const {
-        if (components == 0 || components > most_components)
-            return invalid_data(fmt::format("{} has {} components, not 1 to {}", what, components, most_components));
+        if (components == 0 || components > max_components)
+            return invalid_data(fmt::format("{} has {} components, not 1 to {}", what, components, max_components));
         if (tuples > std::numeric_limits<std::uint64_t>::max() / components / 8)
             return invalid_data(fmt::format("{}: {} tuples", what, tuples));
         return {};

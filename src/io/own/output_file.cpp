@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 20;
 constexpr std::size_t largest_write = std::size_t{1} << 30; // the kernel takes at most 2 GiB at once
-constexpr int most_links = 40;                              // as many as the kernel follows
-constexpr int most_names = 10000;
+constexpr int max_links = 40;                               // as many as the kernel follows
+constexpr int max_names = 10000;
 
 Error system_error(std::string_view path, std::string_view what, int number) {
     // Who has to act: a path that cannot be is the caller's business, all else the machine's.
@@ -42,7 +42,7 @@ std::pair<std::string, std::string> split_path(const std::string& path) {
 /// Follows symbolic links by hand, because the file at the end need not exist yet.
 Result<std::string> follow_links(const std::string& path) {
     std::string current = path;
-    for (int i = 0; i < most_links; ++i) {
+    for (int i = 0; i < max_links; ++i) {
         struct stat status{};
         if (::lstat(current.c_str(), &status) != 0) {
             if (errno == ENOENT) return current;
@@ -127,7 +127,7 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
     if (!out.folder_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
 
     static std::atomic<unsigned> counter{0};
-    for (int i = 0; i < most_names && !out.file_; ++i) {
+    for (int i = 0; i < max_names && !out.file_; ++i) {
         std::string candidate = fmt::format(".isotet-{}-{}.part", ::getpid(), counter++);
         // An old file's content may be private: nobody else may see the new one before it has the same bits.
         const mode_t mode = out.mode_ ? 0600 : 0666;

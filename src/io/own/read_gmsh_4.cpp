@@ -83,10 +83,10 @@ Result<Counts> read_counts(const Section& section, Source& source, const char* w
         !source.number(highest)) {
         return broken(section, fmt::format("has no numbers of blocks and {}s, at {}", what, source.where()));
     }
-    const std::uint64_t most_blocks = source.records_left(3, 1, 0), most = source.records_left(0, numbers, reals);
-    if (counts.blocks < 0 || static_cast<std::uint64_t>(counts.blocks) > most_blocks) {
+    const std::uint64_t max_blocks = source.records_left(3, 1, 0), most = source.records_left(0, numbers, reals);
+    if (counts.blocks < 0 || static_cast<std::uint64_t>(counts.blocks) > max_blocks) {
         return broken(section,
-                      fmt::format("states {} blocks, but there is room for {} at most", counts.blocks, most_blocks));
+                      fmt::format("states {} blocks, but there is room for {} at most", counts.blocks, max_blocks));
     }
     if (counts.total < 0 || static_cast<std::uint64_t>(counts.total) > most) {
         return broken(section,

@@ -81,11 +81,11 @@ Result<std::vector<DataSection>> data_sections(const File& file) {
         TextScanner scanner(section.body);
         if (!read_tags(scanner, data)) return broken(section, "has a broken list of tags at " + scanner.where());
         // Gmsh knows 1, 3 and 9; a limit keeps a broken file from asking for more memory than there is.
-        constexpr std::int32_t most_components = 64;
-        if (data.components < 1 || data.components > most_components || data.count < 0) {
+        constexpr std::int32_t max_components = 64;
+        if (data.components < 1 || data.components > max_components || data.count < 0) {
             return broken(section,
                           fmt::format("{} states {} components and {} values, but 1 to {} components are the rule",
-                                      in_quotes(data.name), data.components, data.count, most_components));
+                                      in_quotes(data.name), data.components, data.count, max_components));
         }
         scanner.next_line();
         data.values = scanner.position();

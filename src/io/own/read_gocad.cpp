@@ -61,9 +61,9 @@ public:
                 property.wanted = io::wanted(options_, association, property.name);
                 components += property.components;
             }
-            if (components > most_components) {
+            if (components > max_components) {
                 return broken("PROPERTIES", fmt::format("have {} components, but isotet takes {} at most", components,
-                                                        most_components));
+                                                        max_components));
             }
         }
         wants_volumes_ = io::wanted(options_, Association::cell, volume_name);
@@ -149,8 +149,8 @@ private:
         } else if (what == "ESIZES") {
             for (Property& property : properties) {
                 if (!scanner_.number_of_line(property.components) || property.components < 1 ||
-                    property.components > most_components) {
-                    return broken(keyword, fmt::format("has no size from 1 to {} for {}, at {}", most_components,
+                    property.components > max_components) {
+                    return broken(keyword, fmt::format("has no size from 1 to {} for {}, at {}", max_components,
                                                        in_quotes(property.name), scanner_.where()));
                 }
             }
@@ -337,7 +337,7 @@ private:
         if (another_) notes.emplace_back("the file holds more than one Gocad object: the first is read");
     }
 
-    static constexpr std::size_t most_components = 1000; ///< of all properties together
+    static constexpr std::size_t max_components = 1000; ///< of all properties together
     static constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
     static constexpr std::uint64_t unresolved = NumberMap::none;
 

@@ -63,7 +63,7 @@ bool read_reference(Source& source, std::vector<std::int32_t>* references) {
 class MeshReader {
 public:
     MeshReader(std::string_view bytes, const ReadOptions& options, const Progress& progress)
-        : options_(options), pace_(progress, bytes.size()), most_points_(bytes.size() / 4), cells_(most_points_) {}
+        : options_(options), pace_(progress, bytes.size()), max_points_(bytes.size() / 4), cells_(max_points_) {}
 
     template <class Source>
     Result<void> section(std::int32_t keyword, Source& source) {
@@ -131,7 +131,7 @@ private:
             for (std::uint32_t k = 0; k < kind.corners; ++k) {
                 std::int64_t number = 0;
                 if (!source.integer(number)) return missing(kind.keyword, *count, i, source);
-                if (number < 1 || static_cast<std::uint64_t>(number) > most_points_) {
+                if (number < 1 || static_cast<std::uint64_t>(number) > max_points_) {
                     return broken(kind.keyword,
                                   fmt::format("entry {} has vertex {}, but vertices are counted from 1{}", i + 1,
                                               number, has_vertices_ ? fmt::format(" to {}", count_) : ""));
@@ -146,7 +146,7 @@ private:
 
     const ReadOptions& options_;
     Pace pace_;
-    std::uint64_t most_points_; ///< no vertex takes fewer than 4 bytes
+    std::uint64_t max_points_; ///< no vertex takes fewer than 4 bytes
     int dimension_ = 0;
     bool has_vertices_ = false;
     std::uint64_t count_ = 0; ///< of vertices
@@ -192,10 +192,10 @@ private:
     Result<void> read_fields(Source& source) {
         std::int64_t count = 0, kinds = 0;
         if (!source.count(count)) return broken(sol_at_vertices, "has no count, at " + source.where());
-        constexpr std::int64_t most_kinds = 1000; // libMeshb's limit
-        if (!source.small(kinds) || kinds < 0 || kinds > most_kinds) {
+        constexpr std::int64_t max_kinds = 1000; // libMeshb's limit
+        if (!source.small(kinds) || kinds < 0 || kinds > max_kinds) {
             return broken(sol_at_vertices, fmt::format("states {} fields, but 0 to {} are the rule, at {}", kinds,
-                                                       most_kinds, source.where()));
+                                                       max_kinds, source.where()));
         }
         std::size_t components = 0;
         for (std::int64_t i = 0; i < kinds; ++i) {

@@ -15,7 +15,7 @@ namespace isotet {
 namespace io {
 namespace {
 
-constexpr png_uint_32 most_pixels_an_axis = 32768;
+constexpr png_uint_32 max_pixels_per_axis = 32768;
 
 /// libpng's state while it reads, given back whatever happens.
 struct Image {
@@ -38,9 +38,9 @@ Result<Picture> parse_picture(std::string_view bytes, const std::string& name) {
     };
     if (!png_image_begin_read_from_memory(&image.state, bytes.data(), bytes.size())) return broken(image.state.message);
     const std::uint32_t width = image.state.width, height = image.state.height;
-    if (width > most_pixels_an_axis || height > most_pixels_an_axis) {
+    if (width > max_pixels_per_axis || height > max_pixels_per_axis) {
         return Error{ErrorCode::invalid_data, fmt::format("{}: a picture of {} x {} pixels, but {} each are the most",
-                                                          name, width, height, most_pixels_an_axis)};
+                                                          name, width, height, max_pixels_per_axis)};
     }
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (!can_hold(bytes.size(), pixels))

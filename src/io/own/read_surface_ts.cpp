@@ -15,9 +15,9 @@
 namespace isotet::io {
 namespace {
 
-constexpr std::size_t most_property_components = 1U << 16U;
+constexpr std::size_t max_property_components = 1U << 16U;
 // Values that are not there, for each byte of the file: else a small file could fill any memory.
-constexpr std::uint64_t most_absent = 8;
+constexpr std::uint64_t max_absent = 8;
 
 struct PointProperty {
     std::string name;
@@ -31,7 +31,7 @@ struct PointProperty {
 class ObjectReader {
 public:
     ObjectReader(TextScanner& scanner, Pace& pace)
-        : scanner_(scanner), pace_(pace), absent_left_((scanner.position() + scanner.left()) * most_absent) {}
+        : scanner_(scanner), pace_(pace), absent_left_((scanner.position() + scanner.left()) * max_absent) {}
 
     Result<Surface> read() {
         for (;;) {
@@ -75,9 +75,9 @@ private:
             return invalid_data(fmt::format("{}: sizes of properties after the first vertex", scanner_.where()));
         for (auto& property : properties_) {
             if (!scanner_.number_of_line(property.components) || property.components == 0 ||
-                property.components > most_property_components) {
+                property.components > max_property_components) {
                 return invalid_data(
-                    fmt::format("{}: not the size of a property, 1 to {}", scanner_.where(), most_property_components));
+                    fmt::format("{}: not the size of a property, 1 to {}", scanner_.where(), max_property_components));
             }
         }
         return {};

@@ -62,7 +62,7 @@ private:
     bool started_ = false;
 };
 
-constexpr std::int64_t most_attributes = 10000;
+constexpr std::int64_t max_attributes = 10000;
 
 struct NodeHeader {
     std::int64_t count = 0, dimension = 3, attributes = 0, markers = 0;
@@ -77,10 +77,10 @@ Result<NodeHeader> read_header(RecordFile& file, NodeHeader header) {
     if (!line.at_line_end()) return file.broken("has a broken first line at " + line.where());
     if (header.dimension != 3)
         return file.broken(fmt::format("says dimension {}, but 3 is the rule", header.dimension));
-    if (header.attributes < 0 || header.attributes > most_attributes || header.markers < 0 || header.markers > 1) {
+    if (header.attributes < 0 || header.attributes > max_attributes || header.markers < 0 || header.markers > 1) {
         return file.broken(
             fmt::format("says {} attributes and {} boundary markers, but 0 to {} and 0 or 1 are the rule",
-                        header.attributes, header.markers, most_attributes));
+                        header.attributes, header.markers, max_attributes));
     }
     if (auto room = file.check_count(header.count, 4 + header.attributes); !room) return room.error();
     return header;
@@ -98,9 +98,9 @@ Result<ElementHeader> read_header(RecordFile& file, ElementHeader header) {
     if (header.nodes != 4 && header.nodes != 10) {
         return file.broken(fmt::format("says {} nodes a tet, but 4 or 10 is the rule", header.nodes));
     }
-    if (header.attributes < 0 || header.attributes > most_attributes) {
+    if (header.attributes < 0 || header.attributes > max_attributes) {
         return file.broken(
-            fmt::format("says {} attributes, but 0 to {} are the rule", header.attributes, most_attributes));
+            fmt::format("says {} attributes, but 0 to {} are the rule", header.attributes, max_attributes));
     }
     if (auto room = file.check_count(header.count, 1 + header.nodes + header.attributes); !room) return room.error();
     return header;

@@ -25,7 +25,7 @@ extern char** environ;
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::size_t most_output = 4096;
+constexpr std::size_t max_output = 4096;
 
 struct Pipe {
     Descriptor read_end, write_end;
@@ -162,7 +162,7 @@ private:
     void read_pipes() {
         if (output_ && !drain(output_.number(), [&](std::string_view text) {
                 outcome_.last_output.append(text);
-                if (outcome_.last_output.size() > 2 * most_output) trim();
+                if (outcome_.last_output.size() > 2 * max_output) trim();
             }))
             output_.reset();
         if (status_ && !drain(status_.number(), [&](std::string_view bytes) {
@@ -175,7 +175,7 @@ private:
         else if (byte <= 100) progress_("read", byte / 100.0);
     }
     void trim() {
-        outcome_.last_output.erase(0, outcome_.last_output.size() - std::min(outcome_.last_output.size(), most_output));
+        outcome_.last_output.erase(0, outcome_.last_output.size() - std::min(outcome_.last_output.size(), max_output));
     }
 
     bool ended(int flags) {

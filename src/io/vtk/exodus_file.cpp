@@ -11,7 +11,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint64_t most_plausible = std::uint64_t(1) << 48; // more than any file can hold
+constexpr std::uint64_t max_plausible = std::uint64_t(1) << 48; // more than any file can hold
 
 /// What to call with `visit` for the file's floating-point type.
 template <class Visit>
@@ -68,7 +68,7 @@ Result<void> ExodusFile::read_contents() {
     ex_init_params counts{};
     if (ex_get_init_ext(number_, &counts) < 0) return failed("the list of contents");
     for (const std::int64_t count : {counts.num_dim, counts.num_nodes, counts.num_elem, counts.num_elem_blk})
-        if (count < 0 || static_cast<std::uint64_t>(count) > most_plausible)
+        if (count < 0 || static_cast<std::uint64_t>(count) > max_plausible)
             return failed(fmt::format("a count of {}", count));
     if (counts.num_dim < 1 || counts.num_dim > 3) return failed(fmt::format("a grid of {} dimensions", counts.num_dim));
     dimensions_ = static_cast<std::uint64_t>(counts.num_dim);
@@ -104,8 +104,8 @@ Result<void> ExodusFile::read_blocks(std::size_t count) {
         block.type = EX_ELEM_BLOCK;
         if (ex_get_block_param(number_, &block) < 0) return failed(fmt::format("element block {}", id));
         if (block.num_entry < 0 || block.num_nodes_per_entry < 0 ||
-            static_cast<std::uint64_t>(block.num_entry) > most_plausible ||
-            static_cast<std::uint64_t>(block.num_nodes_per_entry) > most_plausible)
+            static_cast<std::uint64_t>(block.num_entry) > max_plausible ||
+            static_cast<std::uint64_t>(block.num_nodes_per_entry) > max_plausible)
             return failed(fmt::format("element block {} of {} elements with {} nodes", id, block.num_entry,
                                       block.num_nodes_per_entry));
         Block result;

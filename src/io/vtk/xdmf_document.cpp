@@ -15,7 +15,7 @@ namespace isotet::io::vtk {
 namespace {
 
 constexpr int deepest = 16; ///< collections in collections, references to references
-constexpr std::size_t most_visited = 1000000;
+constexpr std::size_t max_visited = 1000000;
 
 /// <!ENTITY name "text"> of the DOCTYPE. Their text is taken as it is: an entity in an entity, with which a small file
 /// could become a huge one, stays unreplaced.
@@ -121,7 +121,7 @@ pugi::xml_node XdmfDocument::resolve(pugi::xml_node node) const {
 
 Result<void> XdmfDocument::gather(pugi::xml_node parent, int depth) {
     if (depth > deepest) return broken(path_, fmt::format("grids are nested more than {} deep", deepest));
-    if (++visited_ > most_visited) return broken(path_, "its grids refer to each other without end");
+    if (++visited_ > max_visited) return broken(path_, "its grids refer to each other without end");
     for (const pugi::xml_node stated : parent.children("Grid")) {
         const pugi::xml_node grid = resolve(stated);
         if (!grid)

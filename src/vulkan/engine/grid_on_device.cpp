@@ -106,7 +106,7 @@ Result<void> GridOnDevice::run_and_read_heads(Recorder& recorder, std::span<Task
 Result<void> GridOnDevice::make_room(SurfaceBuffers& surface) {
     const std::uint64_t vertices = wide(surface.result.vertices_low, surface.result.vertices_high);
     const std::uint64_t triangles = wide(surface.result.triangles_low, surface.result.triangles_high);
-    const std::uint64_t most = context_->settings().most_items;
+    const std::uint64_t most = context_->settings().max_items;
     if (std::max(vertices, triangles) > most)
         return Error{
             ErrorCode::invalid_argument,

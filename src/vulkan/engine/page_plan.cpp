@@ -144,7 +144,7 @@ private:
 } // namespace
 
 std::vector<PlannedPage> plan_pages(const Packed& packed, std::uint64_t page_bytes) {
-    std::vector<PlannedPage> pages = cut(packed, std::min(page_bytes, most_page_bytes));
+    std::vector<PlannedPage> pages = cut(packed, std::min(page_bytes, max_page_bytes));
     core::parallel_each(pages.size(), 1, [&](std::size_t i) {
         pages[i].halo = find_halo(packed, pages[i]);
         place_arrays(packed, pages[i]);

@@ -14,13 +14,13 @@ namespace isotet::vulkan {
 
 struct PlannedPage {
     std::uint32_t first_cluster = 0, clusters = 0;
-    std::uint64_t first_link = 0;        ///< of the packed grid
-    std::uint32_t link_words = 0;        ///< of the packed grid; on the device there is one more a neighbour
+    std::uint64_t first_link = 0; ///< of the packed grid
+    std::uint32_t link_words = 0; ///< of the packed grid; on the device there is one more a neighbour
     std::uint32_t neighbours = 0;
     std::uint32_t groups = 0;
-    core::Buffer<std::uint32_t> halo;    ///< packed points, ascending
-    layout::Page layout{};               ///< all but `data` and `batch`
-    std::uint32_t words = 0;             ///< all of it
+    core::Buffer<std::uint32_t> halo; ///< packed points, ascending
+    layout::Page layout{};            ///< all but `data` and `batch`
+    std::uint32_t words = 0;          ///< all of it
 
     std::uint64_t bytes() const { return std::uint64_t{4} * words; }
     std::uint32_t end_cluster() const { return first_cluster + clusters; }
@@ -28,9 +28,9 @@ struct PlannedPage {
 };
 
 /// Words of a page are numbered by 32 bits, and by signed ones in kernels.
-constexpr std::uint64_t most_page_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t max_page_bytes = std::uint64_t{1} << 30;
 
-/// Pages of about `page_bytes`, most_page_bytes at most, each of one cluster at least, halos beside.
+/// Pages of about `page_bytes`, max_page_bytes at most, each of one cluster at least, halos beside.
 ///
 /// `packed`     single precision, fewer than 2^32 points
 /// Cost         O(C + foreign points); parallel

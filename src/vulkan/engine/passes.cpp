@@ -54,7 +54,7 @@ Result<Passes> Passes::make(Context& context, const Resident& resident, const Su
 }
 
 Result<void> Passes::make_emit_many(Context& context) {
-    auto kernel = emit_kernel(context, layout::most_edges);
+    auto kernel = emit_kernel(context, layout::max_edges);
     if (!kernel) return std::move(kernel).error();
     emit_many_ = *kernel;
     return {};

@@ -98,7 +98,7 @@ Result<void> Resident::upload_tables(Context& context, const core::Packed& packe
     t.emitted = address_of(emitted);
     t.lists = address_of(lists);
     t.cluster_count = static_cast<std::uint32_t>(sizes_.clusters);
-    t.groups_an_axis = context.groups_an_axis();
+    t.groups_per_axis = context.groups_per_axis();
     t.any_no_data = packed.field_report.no_data > 0;
     return context.staging().upload(tables, 0, std::as_bytes(std::span(&t, 1)));
 }

@@ -12,7 +12,7 @@ namespace isotet::vulkan {
 namespace {
 
 constexpr std::uint64_t vector_bytes = 12, word_bytes = 4;
-constexpr std::size_t numbers_a_task = 1 << 15;
+constexpr std::size_t numbers_per_task = 1 << 15;
 
 template <class T>
 Result<core::Buffer<T>> download_array(Context& context, const Buffer& from, std::uint64_t count) {
@@ -30,7 +30,7 @@ Result<void> fetch_numbers(Context& context, Array& to, const Buffer& from, std:
     auto packed = download_array<std::uint32_t>(context, from, tuples * components);
     if (!packed) return packed.error();
     core::Buffer<std::int64_t> out(packed->size());
-    core::parallel_each(out.size(), numbers_a_task,
+    core::parallel_each(out.size(), numbers_per_task,
                         [&](std::size_t i) { out[i] = static_cast<std::int64_t>(number((*packed)[i])); });
     to = std::move(out).to_array(components);
     return {};

@@ -11,7 +11,7 @@
 #include "shared/lists.glsl"
 #include "shared/cut.glsl"
 
-layout(constant_id = 0) const uint edge_room = 1024; ///< few_edges or most_edges: which of the two lists is worked through
+layout(constant_id = 0) const uint edge_room = 1024; ///< few_edges or max_edges: which of the two lists is worked through
 layout(constant_id = 1) const bool with_ends = false;
 layout(constant_id = 2) const bool with_normals = false;
 layout(constant_id = 3) const bool with_sources = false;

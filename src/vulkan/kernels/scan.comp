@@ -53,8 +53,8 @@ void write_totals() {
     if (!fits) vertices = triangles = 0u;
     // One draw takes 2^32 - 1 indices at most.
     head.surface.draw = DrawArguments(3u * min(triangles, 0xffffffffu / 3u), 1u, 0u, 0u, 0u);
-    const uvec3 of_vertices = fold_groups((vertices + workgroup_size - 1u) / workgroup_size, tables.groups_an_axis);
-    const uvec3 of_triangles = fold_groups((triangles + workgroup_size - 1u) / workgroup_size, tables.groups_an_axis);
+    const uvec3 of_vertices = fold_groups((vertices + workgroup_size - 1u) / workgroup_size, tables.groups_per_axis);
+    const uvec3 of_triangles = fold_groups((triangles + workgroup_size - 1u) / workgroup_size, tables.groups_per_axis);
     head.surface.vertex_groups_x = of_vertices.x;
     head.surface.vertex_groups_y = of_vertices.y;
     head.surface.vertex_groups_z = of_vertices.z;
@@ -86,8 +86,8 @@ void list_cluster(uint number, bool has_output, bool has_many) {
     if (has_output) place = has_many ? atomicAdd(many, 1u) : atomicAdd(few, 1u);
     barrier();
     if (gl_LocalInvocationIndex == 0u) {
-        if (few != 0u) few_place = grow_list(list_head(tables, few_edges_list), few, tables.groups_an_axis);
-        if (many != 0u) many_place = grow_list(list_head(tables, many_edges_list), many, tables.groups_an_axis);
+        if (few != 0u) few_place = grow_list(list_head(tables, few_edges_list), few, tables.groups_per_axis);
+        if (many != 0u) many_place = grow_list(list_head(tables, many_edges_list), many, tables.groups_per_axis);
     }
     barrier();
     if (!has_output) return;

@@ -40,7 +40,7 @@ void main() {
     if (selected) place = atomicAdd(found, 1u);
     barrier();
     if (found == 0u) return;
-    if (self == 0u) first_place = grow_list(list_head(tables, selected_list), found, tables.groups_an_axis);
+    if (self == 0u) first_place = grow_list(list_head(tables, selected_list), found, tables.groups_per_axis);
     barrier();
     if (!selected) return;
     Words(tables.selected).at[first_place + place] = number;

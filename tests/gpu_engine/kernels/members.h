@@ -37,7 +37,7 @@
     M(a_tables, Tables, no_data) M(a_tables, Tables, masks) M(a_tables, Tables, counts) \
     M(a_tables, Tables, segments) M(a_tables, Tables, blocks) M(a_tables, Tables, starts) \
     M(a_tables, Tables, selected) M(a_tables, Tables, emitted) M(a_tables, Tables, lists) \
-    M(a_tables, Tables, cluster_count) M(a_tables, Tables, groups_an_axis) M(a_tables, Tables, any_no_data) \
+    M(a_tables, Tables, cluster_count) M(a_tables, Tables, groups_per_axis) M(a_tables, Tables, any_no_data) \
     M(a_lists, Lists, selected.count) M(a_lists, Lists, selected.groups_x) M(a_lists, Lists, selected.groups_y) \
     M(a_lists, Lists, selected.groups_z) M(a_lists, Lists, few_edges.count) M(a_lists, Lists, few_edges.groups_x) \
     M(a_lists, Lists, few_edges.groups_y) M(a_lists, Lists, few_edges.groups_z) M(a_lists, Lists, many_edges.count) \

@@ -14,7 +14,7 @@
 namespace isotet::io::vtk_xml {
 namespace {
 
-constexpr std::size_t most_components = 1U << 20U;
+constexpr std::size_t max_components = 1U << 20U;
 constexpr std::size_t tail_bytes = 4096;
 
 struct TypeName {
@@ -134,9 +134,9 @@ Result<std::optional<DataArray>> describe_array(const Document& document, const 
     array.type = known->type;
     array.bits = type == "Bit";
     const std::string_view components = element.attribute("NumberOfComponents").as_string("1");
-    if (!parse_number(components, array.components) || array.components == 0 || array.components > most_components)
+    if (!parse_number(components, array.components) || array.components == 0 || array.components > max_components)
         return wrong(array.name,
-                     fmt::format("it has {} components, not 1 to {}", in_quotes(components), most_components));
+                     fmt::format("it has {} components, not 1 to {}", in_quotes(components), max_components));
     const std::string_view form = element.attribute("format").as_string("ascii");
     if (form == "appended") {
         if (auto placed = place_appended(document, element, array); !placed) return placed.error();

@@ -14,7 +14,7 @@ namespace isotet::io::vtk_xml {
 namespace {
 
 constexpr std::size_t window_bytes = std::size_t{1} << 20;
-constexpr std::size_t most_bytes = std::size_t{64} << 20; ///< of tags
+constexpr std::size_t max_bytes = std::size_t{64} << 20; ///< of tags
 
 /// Goes through the source window by window.
 class Walk {
@@ -85,8 +85,8 @@ private:
         for (bool first = true;; first = false) {
             if (!next(c)) return failed(open, "it never ends");
             if (!first && !quote && c == '<') return failed(open, "a tag inside a tag");
-            if (outline_.text.size() >= most_bytes)
-                return invalid_data(fmt::format("there are more than {} bytes of tags", most_bytes));
+            if (outline_.text.size() >= max_bytes)
+                return invalid_data(fmt::format("there are more than {} bytes of tags", max_bytes));
             outline_.text += c;
             if (quote) quote = c == quote ? '\0' : quote;
             else if (c == '"' || c == '\'') quote = c;

@@ -19,7 +19,7 @@ const float component_floor = 9.094947017729282379150390625e-13;    ///< 2^-40, 
 #endif
 
 /// They are nearer to the exact ones than so many units; the self-test notices when they are not.
-const uint most_corrections = 16u;
+const uint max_corrections = 16u;
 
 /// Not-a-number by its bits: comparisons may be compiled away.
 bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
@@ -45,7 +45,7 @@ float divide(float a, float b) {
     // neighbours can never be equally near: an odd number of 25 bits times the divisor is no multiple of 2^24.
     uint quotient = uint(ISOTET_DEVICE_QUOTIENT(float(dividend), float(divisor)) * 8388608.0);
     int remainder = int((dividend << 23) - quotient * divisor);
-    for (uint i = 0u; i < most_corrections; ++i) {
+    for (uint i = 0u; i < max_corrections; ++i) {
         if (2 * remainder > int(divisor)) {
             ++quotient;
             remainder -= int(divisor);
@@ -70,7 +70,7 @@ float root(float x) {
     // side = square root of square * 2^23, from 2^23 to 2^24.
     uint side = uint(ISOTET_DEVICE_ROOT(float(square) * 1.1920928955078125e-7) * 8388608.0);
     int remainder = int((square << 23) - side * side);
-    for (uint i = 0u; i < most_corrections; ++i) {
+    for (uint i = 0u; i < max_corrections; ++i) {
         if (remainder > int(side)) {
             remainder -= int(2u * side + 1u);
             ++side;

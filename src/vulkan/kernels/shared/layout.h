@@ -41,7 +41,7 @@ ISOTET_CONSTANT tied_words = 4u;             ///< of a cluster's masks, before t
 ISOTET_CONSTANT segment_clusters = 128u;     ///< a workgroup of select and scan
 ISOTET_CONSTANT block_segments = 128u;
 ISOTET_CONSTANT few_edges = 1024u;           ///< crossed edges of a cluster that the smaller emit kernel has room for
-ISOTET_CONSTANT most_edges = 4096u;          ///< crossed edges that a cluster can have: 64 points below, 64 above
+ISOTET_CONSTANT max_edges = 4096u;          ///< crossed edges that a cluster can have: 64 points below, 64 above
 
 /// Marching tetrahedra by which corners are above (core/case_table.hpp): four crossed edges, each corner above + 4 *
 /// corner below, in 4 bits; then the number of triangles. engine/layout.hpp checks them against the table.
@@ -123,7 +123,7 @@ struct Tables {
     Address emitted;    ///< list of those with output: few edges from the front, many edges from the back
     Address lists;      ///< Lists
     uint cluster_count;
-    uint groups_an_axis;
+    uint groups_per_axis;
     uint any_no_data;   ///< some point has none
 };
 

@@ -18,12 +18,12 @@ ListHeadAt list_head(Tables tables, uint list) { return ListHeadAt(advance(table
 
 /// Makes room for `items` more; returns the place of the first. The groups are grown by maxima: whoever makes the last room
 /// sees the whole count, whatever the order.
-uint grow_list(ListHeadAt list, uint items, uint groups_an_axis) {
+uint grow_list(ListHeadAt list, uint items, uint groups_per_axis) {
     const uint place = atomicAdd(list.head.count, items);
     const uint last = place + items - 1u;
-    atomicMax(list.head.groups_x, min(last, groups_an_axis - 1u) + 1u);
-    atomicMax(list.head.groups_y, min(last / groups_an_axis, groups_an_axis - 1u) + 1u);
-    atomicMax(list.head.groups_z, last / groups_an_axis / groups_an_axis + 1u);
+    atomicMax(list.head.groups_x, min(last, groups_per_axis - 1u) + 1u);
+    atomicMax(list.head.groups_y, min(last / groups_per_axis, groups_per_axis - 1u) + 1u);
+    atomicMax(list.head.groups_z, last / groups_per_axis / groups_per_axis + 1u);
     return place;
 }
 
