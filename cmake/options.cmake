@@ -42,9 +42,9 @@ function(isotet_target target)
         target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
     endif()
     if(ISOTET_WERROR)
-        # g++ 12 suspects its own AVX-512 intrinsics (GCC bug 105593) and strings (GCC bug 105651).
+        # g++ 12 suspects its own AVX-512 intrinsics (GCC bug 105593), strings (GCC bug 105651) and variants that are moved.
         target_compile_options(${target} PRIVATE -Werror
-            "$<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized;-Wno-error=restrict>"
+            "$<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized;-Wno-error=restrict;-Wno-error=free-nonheap-object>"
             $<$<CXX_COMPILER_ID:Clang>:-Wno-error=deprecated-declarations>)
     endif()
     if(ISOTET_SANITIZE)

@@ -16,7 +16,7 @@ using ExtractDirect = Result<DirectExtraction> (*)(const Grid&, const PointField
 /// A handle on the grid is all that the CPU needs.
 class GridInMemory final : public EngineGrid {
 public:
-    GridInMemory(PackedGrid packed, ExtractPacked extract) : packed_(std::move(packed)), extract_(extract) {}
+    GridInMemory(const PackedGrid& grid, ExtractPacked by) : packed_(grid), extract_(by) {}
 
     const PackedGrid& packed() const noexcept override { return packed_; }
 
@@ -44,8 +44,8 @@ private:
 
 class EngineInMemory final : public Engine {
 public:
-    EngineInMemory(std::string_view name, ExtractPacked extract, ExtractDirect extract_direct)
-        : name_(name), extract_(extract), extract_direct_(extract_direct) {}
+    EngineInMemory(std::string_view name, ExtractPacked packed, ExtractDirect direct)
+        : name_(name), extract_(packed), extract_direct_(direct) {}
 
     std::string_view name() const noexcept override { return name_; }
     bool is_stateless() const noexcept override { return true; }

@@ -101,7 +101,8 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}}, carrying = plain;
     if (by_points) carrying.point_fields.push_back({look.colors->name, look.colors->values});
     if (by_cells) carrying.cell_fields.push_back({look.colors->name, look.colors->values});
-    const bool card = device.info().kind != DeviceKind::software && options.method != Method::direct;
+    const bool card = device.info().kind != DeviceKind::software &&
+                      options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
     required = wanted.where == ExtractOn::device;
     const bool use_device = !wanted.draw && (required || (card && wanted.where == ExtractOn::best));
     if (use_device) {
@@ -109,7 +110,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         options.engine_required = required;
         options.edge_ends = by_points;
         options.source_cells = by_cells;
-        without_device = std::move(carrying);
+        without_device = carrying;
     }
     Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options);
     if (!created) return created.error();
