@@ -287,16 +287,16 @@ std::string legacy_error(std::string_view text) {
 }
 
 TEST(LegacyVtkGrid, NamesWhatIsWrong) {
-    const std::string head =
+    const std::string beginning =
         "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
-    EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"), "no error");
-    EXPECT_EQ(legacy_error(head + "CELLS 2 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"),
+    EXPECT_EQ(legacy_error(beginning + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"), "no error");
+    EXPECT_EQ(legacy_error(beginning + "CELLS 2 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"),
               "cells: cell 1 of 2 does not fit into the 5 numbers");
-    EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"),
+    EXPECT_EQ(legacy_error(beginning + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n"),
               "there are 1 cells, but 2 cell types");
-    EXPECT_EQ(legacy_error(head + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n256\n"),
+    EXPECT_EQ(legacy_error(beginning + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n256\n"),
               "CELL_TYPES: a type is not between 0 and 255");
-    EXPECT_EQ(legacy_error(head + "CELLS 1 500000000000\n4 0 1 2 3\n"),
+    EXPECT_EQ(legacy_error(beginning + "CELLS 1 500000000000\n4 0 1 2 3\n"),
               "cells: 500000000000 x 1 numbers were announced, but only 11 bytes are left");
     EXPECT_EQ(
         legacy_error("# vtk DataFile Version 3.0\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4000000000 double\n"),
