@@ -109,7 +109,7 @@ void expect_same_once(const Grid& grid, const PointField& field, const Result<Pa
     }
     const Extraction &a = once->surfaces[0], &b = reference->surfaces[0];
     expect(test::bytes_of(a.surface) == test::bytes_of(b.surface));
-    const auto clusters = extract(*packed, isovalue, {.ties = ties}, run);
+    const auto clusters = extract(*packed, isovalue, options.extract, run);
     expect(clusters && clusters->surface.vertex_count() == a.surface.vertex_count() &&
            clusters->report.tied_points == a.report.tied_points);
 }
