@@ -18,7 +18,7 @@ namespace isotet {
 
 enum class Ties : std::uint8_t {
     merge, ///< default mode: vertices on edges that meet in a tied point are one vertex; no zero-area triangles at ties
-    keep,  ///< kept mode (`keep_degenerate`): every crossed edge gives a vertex, every cut tet one or two triangles
+    keep,  ///< kept mode (`keep_degenerate`): every active edge gives a vertex, every active tet one or two triangles
 };
 
 struct ExtractOptions {
@@ -59,7 +59,7 @@ struct Extraction {
 /// `packed`     C clusters; borrowed, must outlive the call
 /// `isovalue`   in the unit of the field; finite
 ///
-/// Guarantees   every crossed edge gives one vertex; the surface is closed except on boundary faces of the valid tets;
+/// Guarantees   every active edge gives one vertex; the surface is closed except on boundary faces of the valid tets;
 ///              the same bytes for any thread count and on every engine
 /// Cost         O(C + V + F); transient memory at most 48 bytes a triangle, 100 a selected cluster, 16 a cluster, 1 MB
 ///              a thread

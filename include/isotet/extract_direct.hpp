@@ -24,8 +24,8 @@ struct DirectExtraction {
     std::vector<Extraction> surfaces; ///< in the order of the isovalues; no clusters are selected
     FieldReport field;
     std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
-    std::uint64_t coarse_tets = 0;    ///< cut tets (of all isovalues) where rounding to float32 moves a corner by over
-                                      ///< a thousandth of the shortest edge
+    std::uint64_t coarse_tets = 0; ///< active tets (of all isovalues) where rounding to float32 moves a corner by over
+                                   ///< a thousandth of the shortest edge
 };
 
 /// Extracts surfaces straight from the arrays of a grid; nothing is kept. For one isovalue or a few: many are faster

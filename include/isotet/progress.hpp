@@ -5,11 +5,10 @@
 #include <functional>
 #include <string_view>
 
-
 namespace isotet {
 
 /// How a long operation tells how far it is, and how it is told to stop. Every operation that can last over a second
-/// takes one; a default-made Progress reports to nobody and is never cancelled.
+/// takes one; a default-made Progress reports nothing and is never cancelled.
 struct Progress {
     /// Called with the step ("read", "pack", "extract", "write") and the fraction done, 0 to 1.
     /// It may be called from any thread of the operation, one call at a time, and within a step the fraction never

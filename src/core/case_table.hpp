@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Marching tetrahedra: which triangles a tet gives, by which of its corners are above.
 //
-// A corner of a triangle lies on a crossed edge, written (corner above, corner below). Triangles are counter-clockwise
+// A corner of a triangle lies on an active edge, written (corner above, corner below). Triangles are counter-clockwise
 // seen from above, for an upright tet. A quadrilateral is cut from its vertex between the first above and the first
 // below corner, so that a case and its complement have the same diagonal.
 #pragma once
@@ -11,14 +11,14 @@
 
 namespace isotet::core {
 
-struct CrossedEdge {
+struct ActiveEdge {
     std::uint8_t above = 0, below = 0; ///< corners of the tet, 0 to 3
 };
 
 struct TetCase {
-    std::uint8_t edges = 0;                ///< crossed edges: 0, 3 or 4
-    std::uint8_t triangles = 0;            ///< 0, 1 or 2: (0, 1, 2) and (0, 2, 3) of `polygon`
-    std::array<CrossedEdge, 4> polygon{};  ///< the crossed edges, around; the fourth repeats the third when there are 3
+    std::uint8_t edges = 0;              ///< active edges: 0, 3 or 4
+    std::uint8_t triangles = 0;          ///< 0, 1 or 2: (0, 1, 2) and (0, 2, 3) of `polygon`
+    std::array<ActiveEdge, 4> polygon{}; ///< the active edges, around; the fourth repeats the third when there are 3
 };
 
 /// Corner k of the triangle t is polygon[triangle_corners[t][k]].
@@ -46,16 +46,16 @@ constexpr std::array<TetCase, 16> make_case_table() {
 
         TetCase& c = table[index];
         if (a == 2) {
-            const CrossedEdge first{above[0], below[0]}, other_above{above[1], below[0]}, opposite{above[1], below[1]},
+            const ActiveEdge first{above[0], below[0]}, other_above{above[1], below[0]}, opposite{above[1], below[1]},
                 other_below{above[0], below[1]};
             c.edges = 4;
             c.triangles = 2;
             c.polygon = odd ? std::array{first, other_below, opposite, other_above}
                             : std::array{first, other_above, opposite, other_below};
         } else {
-            std::array<CrossedEdge, 3> e{};
+            std::array<ActiveEdge, 3> e{};
             for (unsigned k = 0; k < 3; ++k)
-                e[k] = lone_below ? CrossedEdge{above[k], below[0]} : CrossedEdge{above[0], below[k]};
+                e[k] = lone_below ? ActiveEdge{above[k], below[0]} : ActiveEdge{above[0], below[k]};
             const bool swap = lone_below == odd;
             c.edges = 3;
             c.triangles = 1;

@@ -27,16 +27,15 @@ struct Borrowers {
 
     explicit Borrowers(const Packed& packed) : first(packed.clusters() + 1, 0) {
         for (std::size_t c = 0; c < packed.clusters(); ++c)
-            for (const Neighbour& n : packed.cluster_links(c).neighbours) first[n.cluster + 1] += n.foreign_points > 0;
+            for (const Neighbour& n : packed.cluster_links(c).neighbours) first[n.cluster + 1] += n.ghost_points > 0;
         for (std::size_t c = 0; c < packed.clusters(); ++c) first[c + 1] += first[c];
         list.resize(first.back());
         auto next = first;
         for (std::size_t c = 0; c < packed.clusters(); ++c) {
             std::uint16_t local = 0;
             for (const Neighbour& n : packed.cluster_links(c).neighbours) {
-                if (n.foreign_points)
-                    list[next[n.cluster]++] = {static_cast<std::uint32_t>(c), local, n.foreign_points};
-                local = static_cast<std::uint16_t>(local + n.foreign_points);
+                if (n.ghost_points) list[next[n.cluster]++] = {static_cast<std::uint32_t>(c), local, n.ghost_points};
+                local = static_cast<std::uint16_t>(local + n.ghost_points);
             }
         }
     }
@@ -56,16 +55,16 @@ private:
     void one_cluster(std::size_t c) {
         const ClusterHeader& h = packed_.headers[c];
         Point sums[max_cluster_points] = {};
-        add_tets(c, h.foreign_points, h.own_points, sums);
+        add_tets(c, h.ghost_points, h.own_points, sums);
         for (std::uint64_t i = borrowers_.first[c]; i < borrowers_.first[c + 1]; ++i) {
             const Borrower& borrower = borrowers_.list[i];
             Point borrowed[max_cluster_points];
             const auto links = packed_.cluster_links(borrower.cluster);
             for (std::size_t k = 0; k < borrower.points; ++k)
-                borrowed[k] = sums[links.foreign_points[borrower.first_local + k]];
+                borrowed[k] = sums[links.ghost_points[borrower.first_local + k]];
             add_tets(borrower.cluster, borrower.first_local, borrower.points, borrowed);
             for (std::size_t k = 0; k < borrower.points; ++k)
-                sums[links.foreign_points[borrower.first_local + k]] = borrowed[k];
+                sums[links.ghost_points[borrower.first_local + k]] = borrowed[k];
         }
         for (std::size_t k = 0; k < h.own_points; ++k) packed_.gradients[h.first_point + k] = encode_normal(sums[k]);
     }

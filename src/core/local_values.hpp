@@ -19,25 +19,25 @@ public:
         const ClusterLinks links = packed.cluster_links(cluster);
         // In eights, without a branch a point: what is written too much is written again, or left alone.
         std::array<std::uint8_t, max_cluster_points + at_once> indices;
-        std::copy(links.foreign_points.begin(), links.foreign_points.end(), indices.begin());
+        std::copy(links.ghost_points.begin(), links.ghost_points.end(), indices.begin());
         std::size_t n = 0;
         for (const Neighbour& neighbour : links.neighbours) {
             const std::uint64_t first = packed.headers[neighbour.cluster].first_point;
-            for (std::size_t k = 0; k < neighbour.foreign_points; k += at_once)
+            for (std::size_t k = 0; k < neighbour.ghost_points; k += at_once)
                 for (std::size_t i = 0; i < at_once; ++i) points_[n + k + i] = first + indices[n + k + i];
-            n += neighbour.foreign_points;
+            n += neighbour.ghost_points;
         }
-        foreign_ = n;
+        ghost_ = n;
         for (std::size_t k = 0; k < h.own_points; k += at_once)
             for (std::size_t i = 0; i < at_once; ++i) points_[n + k + i] = h.first_point + k + i;
     }
-    std::size_t foreign() const { return foreign_; } ///< how many; they come first
+    std::size_t ghost() const { return ghost_; } ///< how many; they come first
     std::uint64_t operator[](std::size_t local) const { return points_[local]; }
 
 private:
     static constexpr std::size_t at_once = 8;
     std::array<std::uint64_t, max_cluster_points + at_once> points_;
-    std::size_t foreign_ = 0;
+    std::size_t ghost_ = 0;
 };
 
 /// Stored values of all local points; returns their number.
@@ -45,9 +45,9 @@ template <class Real>
 std::size_t load_values(const Packed& packed, std::size_t cluster, const LocalPoints& points, Real* out) {
     const ClusterHeader& h = packed.headers[cluster];
     const Real* values = packed.as<Real>().values.data();
-    for (std::size_t k = 0; k < points.foreign(); ++k) out[k] = values[points[k]];
-    std::copy_n(values + h.first_point, h.own_points, out + points.foreign());
-    return points.foreign() + h.own_points;
+    for (std::size_t k = 0; k < points.ghost(); ++k) out[k] = values[points[k]];
+    std::copy_n(values + h.first_point, h.own_points, out + points.ghost());
+    return points.ghost() + h.own_points;
 }
 
 template <class Real>
@@ -64,8 +64,8 @@ void load_positions(const Packed& packed, std::size_t cluster, Real* out) {
     const Real* positions = packed.as<Real>().positions.data();
     LocalPoints points;
     points.find(packed, cluster);
-    for (std::size_t k = 0; k < points.foreign(); ++k) std::copy_n(positions + 3 * points[k], 3, out + 3 * k);
-    std::copy_n(positions + 3 * h.first_point, 3u * h.own_points, out + 3u * h.foreign_points);
+    for (std::size_t k = 0; k < points.ghost(); ++k) std::copy_n(positions + 3 * points[k], 3, out + 3 * k);
+    std::copy_n(positions + 3 * h.first_point, 3u * h.own_points, out + 3u * h.ghost_points);
 }
 
 } // namespace isotet::core

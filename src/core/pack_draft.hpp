@@ -47,7 +47,7 @@ std::size_t blocks_at_once(std::uint64_t tets);
 /// `cells`   how many the user's grid has
 Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, const Progress& progress);
 
-/// Gives every point its owner and packed number, and every cluster its local order. Fills headers (own and foreign
+/// Gives every point its owner and packed number, and every cluster its local order. Fills headers (own and ghost
 /// points, first_point) and point ids; turns locals into PointRefs and corners of tets into local indices.
 void number_points(std::uint64_t user_points, Draft& draft);
 

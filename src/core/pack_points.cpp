@@ -43,7 +43,7 @@ void number_points(std::uint64_t user_points, Draft& draft) {
         std::sort(own, own + count);
         for (std::size_t k = 0; k < count; ++k) place[own[k]] = static_cast<std::uint8_t>(k);
         packed.headers[c].own_points = static_cast<std::uint16_t>(count);
-        packed.headers[c].foreign_points = static_cast<std::uint16_t>(draft.local_count(c) - count);
+        packed.headers[c].ghost_points = static_cast<std::uint16_t>(draft.local_count(c) - count);
     });
     std::uint64_t points = 0;
     for (ClusterHeader& header : packed.headers) {
@@ -56,9 +56,9 @@ void number_points(std::uint64_t user_points, Draft& draft) {
 
     // Local points in packed order, and the tets' corners with them.
     parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
-        std::uint64_t foreign[max_cluster_points]; // by PointRef; the lowest byte is the place so far
+        std::uint64_t ghost[max_cluster_points]; // by PointRef; the lowest byte is the place so far
         std::uint8_t after[max_cluster_points];
-        std::size_t foreign_count = 0;
+        std::size_t ghost_count = 0;
         const std::size_t count = draft.local_count(c);
         std::uint64_t* const list = draft.locals.data() + draft.first_local[c];
         ClusterHeader& header = packed.headers[c];
@@ -66,21 +66,21 @@ void number_points(std::uint64_t user_points, Draft& draft) {
             const std::uint64_t rank = list[k];
             const PointRef ref = PointRef::make(owners[rank], place[rank]);
             if (ref.owner() != c) {
-                foreign[foreign_count++] = ref.value << 8 | k;
+                ghost[ghost_count++] = ref.value << 8 | k;
                 continue;
             }
-            after[k] = static_cast<std::uint8_t>(header.foreign_points + ref.index());
+            after[k] = static_cast<std::uint8_t>(header.ghost_points + ref.index());
             const std::uint64_t point = header.first_point + ref.index(), user = draft.point_of[rank];
             if (wide) packed.wide_point_ids[point] = user;
             else packed.point_ids[point] = static_cast<std::uint32_t>(user);
         }
-        std::sort(foreign, foreign + foreign_count);
-        for (std::size_t k = 0; k < foreign_count; ++k) {
-            after[foreign[k] & 0xff] = static_cast<std::uint8_t>(k);
-            list[k] = foreign[k] >> 8;
+        std::sort(ghost, ghost + ghost_count);
+        for (std::size_t k = 0; k < ghost_count; ++k) {
+            after[ghost[k] & 0xff] = static_cast<std::uint8_t>(k);
+            list[k] = ghost[k] >> 8;
         }
         for (std::size_t k = 0; k < header.own_points; ++k) // own ones last: no owner is a later cluster
-            list[foreign_count + k] = PointRef::make(static_cast<std::uint32_t>(c), static_cast<std::uint8_t>(k)).value;
+            list[ghost_count + k] = PointRef::make(static_cast<std::uint32_t>(c), static_cast<std::uint8_t>(k)).value;
         StoredTet* tets = packed.tets.data() + group_size * std::size_t{header.first_group};
         const std::size_t padded = (header.tets + group_size - 1) / group_size * group_size;
         for (std::size_t i = 0; i < padded; ++i)

@@ -45,19 +45,19 @@ struct EdgeMatrix {
 };
 
 /// One candidate edge of one cluster, on its way to the owner of its lower end.
-struct Letter {
+struct SeamRequest {
     std::uint64_t edge;    ///< lower end's index, higher end's PointRef
     std::uint32_t cluster; ///< the sender
     std::uint16_t place;   ///< among the sender's candidates
 
-    static Letter make(PointRef lower, PointRef higher, std::uint32_t cluster, std::uint16_t place) {
+    static SeamRequest make(PointRef lower, PointRef higher, std::uint32_t cluster, std::uint16_t place) {
         return {std::uint64_t{lower.index()} << 40 | higher.value, cluster, place};
     }
     std::size_t lower_index() const { return edge >> 40; }
 };
-static_assert(sizeof(Letter) == 16);
+static_assert(sizeof(SeamRequest) == 16);
 
-/// What the sender is told: the owner and the edge's place among the owner's candidates; nobody when no other cluster
+/// What the sender is told: the owner and the edge's place among the owner's candidates; no_owner when no other cluster
 /// holds the edge.
 struct Answer {
     std::uint32_t owner;
@@ -79,36 +79,36 @@ private:
     Buffer<std::uint32_t> owners_;
     Buffer<std::uint16_t> places_;
 };
-constexpr std::uint32_t nobody = 0xffffffffu;
+constexpr std::uint32_t no_owner = 0xffffffffu;
 
-/// Sorts the letters to one cluster by edge, then sender. By the lower end first, of which there are few; what is left
+/// Sorts the requests to one cluster by edge, then sender. By the lower end first, of which there are few; what is left
 /// to do for each of these is short.
-void sort_letters(std::span<Letter> letters, std::vector<Letter>& scratch) {
+void sort_requests(std::span<SeamRequest> requests, std::vector<SeamRequest>& scratch) {
     std::uint32_t next[max_cluster_points + 1] = {};
-    for (const Letter& letter : letters) ++next[letter.lower_index() + 1];
+    for (const SeamRequest& request : requests) ++next[request.lower_index() + 1];
     for (std::size_t k = 0; k < max_cluster_points; ++k) next[k + 1] += next[k];
-    scratch.resize(std::max(scratch.size(), letters.size()));
-    for (const Letter& letter : letters) scratch[next[letter.lower_index()]++] = letter;
+    scratch.resize(std::max(scratch.size(), requests.size()));
+    for (const SeamRequest& request : requests) scratch[next[request.lower_index()]++] = request;
     std::size_t begin = 0;
-    for (std::size_t k = 0; k < max_cluster_points; ++k) { // next[k] is now where the letters of k end
-        std::sort(scratch.begin() + begin, scratch.begin() + next[k], [](const Letter& a, const Letter& b) {
+    for (std::size_t k = 0; k < max_cluster_points; ++k) { // next[k] is now where the requests of k end
+        std::sort(scratch.begin() + begin, scratch.begin() + next[k], [](const SeamRequest& a, const SeamRequest& b) {
             return a.edge != b.edge ? a.edge < b.edge : a.cluster < b.cluster;
         });
         begin = next[k];
     }
-    std::copy_n(scratch.begin(), letters.size(), letters.begin());
+    std::copy_n(scratch.begin(), requests.size(), requests.begin());
 }
 
-/// The neighbour table and the foreign seams of one cluster in the making.
+/// The neighbour table and the ghost seams of one cluster in the making.
 class Neighbourhood {
 public:
     /// Seams arrive in the order of the cluster's candidates and keep it among those of one owner.
-    void add_seam(std::uint32_t owner, ForeignSeam seam) {
-        ++entry(owner).foreign_seams;
+    void add_seam(std::uint32_t owner, GhostSeam seam) {
+        ++entry(owner).ghost_seams;
         seams_.push_back({owner, seam});
     }
     /// Points arrive by ascending owner.
-    void add_point(std::uint32_t owner) { ++entry(owner).foreign_points; }
+    void add_point(std::uint32_t owner) { ++entry(owner).ghost_points; }
 
     /// Puts seams and neighbours into order.
     void finish() {
@@ -118,7 +118,7 @@ public:
         std::size_t begin = 0;
         for (const Neighbour& neighbour : table_) {
             first_.push_back(begin);
-            begin += neighbour.foreign_seams;
+            begin += neighbour.ghost_seams;
         }
         for (const Seam& seam : seams_) sorted_[first_[position(seam.owner)]++] = seam.seam;
     }
@@ -128,12 +128,12 @@ public:
         first_.clear();
     }
     std::span<const Neighbour> table() const { return table_; }
-    std::span<const ForeignSeam> seams() const { return sorted_; } ///< once finished
+    std::span<const GhostSeam> seams() const { return sorted_; } ///< once finished
 
 private:
     struct Seam {
         std::uint32_t owner;
-        ForeignSeam seam;
+        GhostSeam seam;
     };
 
     /// Where the owner stands in the table, or its end. Tables are short, and the same owner comes several times in a
@@ -151,7 +151,7 @@ private:
 
     std::vector<Neighbour> table_;
     std::vector<Seam> seams_;
-    std::vector<ForeignSeam> sorted_;
+    std::vector<GhostSeam> sorted_;
     std::vector<std::size_t> first_;
     std::size_t last_ = 0;
 };
@@ -202,7 +202,7 @@ private:
             std::fill(shared_.begin() + begin, shared_.begin() + end, 0);
         });
         parallel_each(draft_.clusters(), clusters_per_task, [&](std::size_t c) {
-            for (std::size_t k = 0; k < packed_.headers[c].foreign_points; ++k) {
+            for (std::size_t k = 0; k < packed_.headers[c].ghost_points; ++k) {
                 const PointRef point = ref(c, k);
                 std::atomic_ref<std::uint8_t>(shared_[packed_.headers[point.owner()].first_point + point.index()])
                     .store(1, std::memory_order_relaxed);
@@ -216,7 +216,7 @@ private:
         const ClusterHeader& h = packed_.headers[c];
         PointSet shared;
         for (std::size_t k = 0; k < draft_.local_count(c); ++k)
-            if (k < h.foreign_points || shared_[h.first_point + k - h.foreign_points]) shared.add(k);
+            if (k < h.ghost_points || shared_[h.first_point + k - h.ghost_points]) shared.add(k);
         EdgeMatrix matrix;
         for (const StoredTet& tet : packed_.cluster_tets(c)) matrix.add(tet);
         for (std::size_t a = 0; a < draft_.local_count(c); ++a) {
@@ -283,7 +283,7 @@ private:
 
     void exchange() {
         const std::size_t n = draft_.clusters();
-        std::vector<std::uint64_t> next(n + 1, 0); // letters to each cluster; then where its next letter goes
+        std::vector<std::uint64_t> next(n + 1, 0); // requests to each cluster; then where its next request goes
         parallel_each(n, clusters_per_task, [&](std::size_t c) {
             for_runs(c, 0, n, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
                 std::atomic_ref<std::uint64_t>(next[owner + 1]).fetch_add(end - begin, std::memory_order_relaxed);
@@ -291,55 +291,55 @@ private:
         });
         for (std::size_t c = 0; c < n; ++c) next[c + 1] += next[c];
         const std::vector<std::uint64_t> first = next;
-        // In rounds, since all letters together would take more memory than anything else in packing.
+        // In rounds, since all requests together would take more memory than anything else in packing.
         const std::size_t rounds = std::clamp<std::size_t>(n / 1024, 1, 8);
         const auto begin_of = [&](std::size_t round) { return n / rounds * round + std::min(round, n % rounds); };
         std::uint64_t most = 0;
         for (std::size_t round = 0; round < rounds; ++round)
             most = std::max(most, first[begin_of(round + 1)] - first[begin_of(round)]);
-        Buffer<Letter> letters(most);
+        Buffer<SeamRequest> requests(most);
         answers_ = Answers(candidates_.size());
         for (std::size_t round = 0; round < rounds; ++round)
-            deliver(begin_of(round), begin_of(round + 1), first, next, letters);
+            deliver(begin_of(round), begin_of(round + 1), first, next, requests);
     }
 
-    /// Sends the letters to the clusters [from, to), and answers them. `next` is where each cluster's next letter goes,
-    /// at first as `first`; letters lie in the buffer from first[from] on.
+    /// Sends the requests to the clusters [from, to), and answers them. `next` is where each cluster's next request goes,
+    /// at first as `first`; requests lie in the buffer from first[from] on.
     void deliver(std::size_t from, std::size_t to, const std::vector<std::uint64_t>& first,
-                 std::vector<std::uint64_t>& next, Buffer<Letter>& letters) {
-        Letter* const to_first = letters.data();
+                 std::vector<std::uint64_t>& next, Buffer<SeamRequest>& requests) {
+        SeamRequest* const to_first = requests.data();
         parallel_each(draft_.clusters() - from, clusters_per_task, [&](std::size_t behind) {
             const std::size_t c = from + behind;
             const SeamEdge* const all = candidates(c).data();
             for_runs(c, from, to, [&](std::uint32_t owner, std::size_t begin, std::size_t end) {
                 const std::uint64_t slot =
                     std::atomic_ref<std::uint64_t>(next[owner]).fetch_add(end - begin, std::memory_order_relaxed);
-                Letter* out = to_first + (slot - first[from]);
+                SeamRequest* out = to_first + (slot - first[from]);
                 for (std::size_t place = begin; place < end; ++place)
-                    *out++ = Letter::make(ref(c, all[place].lower), ref(c, all[place].higher),
-                                          static_cast<std::uint32_t>(c), static_cast<std::uint16_t>(place));
+                    *out++ = SeamRequest::make(ref(c, all[place].lower), ref(c, all[place].higher),
+                                               static_cast<std::uint32_t>(c), static_cast<std::uint16_t>(place));
             });
         });
-        // Letters arrive in any order; sorting makes it one.
+        // Requests arrive in any order; sorting makes it one.
         parallel_ranges(to - from, clusters_per_task, [&](std::size_t begin, std::size_t end) {
-            std::vector<Letter> scratch;
+            std::vector<SeamRequest> scratch;
             for (std::size_t c = from + begin; c < from + end; ++c) {
-                const std::span<Letter> mail(to_first + (first[c] - first[from]), first[c + 1] - first[c]);
-                sort_letters(mail, scratch);
-                answer(mail);
+                const std::span<SeamRequest> received(to_first + (first[c] - first[from]), first[c + 1] - first[c]);
+                sort_requests(received, scratch);
+                answer(received);
             }
         });
     }
 
-    /// Answers sorted letters: of those on one edge the first is the owner's.
-    void answer(std::span<const Letter> letters) {
-        for (std::size_t begin = 0; begin < letters.size();) {
+    /// Answers sorted requests: of those on one edge the first is the owner's.
+    void answer(std::span<const SeamRequest> requests) {
+        for (std::size_t begin = 0; begin < requests.size();) {
             std::size_t end = begin + 1;
-            while (end < letters.size() && letters[end].edge == letters[begin].edge) ++end;
+            while (end < requests.size() && requests[end].edge == requests[begin].edge) ++end;
             const Answer answer =
-                end - begin > 1 ? Answer{letters[begin].cluster, letters[begin].place} : Answer{nobody, 0};
+                end - begin > 1 ? Answer{requests[begin].cluster, requests[begin].place} : Answer{no_owner, 0};
             for (; begin < end; ++begin)
-                answers_.set(first_candidate_[letters[begin].cluster] + letters[begin].place, answer);
+                answers_.set(first_candidate_[requests[begin].cluster] + requests[begin].place, answer);
         }
     }
 
@@ -358,21 +358,21 @@ private:
     void add_links(std::size_t c, Neighbourhood& neighbourhood, std::vector<std::uint32_t>& list) {
         ClusterHeader& header = packed_.headers[c];
         neighbourhood.clear();
-        for (std::size_t k = 0; k < header.foreign_points; ++k) neighbourhood.add_point(ref(c, k).owner());
+        for (std::size_t k = 0; k < header.ghost_points; ++k) neighbourhood.add_point(ref(c, k).owner());
         std::vector<SeamEdge> own_seams;
         own_seams.reserve(header.own_seams);
         for (std::size_t k = first_candidate_[c]; k < first_candidate_[c + 1]; ++k) {
             const Answer answer = answers_[k];
             if (answer.owner == c) own_seams.push_back(candidates_[k]);
-            else if (answer.owner != nobody)
+            else if (answer.owner != no_owner)
                 neighbourhood.add_seam(answer.owner,
                                        {candidates_[k], answers_[first_candidate_[answer.owner] + answer.place].place});
         }
         neighbourhood.finish();
         header.neighbours = static_cast<std::uint16_t>(neighbourhood.table().size());
-        header.foreign_seams = static_cast<std::uint16_t>(neighbourhood.seams().size());
+        header.ghost_seams = static_cast<std::uint16_t>(neighbourhood.seams().size());
         std::uint8_t points[max_cluster_points];
-        for (std::size_t k = 0; k < header.foreign_points; ++k) points[k] = ref(c, k).index();
+        for (std::size_t k = 0; k < header.ghost_points; ++k) points[k] = ref(c, k).index();
 
         const std::size_t before = list.size();
         list.resize(before + ClusterLinks::words(header));
@@ -383,7 +383,7 @@ private:
             out += words_for(bytes);
         };
         put(neighbourhood.table().data(), neighbourhood.table().size_bytes());
-        put(points, header.foreign_points);
+        put(points, header.ghost_points);
         put(own_seams.data(), own_seams.size() * sizeof(SeamEdge));
         put(neighbourhood.seams().data(), neighbourhood.seams().size_bytes());
     }

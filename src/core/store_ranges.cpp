@@ -103,10 +103,10 @@ void store_ranges(Packed& packed, std::size_t first, std::size_t last, const Pro
         std::array<LocalPoints, 2> points; // of the cluster at hand and the next, in turn
         points[begin % 2].find(packed, begin);
         for (std::size_t c = begin; c < end; ++c) {
-            if (c + 1 < end) { // foreign values lie scattered: waiting for them would be half of the work
+            if (c + 1 < end) { // ghost values lie scattered: waiting for them would be half of the work
                 LocalPoints& next = points[(c + 1) % 2];
                 next.find(packed, c + 1);
-                for (std::size_t k = 0; k < next.foreign(); ++k) prefetch(values + next[k]);
+                for (std::size_t k = 0; k < next.ghost(); ++k) prefetch(values + next[k]);
             }
             store_ranges<Real>(packed, c, points[c % 2]);
         }

@@ -25,13 +25,12 @@ public:
           isovalue_(cutting.wanted.isovalues[isovalue_number_]),
           header_(packed_.headers[cluster_]),
           links_(packed_.cluster_links(cluster_)),
-          points_(std::size_t{header_.foreign_points} + header_.own_points),
+          points_(std::size_t{header_.ghost_points} + header_.own_points),
           s_(s) {}
 
     std::uint64_t own_tied_points() const {
         const Real* const values = s_.values.data();
-        return static_cast<std::uint64_t>(
-            std::count(values + header_.foreign_points, values + points_, isovalue_.tied));
+        return static_cast<std::uint64_t>(std::count(values + header_.ghost_points, values + points_, isovalue_.tied));
     }
 
     const Record<Real>* cut(Start& count) {
@@ -42,7 +41,7 @@ public:
         s_.shared_keys.clear();
         if (cutting_.wanted.ties == Ties::merge) share_tied_points();
         share_own_seams();
-        share_foreign_seams();
+        share_ghost_seams();
         list_inner_edges();
         count = {s_.listed.size(), triangles_};
         return triangles_ ? write_record() : nothing();
@@ -126,15 +125,14 @@ private:
         };
         std::size_t local = 0;
         for (const core::Neighbour& neighbour : links_.neighbours)
-            for (const std::size_t end = local + neighbour.foreign_points; local < end; ++local)
-                if (s_.special[local] == is_tied)
-                    share(local, place_of(neighbour.cluster), links_.foreign_points[local]);
+            for (const std::size_t end = local + neighbour.ghost_points; local < end; ++local)
+                if (s_.special[local] == is_tied) share(local, place_of(neighbour.cluster), links_.ghost_points[local]);
         for (; local < points_; ++local)
             if (s_.special[local] == is_tied)
-                share(local, place_, static_cast<std::uint32_t>(local - header_.foreign_points));
+                share(local, place_, static_cast<std::uint32_t>(local - header_.ghost_points));
     }
 
-    /// Where all points of its owner have data, every crossed edge of the owner is used, and the owner knows it.
+    /// Where all points of its owner have data, every active edge of the owner is used, and the owner knows it.
     /// Elsewhere an edge may lie between tets without data only: whoever has a valid tet there tells the owner.
     void share_own_seams() {
         for (std::size_t k = 0; k < links_.own_seams.size(); ++k) {
@@ -145,11 +143,11 @@ private:
         }
     }
 
-    void share_foreign_seams() {
+    void share_ghost_seams() {
         std::size_t k = 0;
         for (const core::Neighbour& neighbour : links_.neighbours) {
-            for (const std::size_t end = k + neighbour.foreign_seams; k < end; ++k) {
-                const core::ForeignSeam seam = links_.foreign_seams[k];
+            for (const std::size_t end = k + neighbour.ghost_seams; k < end; ++k) {
+                const core::GhostSeam seam = links_.ghost_seams[k];
                 if (!s_.used.has(edge_key(seam.edge))) continue;
                 const std::size_t owner = place_of(neighbour.cluster);
                 if (packed_.has_no_data[neighbour.cluster]) cutting_.masks.set_seam(owner, seam.index);

@@ -58,7 +58,7 @@ private:
         if (ahead.has(0)) {
             const Real* const values = packed.as<Real>().values.data();
             s.next->find(packed, cluster(0));
-            for (std::size_t k = 0; k < s.next->foreign(); ++k) prefetch(values + (*s.next)[k]);
+            for (std::size_t k = 0; k < s.next->ghost(); ++k) prefetch(values + (*s.next)[k]);
             s.next_cluster = cluster(0);
         }
     }

@@ -102,8 +102,7 @@ private:
 
     void ask_for_links(std::uint32_t cluster) const {
         const core::ClusterHeader& h = packed_.headers[cluster];
-        prefetch_bytes(packed_.links.data() + h.first_link,
-                       4 * (2u * h.neighbours + core::words_for(h.foreign_points)));
+        prefetch_bytes(packed_.links.data() + h.first_link, 4 * (2u * h.neighbours + core::words_for(h.ghost_points)));
     }
 
     void ask_for_positions(std::size_t place, Scratch<Real>& s) const {
@@ -144,7 +143,7 @@ private:
         const core::StoredIsovalue<Real>& isovalue = wanted_.isovalues[selection_.isovalues[place]];
         std::size_t count = 0;
         core::for_bits(masks_.tied(place), Masks::tied_words, [&](std::size_t own) {
-            const auto local = static_cast<std::uint8_t>(h.foreign_points + own);
+            const auto local = static_cast<std::uint8_t>(h.ghost_points + own);
             s.ends[count] = {local, local};
             s.weights[count++] = 0;
         });

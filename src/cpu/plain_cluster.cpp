@@ -28,21 +28,21 @@ void cut_tets(const Packed& packed, std::size_t cluster, float isovalue, Scratch
     Simd::keys(s.cut, s.keys.data());
 }
 
-/// Own seams into `listed` and the mask, foreign ones into `shared`; what remains are inner edges.
+/// Own seams into `listed` and the mask, ghost ones into `shared`; what remains are inner edges.
 template <class Simd>
 void sort_out_seams(const Cutting<float>& cutting, const core::ClusterLinks& links, std::size_t place, Scratch& s) {
     s.listed.grow(Simd::cross_own_seams(s.above.data(), links.own_seams, cutting.masks.seams(place), s.listed.end()));
     for (const VertexKey key : s.listed) s.used.take_out(key);
 
     const std::size_t crossed =
-        Simd::cross_foreign_seams(s.above.data(), links.foreign_seams, s.crossed_seams.data(), s.crossed_places.data());
-    // Crossed foreign seams ascend, and so do the neighbours' parts of the list.
+        Simd::cross_ghost_seams(s.above.data(), links.ghost_seams, s.crossed_seams.data(), s.crossed_places.data());
+    // Crossed ghost seams ascend, and so do the neighbours' parts of the list.
     const std::uint32_t isovalue = cutting.selection.isovalues[place];
     const core::Neighbour* neighbour = links.neighbours.data();
-    std::size_t end = crossed ? neighbour->foreign_seams : 0;
+    std::size_t end = crossed ? neighbour->ghost_seams : 0;
     for (std::size_t i = 0; i < crossed; ++i) {
-        while (s.crossed_places[i] >= end) end += (++neighbour)->foreign_seams;
-        const core::ForeignSeam seam = s.crossed_seams[i];
+        while (s.crossed_places[i] >= end) end += (++neighbour)->ghost_seams;
+        const core::GhostSeam seam = s.crossed_seams[i];
         const std::size_t owner = cutting.selection.place(neighbour->cluster, isovalue);
         s.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
         if (cutting.packed.has_no_data[neighbour->cluster]) cutting.masks.set_seam(owner, seam.index);
@@ -78,7 +78,7 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     const std::size_t cluster = cutting.selection.clusters[place];
     const core::ClusterHeader& h = cutting.packed.headers[cluster];
     const core::StoredIsovalue<float>& isovalue = cutting.wanted.isovalues[cutting.selection.isovalues[place]];
-    if (Simd::classify(s.values.data(), std::size_t{h.foreign_points} + h.own_points, isovalue, s.above.data()))
+    if (Simd::classify(s.values.data(), std::size_t{h.ghost_points} + h.own_points, isovalue, s.above.data()))
         return nullptr;
     cut_tets<Simd>(cutting.packed, cluster, isovalue.value, s);
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.used.use(s.keys[i]);

@@ -84,9 +84,8 @@ struct Avx2 {
         return count;
     }
 
-    ISOTET_AVX2 static std::size_t cross_foreign_seams(const std::uint8_t* above,
-                                                       std::span<const core::ForeignSeam> seams, core::ForeignSeam* out,
-                                                       std::uint16_t* places) {
+    ISOTET_AVX2 static std::size_t cross_ghost_seams(const std::uint8_t* above, std::span<const core::GhostSeam> seams,
+                                                     core::GhostSeam* out, std::uint16_t* places) {
         const __m256i table = table_of(above);
         std::size_t count = 0, k = 0;
         for (; k + 8 <= seams.size(); k += 8) {

@@ -72,9 +72,9 @@ struct Avx512 {
         return static_cast<std::size_t>(out - begin);
     }
 
-    ISOTET_AVX512 static std::size_t cross_foreign_seams(const std::uint8_t* above,
-                                                         std::span<const core::ForeignSeam> seams,
-                                                         core::ForeignSeam* out, std::uint16_t* places) {
+    ISOTET_AVX512 static std::size_t cross_ghost_seams(const std::uint8_t* above,
+                                                       std::span<const core::GhostSeam> seams, core::GhostSeam* out,
+                                                       std::uint16_t* places) {
         const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
         const __m256i lanes = _mm256_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
         std::size_t count = 0;

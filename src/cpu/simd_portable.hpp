@@ -27,7 +27,7 @@ struct CutTets {
     std::size_t count = 0;
 };
 
-/// Edges of the polygons of cut tets: lower local index * 128 + higher, four a tet.
+/// Edges of the polygons of active tets: lower local index * 128 + higher, four a tet.
 using VertexKey = std::uint16_t;
 
 constexpr VertexKey edge_key(core::SeamEdge edge) {
@@ -92,10 +92,10 @@ struct Portable {
         return count;
     }
 
-    /// Writes the foreign seams with ends on different sides, in order, and their places in the list. Returns how many
+    /// Writes the ghost seams with ends on different sides, in order, and their places in the list. Returns how many
     /// there are. May write up to 16 more.
-    static std::size_t cross_foreign_seams(const std::uint8_t* above, std::span<const core::ForeignSeam> seams,
-                                           core::ForeignSeam* out, std::uint16_t* places) {
+    static std::size_t cross_ghost_seams(const std::uint8_t* above, std::span<const core::GhostSeam> seams,
+                                         core::GhostSeam* out, std::uint16_t* places) {
         std::size_t count = 0;
         for (std::size_t k = 0; k < seams.size(); ++k) {
             out[count] = seams[k];
@@ -144,12 +144,12 @@ struct Portable {
         return bits;
     }
 
-    /// The four edges around each cut tet.
+    /// The four edges around each active tet.
     static void keys(const CutTets& cut, VertexKey* out) {
         for (std::size_t i = 0; i < cut.count; ++i) {
             std::uint8_t v[4];
             std::memcpy(v, &cut.corners[i], 4);
-            for (const core::CrossedEdge e : core::case_table[cut.cases[i]].polygon) {
+            for (const core::ActiveEdge e : core::case_table[cut.cases[i]].polygon) {
                 const unsigned a = v[e.above], b = v[e.below];
                 *out++ = static_cast<VertexKey>(std::min(a, b) * table_size + std::max(a, b));
             }

@@ -226,7 +226,7 @@ ops::DirectSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Di
         for (std::size_t t = 0; t < c.triangles; ++t) {
             std::array<Edge, 3> triangle;
             for (std::size_t k = 0; k < 3; ++k) {
-                const core::CrossedEdge edge = c.polygon[core::triangle_corners[t][k]];
+                const core::ActiveEdge edge = c.polygon[core::triangle_corners[t][k]];
                 triangle[k] = edge_of(tet.corners[edge.above], tet.corners[edge.below]);
             }
             if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;

@@ -103,7 +103,7 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
         for (std::size_t t = 0; t < c.triangles; ++t) {
             std::array<Place, 3> triangle;
             for (std::size_t k = 0; k < 3; ++k) {
-                const core::CrossedEdge edge = c.polygon[core::triangle_corners[t][k]];
+                const core::ActiveEdge edge = c.polygon[core::triangle_corners[t][k]];
                 triangle[k] = place_of(tet.points[edge.above], tet.points[edge.below]);
             }
             if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;

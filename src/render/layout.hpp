@@ -31,7 +31,7 @@ constexpr bool row_agrees(unsigned index) {
     const core::TetCase& whole = core::case_table[index];
     const uint* row = tet_tables.cases + std::size_t{4} * (index < 8 ? index : 15 - index);
     const auto is = [&](unsigned k, unsigned place) {
-        const core::CrossedEdge& edge = whole.polygon[place];
+        const core::ActiveEdge& edge = whole.polygon[place];
         const uint lower = edge.above < edge.below ? edge.above : edge.below;
         const uint higher = edge.above < edge.below ? edge.below : edge.above;
         return tet_tables.edges[2 * row[k]] == lower && tet_tables.edges[2 * row[k] + 1] == higher;

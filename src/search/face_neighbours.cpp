@@ -59,7 +59,7 @@ FaceNeighbours::FaceNeighbours(const core::TetTable& table) : neighbours_(table.
             if (!table.range(number).is_empty()) for_faces(table, number, f);
         });
     };
-    core::parallel_each(tets, grain, [&](std::size_t tet) { neighbours_[tet].fill(nobody); });
+    core::parallel_each(tets, grain, [&](std::size_t tet) { neighbours_[tet].fill(none); });
     for_all_faces([&](std::uint32_t lowest, const Face&) { count_up(next[lowest]); });
     std::uint64_t sum = 0;
     for (std::uint64_t& count : next) sum += std::exchange(count, sum);

@@ -13,7 +13,7 @@ namespace isotet::search {
 /// The tet on the other side of the face opposite each corner.
 class FaceNeighbours {
 public:
-    static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
     /// Only tets that some isovalue cuts have neighbours and are some. Where more than two share a face, the first and
     /// the second are neighbours, the third and the fourth, and so on.

@@ -11,7 +11,7 @@
 
 namespace isotet::search {
 
-/// Finds exactly the cut tets.
+/// Finds exactly the active tets.
 ///
 /// A node splits at a value. Ranges that hold the value stay at the node, in two lists: by lower end ascending, and by
 /// upper end descending. An isovalue below the split takes a piece of the first list from its start on, one above it of

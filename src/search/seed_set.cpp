@@ -33,7 +33,7 @@ public:
                 const std::uint32_t last = open_.back();
                 open_.pop_back();
                 for (const std::uint32_t neighbour : neighbours_.of(last))
-                    if (neighbour != FaceNeighbours::nobody && !taken_in_[neighbour] && is_led_back(neighbour))
+                    if (neighbour != FaceNeighbours::none && !taken_in_[neighbour] && is_led_back(neighbour))
                         take_in(neighbour);
             }
         }
@@ -52,8 +52,7 @@ private:
         core::CutRange led_back;
         for (unsigned k = 0; k < 4; ++k) {
             const std::uint32_t neighbour = neighbours_.of(tet)[k];
-            if (neighbour != FaceNeighbours::nobody && taken_in_[neighbour])
-                led_back.take_in(table_.face_range(tet, k));
+            if (neighbour != FaceNeighbours::none && taken_in_[neighbour]) led_back.take_in(table_.face_range(tet, k));
         }
         return led_back.covers(table_.range(tet));
     }
@@ -80,7 +79,7 @@ void SeedSet::find(float isovalue, TetNumbers& found) const {
         const std::uint32_t tet = found[i];
         for (unsigned k = 0; k < 4; ++k) {
             const std::uint32_t neighbour = neighbours_.of(tet)[k];
-            if (neighbour == FaceNeighbours::nobody || seen[neighbour] || !table_.face_range(tet, k).holds(isovalue))
+            if (neighbour == FaceNeighbours::none || seen[neighbour] || !table_.face_range(tet, k).holds(isovalue))
                 continue;
             seen.set(neighbour);
             found.push_back(neighbour);

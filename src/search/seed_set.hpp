@@ -12,10 +12,10 @@
 
 namespace isotet::search {
 
-/// Finds exactly the cut tets: those among the seeds by an interval tree, the others from them, across cut faces.
+/// Finds exactly the active tets: those among the seeds by an interval tree, the others from them, across cut faces.
 ///
 /// Tets are taken in one after another. One is no seed when the faces that it shares with tets taken in before hold all
-/// its isovalues: whatever the isovalue, a cut face then leads to an earlier cut tet, from there to a still earlier
+/// its isovalues: whatever the isovalue, a cut face then leads to an earlier active tet, from there to a still earlier
 /// one, and at last to a seed. Nothing is assumed of the field. Of its faces two always hold all isovalues of a tet,
 /// and any two faces together do. So a tet is taken in as soon as that makes it no seed; only when none is left, the
 /// next one is a seed.

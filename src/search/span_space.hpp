@@ -8,7 +8,7 @@
 
 namespace isotet::search {
 
-/// Finds exactly the cut tets.
+/// Finds exactly the active tets.
 ///
 /// The tree has no pointers: the middle of a stretch divides it, by lower and by upper end in turn. An isovalue asks
 /// for the quarter plane lower < isovalue <= upper; a stretch that lies in it as a whole is taken without a look.

@@ -181,7 +181,7 @@ protected:
 
 TEST_F(OutOfMemoryOnce, IsToldWhileCellsAreLookedAt) {
     EXPECT_EXIT(extract_with_little_memory(96, 80 << 20), testing::ExitedWithCode(0),
-                "^extraction may need [0-9.]+ MB for [0-9]+ cut tets, but [0-9.]+ MB are free");
+                "^extraction may need [0-9.]+ MB for [0-9]+ active tets, but [0-9.]+ MB are free");
 }
 
 TEST_F(OutOfMemoryOnce, IsToldBeforeTheSurfaceIsMade) {

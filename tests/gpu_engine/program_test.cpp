@@ -82,7 +82,7 @@ TEST_F(ProgramOnDevice, RefusesWhatCannotBe) {
         more.insert(more.begin(), {"extract", "make:kuhn:8:gyroid", "-i", "0"});
         return isotet(more);
     };
-    RunResult run = extract({"--engine", "vulkan", "--device", "software", "--precision", "double", "-v"});
+    RunResult run = extract({"--engine", "vulkan", "--device", "software", "--precision", "double"});
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "packed in double precision"));
     run = extract({"--engine", "vulkan", "--device", "none"});

@@ -123,7 +123,7 @@ TEST_F(Forced, AGridWhereEveryTetIsCutGivesTheSameBytes) {
     EXPECT_GE(on_device.extract(0).value().triangle_count(), packed.report().tets);
 }
 
-// Tets between any four of few points: clusters with more crossed edges than any mesh has.
+// Tets between any four of few points: clusters with more active edges than any mesh has.
 TEST_F(Forced, ClustersWithManyCrossedEdgesGiveTheSameBytes) {
     std::mt19937 random(3);
     std::vector<std::array<double, 3>> points(300);

@@ -204,7 +204,7 @@ TEST(TwoTets, GiveADoubleSheetWhereTheirFaceIsTiedAndBothApexesAreBelow) {
 }
 
 TEST(IsolatedPeak, GivesNoVertexInDefaultMode) {
-    // Only point 0 reaches the isovalue: it has crossed edges, but no triangle uses them.
+    // Only point 0 reaches the isovalue: it has active edges, but no triangle uses them.
     const PackedGrid packed =
         pack(tet_grid(two_tets_places, {{0, 1, 2, 3}}), field_of<float>({0, -1, -1, -1, 0})).value();
     const Extraction merged = extract(packed, 0).value();

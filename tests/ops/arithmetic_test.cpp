@@ -140,7 +140,7 @@ TEST(CaseTable, GivesACaseAndItsComplementTheSameDiagonalAndOppositeSides) {
         const core::TetCase &a = core::case_table[index], &b = core::case_table[15 - index];
         ASSERT_EQ(a.triangles, std::popcount(index) == 2 ? 2 : 1);
         ASSERT_EQ(a.edges, a.triangles + 2);
-        const auto edge = [](const core::CrossedEdge& e) {
+        const auto edge = [](const core::ActiveEdge& e) {
             return std::pair(std::min(e.above, e.below), std::max(e.above, e.below));
         };
         ASSERT_EQ(edge(a.polygon[0]), edge(b.polygon[0])) << index; // where the diagonal starts

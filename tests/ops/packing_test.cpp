@@ -112,7 +112,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
         locals[c].resize(core::max_cluster_points);
         const std::size_t count = core::local_points(packed, c, locals[c].data());
         locals[c].resize(count);
-        ASSERT_EQ(count, std::size_t{h.own_points} + h.foreign_points);
+        ASSERT_EQ(count, std::size_t{h.own_points} + h.ghost_points);
         ASSERT_LE(count, core::max_cluster_points);
         ASSERT_TRUE(std::ranges::adjacent_find(locals[c], std::greater_equal<>{}) == locals[c].end());
         const auto tets = packed.cluster_tets(c);
@@ -143,7 +143,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
         const core::ClusterLinks links = packed.cluster_links(c);
         for (std::size_t k = 0; k < locals[c].size(); ++k) {
             ASSERT_TRUE(point_holders.at(locals[c][k]).contains(c));
-            ASSERT_EQ(owner_of(locals[c][k]) == c, k >= h.foreign_points);
+            ASSERT_EQ(owner_of(locals[c][k]) == c, k >= h.ghost_points);
         }
         std::set<std::pair<std::uint64_t, std::uint64_t>> seams, listed;
         for (const auto& [edge, holders] : edge_holders)
@@ -158,8 +158,8 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
         std::size_t k = 0;
         for (const core::Neighbour& neighbour : links.neighbours) {
             ASSERT_LT(neighbour.cluster, c);
-            for (const std::size_t end = k + neighbour.foreign_seams; k < end; ++k) {
-                const core::ForeignSeam& seam = links.foreign_seams[k];
+            for (const std::size_t end = k + neighbour.ghost_seams; k < end; ++k) {
+                const core::GhostSeam& seam = links.ghost_seams[k];
                 const std::pair pair{locals[c].at(seam.edge.lower), locals[c].at(seam.edge.higher)};
                 ASSERT_EQ(*edge_holders.at(pair).begin(), neighbour.cluster);
                 const core::SeamEdge there = packed.cluster_links(neighbour.cluster).own_seams[seam.index];
@@ -168,7 +168,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
                 ASSERT_TRUE(listed.insert(pair).second);
             }
         }
-        ASSERT_EQ(k, links.foreign_seams.size());
+        ASSERT_EQ(k, links.ghost_seams.size());
         ASSERT_EQ(listed, seams);
 
         const auto& reals = packed.as<float>();

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Every index finds every cut tet, on fields that are as nasty as they come, whatever was asked before.
+// Every index finds every active tet, on fields that are as nasty as they come, whatever was asked before.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -105,7 +105,7 @@ TEST(SearchIndexes, FindTheTetsThatExtractionTakesTrianglesFrom) {
     const Grid grid = made_grid("perturbed", 8, {"gyroid"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     ExtractOptions options;
-    options.ties = Ties::keep; // one or two triangles of every cut tet
+    options.ties = Ties::keep; // one or two triangles of every active tet
     const std::uint64_t triangles = extract(packed, 0.25, options).value().surface.triangle_count();
     for (const SearchIndex index : all_search_indexes) {
         TetIndex tets = TetIndex::create(packed, index).value();

@@ -57,7 +57,7 @@ TEST(FaceNeighbours, ShareThreePointsAndAgree) {
             for (unsigned k = 0; k < 4; ++k) {
                 const std::uint32_t other = neighbours.of(tet)[k];
                 const bool shared = !table.range(tet).is_empty() && faces[face_of(tet, k)] == 2;
-                ASSERT_EQ(other != FaceNeighbours::nobody, shared);
+                ASSERT_EQ(other != FaceNeighbours::none, shared);
                 if (!shared) continue;
                 const auto& back = neighbours.of(other);
                 const auto at = std::find(back.begin(), back.end(), tet);

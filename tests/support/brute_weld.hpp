@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The isosurface of a grid straight from the user's arrays and the words of the contract: no packing, no case table, a
-// map of crossed edges and tied points. Only the exact sign of a tet's volume is taken from the library.
+// map of active edges and tied points. Only the exact sign of a tet's volume is taken from the library.
 #pragma once
 
 #include <bit>
@@ -82,7 +82,7 @@ inline std::set<std::uint64_t> used_points(const std::vector<UprightTet>& tets) 
 }
 
 /// The polygon of one upright tet, counter-clockwise seen from above, found in a tet with right angles: its corners are
-/// the crossed edges' (below, above). Empty when the tet is not cut.
+/// the active edges' (below, above). Empty when the tet is not cut.
 inline std::vector<Ends> polygon_of(const std::array<std::uint64_t, 4>& tet, const std::array<bool, 4>& above) {
     static constexpr std::array<std::array<double, 3>, 4> place{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     std::vector<std::size_t> high, low;

@@ -138,14 +138,14 @@ void Cutter<Point>::cut() {
     auto* const polygons = arena_.template take<std::array<std::uint32_t, 4>>(count);
     auto* const triangles = arena_.template take<std::uint8_t>(count);
     auto* const cells = context_.keep_cells ? arena_.template take<std::uint32_t>(count) : nullptr;
-    auto* const found = arena_.template take<CrossedEdge<Point>>(4 * count + 1);
+    auto* const found = arena_.template take<ActiveEdge<Point>>(4 * count + 1);
     // Bytes are written below, which might be anything: what is needed again and again stands in variables of its own.
-    CrossedEdge<Point>* next = found;
+    ActiveEdge<Point>* next = found;
     std::uint32_t edges = edges_, tets = 0;
     std::uint64_t made_triangles = 0;
     Remembered* const memory = memory_.data();
     const std::uint32_t chunk = chunks_;
-    const auto number_of = [&](CrossedEdge<Point> edge) {
+    const auto number_of = [&](ActiveEdge<Point> edge) {
         Remembered& last = memory[edge.mixed() >> (64 - memory_bits)];
         // Found lately or not is nearly a toss, so what happens to a new edge happens to all, and only new ones count.
         const unsigned is_new = !(last.edge == edge) | (last.chunk != chunk);
@@ -160,7 +160,7 @@ void Cutter<Point>::cut() {
         unsigned made;
         std::array<std::uint32_t, 4>& numbers = polygons[tets];
         if (codes_[i] & tet_code::unusual) [[unlikely]] {
-            std::array<CrossedEdge<Point>, 4> polygon;
+            std::array<ActiveEdge<Point>, 4> polygon;
             made = unusual_polygon(i, polygon);
             if (made == 0) continue;
             for (std::size_t k = 0; k < 4; ++k) numbers[k] = number_of(polygon[k]);
@@ -177,7 +177,7 @@ void Cutter<Point>::cut() {
         if (context_.rounds_coordinates) counts_.coarse_tets += is_coarse(i);
     }
     edges_ = edges;
-    for (const CrossedEdge<Point>* edge = found; edge < next; ++edge) ++in_range_[context_.ranges.of(edge->lower)];
+    for (const ActiveEdge<Point>* edge = found; edge < next; ++edge) ++in_range_[context_.ranges.of(edge->lower)];
     chunk_->triangles += made_triangles;
     const auto new_edges = static_cast<std::uint32_t>(next - found);
     arena_.keep(found, new_edges);
@@ -187,7 +187,7 @@ void Cutter<Point>::cut() {
 /// The polygon of a tet that the batch leaves open, with equal edges at a tied point; the fourth repeats the third when
 /// there is one triangle. Returns the number of triangles.
 template <class Point>
-unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<CrossedEdge<Point>, 4>& polygon) {
+unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<ActiveEdge<Point>, 4>& polygon) {
     std::uint8_t code = codes_[tet];
     if (code & tet_code::collapsed) return 0;
     std::array<Point, 4> corner;
@@ -206,8 +206,8 @@ unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<CrossedEdge<
     const SortedPolygon& p = sorted_polygons[code & (tet_code::case_mask | tet_code::negative)];
     for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t a = p.lower[k], b = p.higher[k], above = code >> a & 1 ? a : b;
-        polygon[k] = is_tied[above] ? CrossedEdge<Point>{corner[above], corner[above]}
-                                    : CrossedEdge<Point>{corner[a], corner[b]};
+        polygon[k] =
+            is_tied[above] ? ActiveEdge<Point>{corner[above], corner[above]} : ActiveEdge<Point>{corner[a], corner[b]};
     }
     const auto differ = [&](std::size_t a, std::size_t b, std::size_t c) {
         return polygon[a] != polygon[b] && polygon[b] != polygon[c] && polygon[c] != polygon[a];

@@ -13,12 +13,12 @@
 
 namespace isotet::cpu::direct {
 
-/// A crossed edge by the user's numbers of its ends, `Point` wide; a tied point is an edge to itself.
+/// An active edge by the user's numbers of its ends, `Point` wide; a tied point is an edge to itself.
 template <class Point>
-struct CrossedEdge {
+struct ActiveEdge {
     Point lower, higher;
 
-    friend bool operator==(const CrossedEdge& a, const CrossedEdge& b) {
+    friend bool operator==(const ActiveEdge& a, const ActiveEdge& b) {
         if constexpr (sizeof(Point) == 4) return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
         else return a.lower == b.lower && a.higher == b.higher;
     }
@@ -28,7 +28,7 @@ struct CrossedEdge {
     }
 };
 
-/// What a batch of cut tets leaves. Edges are numbered within the chunk; one that was found by another chunk, or too
+/// What a batch of active tets leaves. Edges are numbered within the chunk; one that was found by another chunk, or too
 /// long ago to be remembered, is found again.
 template <class Point>
 struct Piece {
@@ -36,7 +36,7 @@ struct Piece {
     const std::array<std::uint32_t, 4>* polygons = nullptr; ///< of each tet; its triangles are 0 1 2 and, if two, 0 2 3
     const std::uint8_t* triangles = nullptr;                ///< 1 or 2
     const std::uint32_t* cells = nullptr;                   ///< within the chunk; null when nobody asks
-    const CrossedEdge<Point>* found = nullptr;              ///< in the order of their numbers
+    const ActiveEdge<Point>* found = nullptr;               ///< in the order of their numbers
 };
 
 /// The pieces of some consecutive cells.
@@ -66,11 +66,11 @@ struct CutContext {
     const ops::DirectInput& input;
     Sides& sides;
     Ranges ranges;
-    bool mostly_negative = false;    ///< what is assumed of the grid's tetrahedra
+    bool mostly_negative = false; ///< what is assumed of the grid's tetrahedra
     bool rounds_coordinates = false;
     std::array<double, 3> origin{};
     bool keep_cells = false;
-    std::atomic<bool> broken{false}; ///< a cell breaks a rule
+    std::atomic<bool> broken{false};   ///< a cell breaks a rule
     std::atomic<bool> saw_flat{false}; ///< a flat tetrahedron was cut, for which `mostly_negative` matters
     Budget budget{};
 };
@@ -107,12 +107,12 @@ private:
 
     /// Where an edge was last found. Several share a place: the last one stays.
     struct Remembered {
-        CrossedEdge<Point> edge;
+        ActiveEdge<Point> edge;
         std::uint32_t number, chunk;
     };
 
     void cut();
-    unsigned unusual_polygon(std::size_t tet, std::array<CrossedEdge<Point>, 4>& polygon);
+    unsigned unusual_polygon(std::size_t tet, std::array<ActiveEdge<Point>, 4>& polygon);
     bool is_mirrored_flat(std::size_t tet);
     bool is_coarse(std::size_t tet) const;
 

@@ -134,9 +134,9 @@ private:
         } catch (const Budget::Exceeded&) {
             const std::uint64_t tets = count_cut_tets(input_.cells, sides_);
             const std::uint64_t most =
-                tets * (24 + 4 * (sizeof(CrossedEdge<Point>) + sizeof(FoundEdge<Point>) + 3 * sizeof(Real)));
+                tets * (24 + 4 * (sizeof(ActiveEdge<Point>) + sizeof(FoundEdge<Point>) + 3 * sizeof(Real)));
             return Error{ErrorCode::out_of_memory,
-                         fmt::format("extraction may need {} for {} cut tets, but {} are free",
+                         fmt::format("extraction may need {} for {} active tets, but {} are free",
                                      core::format_bytes(most), tets, core::format_bytes(core::free_memory()))};
         }
         if (auto sound = core::check_cells(input_.grid, input_.cells, progress); !sound) return sound.error();

@@ -12,10 +12,10 @@ namespace isotet::cpu {
 /// Errors       invalid_data for a broken grid; out_of_memory before memory is taken; cancelled
 template <class Real>
 Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
-                                       const Progress& progress);
+                                         const Progress& progress);
 
 namespace direct {
-/// From this many points on, or so many edges found by cut tets, point numbers of welding have 64 bits. Tests lower it.
+/// From this many points on, or so many edges found by active tets, point numbers of welding have 64 bits. Tests lower it.
 inline std::uint64_t wide_points_from = std::uint64_t{1} << 31;
 } // namespace direct
 

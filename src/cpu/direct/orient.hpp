@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic on a batch of cut tets: corners sorted, cases, signs of volumes. Plain loops over rows, which the
+// The arithmetic on a batch of active tets: corners sorted, cases, signs of volumes. Plain loops over rows, which the
 // compiler turns into vectors of whatever the caller is compiled for; nothing depends on which.
 #pragma once
 

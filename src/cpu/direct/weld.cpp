@@ -44,7 +44,7 @@ void scatter(const CutCells<Point>& cut, std::size_t cutter, const Ranges& range
         auto number = static_cast<Point>(chunk.edges);
         for (const Piece<Point>& piece : chunk.pieces)
             for (std::uint32_t i = 0; i < piece.edges; ++i) {
-                const CrossedEdge<Point> edge = piece.found[i];
+                const ActiveEdge<Point> edge = piece.found[i];
                 out[places[ranges.of(edge.lower)]++] = {edge, number++};
             }
     }

@@ -13,7 +13,7 @@ namespace isotet::cpu::direct {
 /// An edge and the number under which it was found.
 template <class Point>
 struct FoundEdge {
-    CrossedEdge<Point> edge;
+    ActiveEdge<Point> edge;
     Point number;
 };
 

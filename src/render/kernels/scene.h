@@ -90,7 +90,7 @@ ISOTET_CONSTANT page_tets = 65536u;     ///< of a store, but for its last page
 ISOTET_CONSTANT tet_group = 32u;        ///< tets of a workgroup of mesh shaders
 ISOTET_CONSTANT twin_size = 64u;        ///< invocations of a workgroup, a vertex of a tet each
 
-/// Half the table of marching tetrahedra: by which corners are above (1, 2, 4, 8), four crossed edges around. An index
+/// Half the table of marching tetrahedra: by which corners are above (1, 2, 4, 8), four active edges around. An index
 /// of 8 or more has the row of 15 - index. Where three edges are crossed the last stands twice, and with it the
 /// vertices.
 #define ISOTET_HALF_CASES                                                                           \

@@ -102,9 +102,9 @@ private:
     Resident resident_;
     std::optional<PageCache> cache_;
     CarriedFields fields_;
-    Buffer results_; ///< heads of surfaces, on their way to the processor
+    Buffer results_;          ///< heads of surfaces, on their way to the processor
     bool torn_ = false;       ///< setting a field or points ended half-way
-    bool many_edges_ = false; ///< some cluster had many crossed edges once
+    bool many_edges_ = false; ///< some cluster had many active edges once
 };
 
 } // namespace isotet::vulkan

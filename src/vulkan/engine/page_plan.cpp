@@ -49,7 +49,7 @@ std::vector<PlannedPage> cut(const Packed& packed, std::uint64_t page_bytes) {
     return pages;
 }
 
-/// Calls f(neighbour, its part of the foreign points) for every neighbour in another page.
+/// Calls f(neighbour, its part of the ghost points) for every neighbour in another page.
 template <class F>
 void for_outside(const Packed& packed, const PlannedPage& page, F&& f) {
     for (std::uint32_t c = page.first_cluster; c < page.end_cluster(); ++c) {
@@ -57,8 +57,8 @@ void for_outside(const Packed& packed, const PlannedPage& page, F&& f) {
         std::size_t local = 0;
         for (const core::Neighbour& neighbour : links.neighbours) {
             if (neighbour.cluster < page.first_cluster)
-                f(neighbour, links.foreign_points.subspan(local, neighbour.foreign_points));
-            local += neighbour.foreign_points;
+                f(neighbour, links.ghost_points.subspan(local, neighbour.ghost_points));
+            local += neighbour.ghost_points;
         }
     }
 }
@@ -107,17 +107,17 @@ public:
         const ClusterHeader& h = packed_.headers[cluster];
         const ClusterLinks links = packed_.cluster_links(cluster);
         std::uint8_t places[core::max_cluster_points + 3] = {};
-        std::copy(links.foreign_points.begin(), links.foreign_points.end(), places);
+        std::copy(links.ghost_points.begin(), links.ghost_points.end(), places);
         std::uint32_t point = 0, seam = 0;
         for (const core::Neighbour& neighbour : links.neighbours) {
             const layout::Neighbour entry{neighbour.cluster, first_point(neighbour, places + point),
                                           point + (seam << 16)};
             std::memcpy(out, &entry, sizeof entry);
             out += sizeof entry / 4;
-            point += neighbour.foreign_points;
-            seam += neighbour.foreign_seams;
+            point += neighbour.ghost_points;
+            seam += neighbour.ghost_seams;
         }
-        const std::size_t point_words = core::words_for(h.foreign_points);
+        const std::size_t point_words = core::words_for(h.ghost_points);
         std::memcpy(out, places, 4 * point_words);
         // The seams stand there as they do here.
         const std::size_t before = 2u * h.neighbours + point_words;
@@ -132,7 +132,7 @@ private:
         if (neighbour.cluster >= page_.first_cluster)
             return static_cast<std::uint32_t>(first - page_.layout.first_point);
         const auto begin = std::lower_bound(page_.halo.begin(), page_.halo.end(), first);
-        for (std::size_t k = 0; k < neighbour.foreign_points; ++k)
+        for (std::size_t k = 0; k < neighbour.ghost_points; ++k)
             places[k] = static_cast<std::uint8_t>(std::lower_bound(begin, page_.halo.end(), first + places[k]) - begin);
         return page_.layout.own_points + static_cast<std::uint32_t>(begin - page_.halo.begin());
     }
@@ -161,9 +161,9 @@ void place_clusters(const Packed& packed, const PlannedPage& page, std::uint32_t
         out[i].first_point = static_cast<std::uint32_t>(h.first_point - page.layout.first_point);
         out[i].first_group = h.first_group - page.layout.first_group;
         out[i].first_link = link;
-        out[i].points = h.own_points | std::uint32_t{h.foreign_points} << 16;
+        out[i].points = h.own_points | std::uint32_t{h.ghost_points} << 16;
         out[i].tets = h.tets | std::uint32_t{h.neighbours} << 16;
-        out[i].seams = h.own_seams | std::uint32_t{h.foreign_seams} << 16;
+        out[i].seams = h.own_seams | std::uint32_t{h.ghost_seams} << 16;
         link += static_cast<std::uint32_t>(ClusterLinks::words(h)) + h.neighbours;
     }
 }

@@ -33,7 +33,7 @@ constexpr std::uint64_t max_page_bytes = std::uint64_t{1} << 30;
 /// Pages of about `page_bytes`, max_page_bytes at most, each of one cluster at least, halos beside.
 ///
 /// `packed`     single precision, fewer than 2^32 points
-/// Cost         O(C + foreign points); parallel
+/// Cost         O(C + ghost points); parallel
 std::vector<PlannedPage> plan_pages(const core::Packed& packed, std::uint64_t page_bytes);
 
 /// Where the clusters of a page lie in it and what they have; `first_mask` is left to the caller.

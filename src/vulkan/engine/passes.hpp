@@ -32,7 +32,7 @@ public:
     /// Makes the kernels that surfaces with these parts need. `resident` is borrowed.
     static Result<Passes> make(Context& context, const Resident& resident, const SurfaceParts& parts);
 
-    /// Makes the kernel for clusters with many crossed edges, which takes much shared memory and is hardly ever needed.
+    /// Makes the kernel for clusters with many active edges, which takes much shared memory and is hardly ever needed.
     Result<void> make_emit_many(Context& context);
     bool has_emit_many() const noexcept { return emit_many_; }
 
@@ -46,7 +46,7 @@ public:
     /// `batch`   pages with this number only; 0: all
     void count(Recorder& recorder, const Task& task, std::uint32_t batch = 0) const;
     void scan(Recorder& recorder, const Task& task) const;
-    /// Leaves clusters with many crossed edges out without make_emit_many().
+    /// Leaves clusters with many active edges out without make_emit_many().
     void emit(Recorder& recorder, const Task& task, std::uint32_t batch = 0) const;
 
     /// Normals that need the whole surface, and fields; nothing where the parts have none.

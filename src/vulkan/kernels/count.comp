@@ -45,7 +45,7 @@ void load_points(bool merge) {
     if (self >= local_points()) return;
     const float value = value_of(page_point(self));
     classify(self, value, push.isovalue, push.tied, merge);
-    if (self >= foreign_points && value == push.tied) atomicAdd(tied_points, 1u);
+    if (self >= ghost_points && value == push.tied) atomicAdd(tied_points, 1u);
 }
 
 void cut_tets(bool special) {
@@ -79,8 +79,8 @@ void find_seams() {
         atomicOr(own_seam_bits[k / 32u], 1u << k % 32u);
         ++found;
     }
-    for (uint k = gl_LocalInvocationIndex; k < foreign_seams; k += workgroup_size) {
-        const uvec3 seam = foreign_seam(k);
+    for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
+        const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
         ++found;
         // Where all points of the owner have data, it knows from its own tets: all of them count.
@@ -108,8 +108,8 @@ void write_own_seams(uint number) {
 void tell_tied(uint number) {
     const uint self = gl_LocalInvocationIndex;
     if (self >= local_points() || (used_tied[self / 32u] >> self % 32u & 1u) == 0u) return;
-    if (self >= foreign_points) {
-        tell_owner(number, self - foreign_points, 1u);
+    if (self >= ghost_points) {
+        tell_owner(number, self - ghost_points, 1u);
     } else {
         const Neighbour neighbour = neighbour_of(self, 0u);
         tell_owner(neighbour.cluster, place_in_owner(tables, neighbour, self), 1u);

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Writes the vertices and triangles of each listed cluster straight to their place in the surface. A workgroup a cluster.
-// A vertex on an edge has as its number the crossed edges before it in a matrix of bits, one on a seam the bits before it in
+// A vertex on an edge has as its number the active edges before it in a matrix of bits, one on a seam the bits before it in
 // its owner's mask: no edge is stored, nothing is searched for. Twin: cpu/emit.cpp.
 //
 // Vertices of a cluster: tied own points, own seams in stored order, inner edges by (lower, higher). Its triangles: by tet,
@@ -24,7 +24,7 @@ shared uint points[max_cluster_points]; ///< page-local numbers of local points
 shared float values[max_cluster_points];
 shared uint tied_numbers[max_cluster_points]; ///< of the vertices at tied points
 shared uint edge_count;
-shared uint edge_ranks[matrix_words];         ///< crossed edges before each word of the matrix
+shared uint edge_ranks[matrix_words];         ///< active edges before each word of the matrix
 shared uint edge_numbers[edge_room];          ///< by rank: the vertex on the edge; before that, lower + 256 * higher
 shared uint seam_bits[edge_room / 32u];       ///< by rank: the edge is a seam
 shared uint seam_ranks[edge_room / 32u];
@@ -103,7 +103,7 @@ void cut_tets(bool special) {
     }
 }
 
-/// Ranks of crossed edges, and the first triangle of each group.
+/// Ranks of active edges, and the first triangle of each group.
 void rank_edges() {
     const uint self = gl_LocalInvocationIndex;
     uint edges = 0u;
@@ -134,12 +134,12 @@ void set_seam_number(uvec2 edge, uint number) {
 
 bool is_masked(uint bit) { return (Words(tables.masks).at[cluster.first_mask + bit / 32u] >> bit % 32u & 1u) != 0u; }
 
-/// Numbers of the tied points that foreign clusters own, and of this cluster's own.
+/// Numbers of the tied points that other clusters own, and of this cluster's own.
 void number_tied() {
     const uint self = gl_LocalInvocationIndex;
     if (self >= local_points() || !is_in(tied, self)) return;
-    if (self >= foreign_points) {
-        tied_numbers[self] = start.vertex + bits_before(cluster.first_mask, self - foreign_points);
+    if (self >= ghost_points) {
+        tied_numbers[self] = start.vertex + bits_before(cluster.first_mask, self - ghost_points);
         return;
     }
     const Neighbour neighbour = neighbour_of(self, 0u);
@@ -155,8 +155,8 @@ void number_seams() {
         const uvec2 edge = own_seam(k);
         if (is_crossed(edge)) set_seam_number(edge, own_seam_number(k));
     }
-    for (uint k = gl_LocalInvocationIndex; k < foreign_seams; k += workgroup_size) {
-        const uvec3 seam = foreign_seam(k);
+    for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
+        const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
         const uint owner = neighbour_of(k, 16u).cluster;
         set_seam_number(seam.xy, Starts(tables.starts).at[owner].seam_vertex +
@@ -194,7 +194,7 @@ void write_vertices(bool special) {
         } else {
             const uint place = item - edges - own_seams;
             if (!is_masked(place)) continue;
-            ends = uvec2(foreign_points + place);
+            ends = uvec2(ghost_points + place);
             number = tied_numbers[ends.x];
         }
         float t = 0.0;

@@ -9,32 +9,32 @@
 Cluster cluster;
 Page page;
 Words page_words;
-uint own_points, foreign_points, tet_count, neighbour_count, own_seams, foreign_seams;
-uint foreign_points_at, own_seams_at, foreign_seams_at; ///< words of the page
+uint own_points, ghost_points, tet_count, neighbour_count, own_seams, ghost_seams;
+uint ghost_points_at, own_seams_at, ghost_seams_at; ///< words of the page
 
 void open_cluster(Tables tables, uint number) {
     cluster = Clusters(tables.clusters).at[number];
     page = Pages(tables.pages).at[cluster.page];
     page_words = Words(page.data);
     own_points = cluster.points & 0xffffu;
-    foreign_points = cluster.points >> 16;
+    ghost_points = cluster.points >> 16;
     tet_count = cluster.tets & 0xffffu;
     neighbour_count = cluster.tets >> 16;
     own_seams = cluster.seams & 0xffffu;
-    foreign_seams = cluster.seams >> 16;
-    foreign_points_at = page.links + cluster.first_link + 3u * neighbour_count;
-    own_seams_at = foreign_points_at + (foreign_points + 3u) / 4u;
-    foreign_seams_at = own_seams_at + (own_seams + 1u) / 2u;
+    ghost_seams = cluster.seams >> 16;
+    ghost_points_at = page.links + cluster.first_link + 3u * neighbour_count;
+    own_seams_at = ghost_points_at + (ghost_points + 3u) / 4u;
+    ghost_seams_at = own_seams_at + (own_seams + 1u) / 2u;
 }
 
-uint local_points() { return foreign_points + own_points; }
+uint local_points() { return ghost_points + own_points; }
 
 Neighbour neighbour_at(uint place) {
     const uint at = page.links + cluster.first_link + 3u * place;
     return Neighbour(page_words.at[at], page_words.at[at + 1u], page_words.at[at + 2u]);
 }
 
-/// The neighbour that owns foreign point or seam `k`: the last one whose part begins at or before it. `shift` is 0 for
+/// The neighbour that owns ghost point or seam `k`: the last one whose part begins at or before it. `shift` is 0 for
 /// points, 16 for seams.
 Neighbour neighbour_of(uint k, uint shift) {
     const uint begins_at = page.links + cluster.first_link + 2u;
@@ -48,13 +48,13 @@ Neighbour neighbour_of(uint k, uint shift) {
     return neighbour_at(first);
 }
 
-/// Foreign point `k`: its place among the points that its neighbour has in this page.
-uint foreign_place(uint k) { return page_words.at[foreign_points_at + k / 4u] >> 8u * (k % 4u) & 0xffu; }
+/// Ghost point `k`: its place among the points that its neighbour has in this page.
+uint ghost_place(uint k) { return page_words.at[ghost_points_at + k / 4u] >> 8u * (k % 4u) & 0xffu; }
 
 /// The page-local number of local point `k`.
 uint page_point(uint k) {
-    if (k >= foreign_points) return cluster.first_point + k - foreign_points;
-    return neighbour_of(k, 0u).first_point + foreign_place(k);
+    if (k >= ghost_points) return cluster.first_point + k - ghost_points;
+    return neighbour_of(k, 0u).first_point + ghost_place(k);
 }
 
 float value_of(uint point) { return uintBitsToFloat(page_words.at[page.values + point]); }
@@ -70,10 +70,10 @@ uint packed_point(uint point) {
     return point < page.own_points ? page.first_point + point : page_words.at[page.halo + point - page.own_points];
 }
 
-/// Place of foreign point `k` among the own points of its owner.
+/// Place of ghost point `k` among the own points of its owner.
 uint place_in_owner(Tables tables, Neighbour neighbour, uint k) {
-    const uint point = neighbour.first_point + foreign_place(k);
-    if (point < page.own_points) return foreign_place(k);
+    const uint point = neighbour.first_point + ghost_place(k);
+    if (point < page.own_points) return ghost_place(k);
     const Cluster owner = Clusters(tables.clusters).at[neighbour.cluster];
     return packed_point(point) - Pages(tables.pages).at[owner.page].first_point - owner.first_point;
 }
@@ -95,9 +95,9 @@ uvec2 own_seam(uint k) {
     return uvec2(pair & 0xffu, pair >> 8 & 0xffu);
 }
 
-/// (lower, higher, index among the owner's own seams) of foreign seam `k`.
-uvec3 foreign_seam(uint k) {
-    const uint word = page_words.at[foreign_seams_at + k];
+/// (lower, higher, index among the owner's own seams) of ghost seam `k`.
+uvec3 ghost_seam(uint k) {
+    const uint word = page_words.at[ghost_seams_at + k];
     return uvec3(word & 0xffu, word >> 8 & 0xffu, word >> 16);
 }
 

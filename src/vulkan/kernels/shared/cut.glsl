@@ -14,7 +14,7 @@ const uint tied = 4u;    ///< value == tied_value (Ties::merge; with Ties::keep 
 const uint no_data = 8u;
 shared uint sides[12];
 
-/// Crossed edges of the tets that give triangles: bit (lower, higher), four words a row. Edges to a tied point are not in it.
+/// Active edges of the tets that give triangles: bit (lower, higher), four words a row. Edges to a tied point are not in it.
 shared uint matrix[matrix_words];
 
 shared uint hit_groups; ///< bits: whose range holds the isovalue
@@ -89,7 +89,7 @@ CutTet cut_tet(uint tet, bool special) {
     return cut;
 }
 
-/// Crossed edge `k` of the tet's polygon, 0 to 3, as (corner above, corner below).
+/// Active edge `k` of the tet's polygon, 0 to 3, as (corner above, corner below).
 uvec2 polygon_edge(CutTet cut, uint k) {
     const uint nibble = tet_cases[cut.above] >> 4u * k;
     return uvec2(nibble & 3u, nibble >> 2 & 3u);

@@ -12,9 +12,9 @@
 //                       own points of its clusters       halo, in packed order
 //
 //   links of a cluster  neighbours      a Neighbour each, ascending
-//                       foreign points  1 byte each: place behind Neighbour::first_point
+//                       ghost points  1 byte each: place behind Neighbour::first_point
 //                       own seams       2 bytes each (lower, higher local index)
-//                       foreign seams   1 word each: lower + 256 * higher + 65536 * index among the owner's own seams
+//                       ghost seams   1 word each: lower + 256 * higher + 65536 * index among the owner's own seams
 #ifndef ISOTET_LAYOUT_H
 #define ISOTET_LAYOUT_H
 
@@ -40,10 +40,10 @@ ISOTET_CONSTANT matrix_words = 512u;         ///< a bit for every pair of local 
 ISOTET_CONSTANT tied_words = 4u;             ///< of a cluster's masks, before those of its own seams
 ISOTET_CONSTANT segment_clusters = 128u;     ///< a workgroup of select and scan
 ISOTET_CONSTANT block_segments = 128u;
-ISOTET_CONSTANT few_edges = 1024u;           ///< crossed edges of a cluster that the smaller emit kernel has room for
-ISOTET_CONSTANT max_edges = 4096u;          ///< crossed edges that a cluster can have: 64 points below, 64 above
+ISOTET_CONSTANT few_edges = 1024u;           ///< active edges of a cluster that the smaller emit kernel has room for
+ISOTET_CONSTANT max_edges = 4096u;          ///< active edges that a cluster can have: 64 points below, 64 above
 
-/// Marching tetrahedra by which corners are above (core/case_table.hpp): four crossed edges, each corner above + 4 *
+/// Marching tetrahedra by which corners are above (core/case_table.hpp): four active edges, each corner above + 4 *
 /// corner below, in 4 bits; then the number of triangles. engine/layout.hpp checks them against the table.
 #define ISOTET_TET_CASES                                                        \
     0x00000u, 0x188c4u, 0x1dd91u, 0x2cd98u, 0x166e2u, 0x26ec4u, 0x2de21u, 0x1ddecu, \
@@ -71,16 +71,16 @@ struct Cluster {
     uint first_group;  ///< in the page
     uint first_link;   ///< in the page's links
     uint first_mask;   ///< in the masks: tied_words, then one bit an own seam
-    uint points;       ///< own + 65536 * foreign
+    uint points;       ///< own + 65536 * ghost
     uint tets;         ///< tets + 65536 * neighbours
-    uint seams;        ///< own + 65536 * foreign
+    uint seams;        ///< own + 65536 * ghost
 };
 
 /// What core::Neighbour says, with sums in place of counts: nothing has to be added up to find a part.
 struct Neighbour {
     uint cluster;
     uint first_point;  ///< page-local: of its own points, or of its part of the halo
-    uint begin;        ///< its first foreign point + 65536 * its first foreign seam
+    uint begin;        ///< its first ghost point + 65536 * its first ghost seam
 };
 
 /// Smallest and largest value of a cluster; has_no_data is 1 where a point has none.
@@ -146,7 +146,7 @@ struct Output {
     uint selected_clusters;
     uint tied_points;      ///< own points of selected clusters with the isovalue as their value
     uint missing_normals;  ///< 1: some gradient normal is zero
-    uint many_edges;       ///< 1: some cluster has more crossed edges than few_edges
+    uint many_edges;       ///< 1: some cluster has more active edges than few_edges
     DrawArguments draw;
     uint vertex_groups_x, vertex_groups_y, vertex_groups_z;       ///< dispatch with an invocation a vertex
     uint triangle_groups_x, triangle_groups_y, triangle_groups_z; ///< a triangle
