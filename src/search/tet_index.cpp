@@ -1,5 +1,4 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
+#include "core/stopwatch.hpp"
 #include "core/storage.hpp"
 #include "core/tet_table.hpp"
 #include "search/all_tets.hpp"
@@ -64,28 +64,20 @@ std::uint64_t bytes_while_building(SearchIndex index) {
     return 0;
 }
 
-class Clock {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 Result<std::unique_ptr<IndexedTets>> build_tets(const core::Packed& packed, SearchIndex index,
                                                 const Progress& progress) {
     const auto cancelled = [] { return Error{ErrorCode::cancelled, "building the index was cancelled"}; };
     const std::uint64_t needed = packed.report.tets * (16 + bytes_while_building(index)) + 16 * packed.points();
     if (auto ok = core::require_memory("the index", needed); !ok) return ok.error();
     auto tets = std::make_unique<IndexedTets>();
-    const Clock table_clock;
+    const core::Stopwatch table_clock;
     auto table = core::make_tet_table(packed);
     if (!table) return table.error();
     tets->table = *std::move(table);
     tets->report.table_seconds = table_clock.seconds();
     if (progress.cancelled()) return cancelled();
     progress("index", 0.2);
-    const Clock index_clock;
+    const core::Stopwatch index_clock;
     tets->search = make_search(index, tets->table);
     tets->report.index_seconds = index_clock.seconds();
     if (progress.cancelled()) return cancelled();

@@ -14,18 +14,12 @@
 
 #include "io/reader.hpp"
 #include "io/own/escape.hpp"
+#include "io/own/vtk_attributes.hpp"
 #include "io/vtk/structured.hpp"
 #include "io/vtk/vtk_grid.hpp"
 
 namespace isotet::io::vtk {
 namespace {
-
-// Marks of vtkGhostType that take a cell out: it is another piece's (1), refined (8), outside (16), hidden (32).
-constexpr int cell_is_out = 1 | 8 | 16 | 32;
-
-constexpr std::string_view point_id_names[] = {"GlobalNodeId", "GlobalNodeIds", "GlobalPointIds", "GLOBAL_IDS_POINTS"};
-constexpr std::string_view cell_id_names[] = {"GlobalElementId", "GlobalElementIds", "GlobalCellIds",
-                                              "GLOBAL_IDS_CELLS"};
 
 /// The array of global numbers: the one marked so in the file, or one of a well-known name.
 Array global_ids(vtkDataSetAttributes* attributes, std::span<const std::string_view> names) {

@@ -10,17 +10,11 @@
 #include "core/parallel.hpp"
 #include "io/own/first_error.hpp"
 #include "io/own/text_scanner.hpp"
+#include "io/own/vtk_attributes.hpp"
 #include "io/reader.hpp"
 
 namespace isotet::io::vtk_xml {
 namespace {
-
-// Marks of vtkGhostType that take a cell out: it is another piece's (1), refined (8), outside (16), hidden (32).
-constexpr int cell_is_out = 1 | 8 | 16 | 32;
-
-constexpr std::string_view point_id_names[] = {"GlobalNodeId", "GlobalNodeIds", "GlobalPointIds", "GLOBAL_IDS_POINTS"};
-constexpr std::string_view cell_id_names[] = {"GlobalElementId", "GlobalElementIds", "GlobalCellIds",
-                                              "GLOBAL_IDS_CELLS"};
 
 const DataArray* find_array(const std::vector<DataArray>& arrays, std::string_view name) {
     const auto found = std::ranges::find(arrays, name, &DataArray::name);
