@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/read.hpp>
 
 namespace isotet::io {
@@ -28,11 +29,11 @@ std::span<const GridReader> own_readers();
 std::span<const GridReader> vtk_readers();
 
 /// True when `options` ask for the field; fields nobody asked for are not read.
-bool wanted(const ReadOptions& options, Association association, std::string_view name);
+ISOTET_API bool wanted(const ReadOptions& options, Association association, std::string_view name);
 
 /// The step that `options` ask for: the first if they do not say.
 ///
 /// Errors   invalid_argument, with the number of steps, when there is no such step
-Result<std::size_t> choose_step(const FileInfo& info, const ReadOptions& options);
+ISOTET_API Result<std::size_t> choose_step(const FileInfo& info, const ReadOptions& options);
 
 } // namespace isotet::io

@@ -77,6 +77,22 @@ TEST(OutputFile, LeavesNothingWhenItIsDroppedOrMovedFrom) {
     EXPECT_EQ(folder.entries(), 0U);
 }
 
+TEST(OutputFile, LeavesNothingWhenTheProcessIsKilled) {
+    const Folder folder;
+    put_content(folder / "out", "old");
+    const pid_t child = ::fork();
+    if (child == 0) {
+        auto file = OutputFile::open(folder / "out");
+        if (file && file->write(std::string(3 << 20, 'x'))) ::raise(SIGKILL);
+        ::_exit(1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(folder.entries(), 1U);
+    EXPECT_EQ(content_of(folder / "out"), "old");
+}
+
 TEST(OutputFile, KeepsThePermissionsOfTheOldFile) {
     const Folder folder;
     put_content(folder / "out", "old");

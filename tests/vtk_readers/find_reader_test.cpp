@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/vtk/find_reader.hpp"
+#include "io/process/find_reader.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
@@ -22,18 +22,18 @@ TEST(ReaderCandidates, BeginBesideTheLibraryAndEndWithTheBuiltInPath) {
                                  .to_programs = "../../bin",
                                  .program = "/opt/cfd/bin/solver",
                                  .search_path = "/usr/bin:/bin",
-                                 .built_in = "/usr/local/bin/isotet"}),
-              (Paths{"/moved/lib/x86/isotet", "/moved/bin/isotet", "/opt/cfd/bin/isotet", "/usr/bin/isotet",
-                     "/bin/isotet", "/usr/local/bin/isotet"}));
+                                 .built_in = "/usr/local/bin/isotet-reader"}),
+              (Paths{"/moved/lib/x86/isotet-reader", "/moved/bin/isotet-reader", "/opt/cfd/bin/isotet-reader", "/usr/bin/isotet-reader",
+                     "/bin/isotet-reader", "/usr/local/bin/isotet-reader"}));
 }
 
 TEST(ReaderCandidates, LeaveOutWhatIsNotKnown) {
     EXPECT_EQ(reader_candidates({}), Paths{});
-    EXPECT_EQ(reader_candidates({.program = "/a/tools/solver"}), (Paths{"/a/tools/isotet", "/a/bin/isotet"}));
+    EXPECT_EQ(reader_candidates({.program = "/a/tools/solver"}), (Paths{"/a/tools/isotet-reader", "/a/bin/isotet-reader"}));
 }
 
 TEST(ReaderCandidates, OfTheSearchPathAreAbsolute) {
-    EXPECT_EQ(reader_candidates({.search_path = ":.:bin:/one::../up:/two/:"}), (Paths{"/one/isotet", "/two/isotet"}));
+    EXPECT_EQ(reader_candidates({.search_path = ":.:bin:/one::../up:/two/:"}), (Paths{"/one/isotet-reader", "/two/isotet-reader"}));
 }
 
 class FoundReader : public testing::Test {
@@ -46,31 +46,29 @@ protected:
 };
 
 TEST_F(FoundReader, IsTheOneOfTheLibrarysPrefix) {
-    const std::string reader = program("moved/bin/isotet");
+    const std::string reader = program("moved/bin/isotet-reader");
     const ReaderPlaces places{.library = folder_.write("moved/lib/libisotet_io.so", ""),
                               .to_programs = "../bin",
-                              .search_path = std::filesystem::path(program("elsewhere/isotet")).parent_path()};
+                              .search_path = std::filesystem::path(program("elsewhere/isotet-reader")).parent_path()};
     EXPECT_EQ(find_reader(places).value(), reader);
 }
 
 TEST_F(FoundReader, IsTheOneInPathOtherwise) {
-    const std::string reader = program("elsewhere/isotet");
+    const std::string reader = program("elsewhere/isotet-reader");
     const ReaderPlaces places{.library = folder_.file("solver"),
                               .to_programs = "../bin",
                               .program = folder_.file("solver"),
                               .search_path = "/not/there:" + folder_.file("elsewhere"),
-                              .built_in = "/not/there/either/isotet"};
+                              .built_in = "/not/there/either/isotet-reader"};
     EXPECT_EQ(find_reader(places).value(), reader);
 }
 
-TEST_F(FoundReader, CanBeRunAndIsNotTheRunningProgram) {
-    const std::string running = program("a/isotet");
-    folder_.write("b/isotet", "not a program");
-    std::filesystem::create_directories(folder_.file("c/isotet"));
-    const std::string reader = program("d/isotet");
+TEST_F(FoundReader, CanBeRun) {
+    folder_.write("a/isotet-reader", "not a program");
+    std::filesystem::create_directories(folder_.file("b/isotet-reader"));
+    const std::string reader = program("c/isotet-reader");
     const auto path = [&](const char* name) { return folder_.file(name); };
-    const ReaderPlaces places{.program = running,
-                              .search_path = path("a") + ":" + path("b") + ":" + path("c") + ":" + path("d")};
+    const ReaderPlaces places{.program = path("solver"), .search_path = path("a") + ":" + path("b") + ":" + path("c")};
     EXPECT_EQ(find_reader(places).value(), reader);
 }
 
@@ -78,8 +76,8 @@ TEST_F(FoundReader, ThatIsNowhereIsAnErrorThatSaysWhatToDo) {
     const auto missing = find_reader({.program = folder_.file("solver"), .search_path = "/not/there"});
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().code, ErrorCode::system);
-    for (const std::string& part : {folder_.file("isotet"), std::string("/not/there/isotet"), std::string("PATH"),
-                                    std::string("ReadOptions::reader_program"), std::string("run_as_reader()")})
+    for (const std::string& part : {folder_.file("isotet-reader"), std::string("/not/there/isotet-reader"), std::string("PATH"),
+                                    std::string("ReadOptions::reader_program"), std::string("-DISOTET_IO=ON")})
         EXPECT_NE(missing.error().message.find(part), std::string::npos) << part << ": " << missing.error().message;
 }
 

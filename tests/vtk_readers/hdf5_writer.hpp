@@ -23,6 +23,23 @@ public:
     void external_link(const std::string& name, const std::string& file, const std::string& target) {
         H5Lcreate_external(file.c_str(), target.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
     }
+    void hard_link(const std::string& object, const std::string& name) {
+        H5Lcreate_hard(file_, object.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    }
+    /// Doubles whose bytes are in a file of their own.
+    void stored_outside(const std::string& name, const std::string& file, hsize_t count) {
+        const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+        H5Pset_external(list, file.c_str(), 0, count * sizeof(double));
+        empty_data(name, count, list);
+    }
+    /// Doubles that are those of a data set elsewhere.
+    void virtual_data(const std::string& name, const std::string& file, const std::string& source, hsize_t count) {
+        const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+        const hid_t space = H5Screate_simple(1, &count, nullptr);
+        H5Pset_virtual(list, space, file.c_str(), source.c_str(), space);
+        H5Sclose(space);
+        empty_data(name, count, list);
+    }
 
     template <class T>
     void data(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions) {
@@ -44,6 +61,12 @@ public:
     }
 
 private:
+    void empty_data(const std::string& name, hsize_t count, hid_t list) {
+        const hid_t space = H5Screate_simple(1, &count, nullptr);
+        H5Dclose(H5Dcreate2(file_, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, list, H5P_DEFAULT));
+        H5Sclose(space);
+        H5Pclose(list);
+    }
     void attach(const std::string& group, const char* name, hid_t space, hid_t type, const void* values) {
         const hid_t target = H5Gopen2(file_, group.c_str(), H5P_DEFAULT);
         const hid_t attribute = H5Acreate2(target, name, type, space, H5P_DEFAULT, H5P_DEFAULT);

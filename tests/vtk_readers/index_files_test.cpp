@@ -43,15 +43,18 @@ TEST_F(IndexFiles, PvtuReadsItsPieces) {
     expect_sample(read(folder_.write("case/grid.pvtu", pvtu({"parts/a.vtu"}))));
     const auto twice = read(folder_.write("case/grid.pvtu", pvtu({"parts/a.vtu", "parts/a.vtu"})));
     ASSERT_TRUE(twice) << twice.error().message;
-    EXPECT_EQ(twice->grid.points.tuples(), 28u);
+    EXPECT_EQ(twice->grid.points.tuples(), 14u) << "points at one place are one";
+    EXPECT_EQ(twice->grid.cells.count(), 18u);
+    EXPECT_EQ(twice->info.files,
+              (std::vector<std::string>{folder_.file("case/parts/a.vtu"), folder_.file("case/parts/a.vtu")}));
 }
 
-TEST_F(IndexFiles, PvtuJoinsPiecesByCoordinatesWhenAsked) {
+TEST_F(IndexFiles, PvtuKeepsPiecesApartWhenAsked) {
     ReadOptions options;
-    options.merge_pieces_by_coordinates = true;
-    const auto joined = read(folder_.write("case/grid.pvtu", pvtu({"parts/a.vtu", "parts/a.vtu"})), options);
-    ASSERT_TRUE(joined) << joined.error().message;
-    EXPECT_EQ(joined->grid.points.tuples(), 14u);
+    options.merge_pieces_by_coordinates = false;
+    const auto apart = read(folder_.write("case/grid.pvtu", pvtu({"parts/a.vtu", "parts/a.vtu"})), options);
+    ASSERT_TRUE(apart) << apart.error().message;
+    EXPECT_EQ(apart->grid.points.tuples(), 28u);
 }
 
 TEST_F(IndexFiles, PvdSortsItsTimes) {

@@ -76,6 +76,21 @@ TEST(Join, ByCoordinatesJoinsPointsOfDifferentPiecesOnly) {
     EXPECT_EQ(result->grid.cells.connectivity.at(4), 0);
 }
 
+TEST(Join, KeepsTheFirstPiecesValuesAndSaysWhereTheyDiffer) {
+    Loaded loaded;
+    for (const float add : {0.0f, 10.0f}) {
+        loaded.pieces.push_back(tetrahedron(0, add == 0 ? 1 : -1));
+        loaded.pieces.back().grid.point_fields = {{"same", Array::own(std::vector<float>{1, 2, 3, 4})},
+                                                  {"jump", Array::own(std::vector<float>{1, 2, 3 + add, 4})}};
+    }
+    const auto result = join(std::move(loaded), true);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->grid.points.tuples(), 5u);
+    EXPECT_EQ(result->grid.point_fields.at(1).values.at(2), 3);
+    EXPECT_TRUE(has_note(*result, "\"jump\" differs in 1 points"));
+    EXPECT_FALSE(has_note(*result, "\"same\" differs"));
+}
+
 TEST(Join, WithoutNumbersPutsPiecesSideBySideAndSaysSo) {
     Loaded loaded;
     for (const double apex : {1.0, -1.0}) loaded.pieces.push_back(tetrahedron(0, apex));

@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "io/vtk/messages.hpp"
+#include "io/process/messages.hpp"
 
 namespace isotet::io::vtk {
 namespace {

@@ -2,9 +2,13 @@
 // What happens to the reader process must never happen to its parent.
 #include <atomic>
 #include <csignal>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <thread>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +16,7 @@
 
 #include <isotet/read.hpp>
 
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
@@ -59,8 +64,112 @@ TEST_F(ReaderProcess, EndingByItselfIsAnErrorThatNamesTheStatus) {
 
 TEST_F(ReaderProcess, EndingWithoutAReplyIsAnError) { EXPECT_EQ(error_with("exit 0").code, ErrorCode::internal); }
 
-TEST_F(ReaderProcess, ReplyOfGarbageIsAnError) {
-    EXPECT_EQ(error_with("head -c 100000 /dev/urandom >&4; exit 0").code, ErrorCode::internal);
+TEST_F(ReaderProcess, SayingThatItRepliedWithoutAReplyIsAnError) {
+    EXPECT_EQ(error_with("printf '\\376' >&3; sleep 1000").code, ErrorCode::internal);
+}
+
+TEST_F(ReaderProcess, KilledForAnotherReasonThanTheFileSaysSo) {
+    const Error memory = error_with("kill -KILL $$");
+    EXPECT_EQ(memory.code, ErrorCode::out_of_memory);
+    expect_words(memory, {"signal 9", "memory"});
+    const Error time = error_with("kill -XCPU $$");
+    EXPECT_EQ(time.code, ErrorCode::system);
+    expect_words(time, {"ulimit -t"});
+    EXPECT_EQ(error_with("kill -TERM $$").code, ErrorCode::system);
+}
+
+/// A reader that notes each start.
+class ReaderSeries : public ReaderProcess {
+protected:
+    ReaderSeries() { options_.reader_program = counting("exec " + reader_path()); }
+    std::string counting(const std::string& commands) const {
+        return folder_.write_script("counting", "echo $$ >>" + folder_.file("starts") + "\n" + commands);
+    }
+    std::vector<int> starts() const {
+        std::istringstream lines(content_of(folder_.file("starts")));
+        return {std::istream_iterator<int>(lines), {}};
+    }
+    std::string sample() const { return folder_.file("sample.inp"); }
+    ReadOptions options_;
+};
+
+TEST_F(ReaderSeries, IsAnsweredByOneProcess) {
+    for (int i = 0; i < 5; ++i) {
+        ASSERT_TRUE(inspect(sample(), options_));
+        expect_two_cells(read(sample(), options_));
+    }
+    EXPECT_EQ(starts().size(), 1U);
+}
+
+TEST_F(ReaderSeries, OfAnotherFolderTakesAnotherProcess) {
+    folder_.write("other/sample.inp", content_of(sample()));
+    expect_two_cells(read(sample(), options_));
+    expect_two_cells(read(folder_.file("other/sample.inp"), options_));
+    expect_two_cells(read(sample(), options_));
+    EXPECT_EQ(starts().size(), 2U);
+}
+
+TEST_F(ReaderSeries, GoesOnWithANewProcessAfterABrokenFile) {
+    expect_two_cells(read(sample(), options_));
+    EXPECT_FALSE(read(folder_.write("broken.inp", content_of(sample()).substr(0, 40)), options_));
+    expect_two_cells(read(sample(), options_));
+    EXPECT_EQ(starts().size(), 2U);
+}
+
+TEST_F(ReaderSeries, GoesOnWithANewProcessWhereTheOldOneIsGone) {
+    expect_two_cells(read(sample(), options_));
+    ASSERT_EQ(starts().size(), 1U);
+    ::kill(starts()[0], SIGKILL);
+    expect_two_cells(read(sample(), options_));
+    EXPECT_EQ(starts().size(), 2U);
+}
+
+TEST_F(ReaderSeries, GoesOnInAProcessThatIsForkedOff) {
+    expect_two_cells(read(sample(), options_));
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const auto result = read(sample(), options_);
+        ::_exit(result && result->grid.cells.count() == 2 ? 0 : 1);
+    }
+    int status = 1;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    expect_two_cells(read(sample(), options_));
+    EXPECT_EQ(starts().size(), 2U);
+}
+
+TEST_F(ReaderSeries, EndsWithItsParent) {
+    const pid_t parent = ::fork();
+    if (parent == 0) ::_exit(read(sample(), options_) ? 0 : 1);
+    int status = 1;
+    ::waitpid(parent, &status, 0);
+    ASSERT_EQ(status, 0);
+    ASSERT_EQ(starts().size(), 1U);
+    const auto runs = [&] { // a process that has ended may wait for its new parent as a zombie
+        std::ifstream file("/proc/" + std::to_string(starts()[0]) + "/stat");
+        std::string number, name, state;
+        return file >> number >> name >> state && state != "Z" && state != "X";
+    };
+    for (int i = 0; i < 1000 && runs(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_FALSE(runs());
+}
+
+TEST_F(ReaderProcess, AGridLargerThanTheLimitOnFilesIsNotTheFilesFault) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    std::string content = "20000 1 0 0 0\n";
+    for (int i = 1; i <= 20000; ++i) content += std::to_string(i) + " 0 0 " + std::to_string(i) + "\n";
+    folder_.write("large.inp", content + "1 1 tet 1 2 3 4\n");
+    ASSERT_EXIT(
+        {
+            rlimit limit{};
+            limit.rlim_cur = limit.rlim_max = 100000;
+            ::setrlimit(RLIMIT_FSIZE, &limit);
+            const auto result = read(folder_.file("large.inp"));
+            const bool said = !result && result.error().code == ErrorCode::system &&
+                              result.error().message.find("ulimit -f") != std::string::npos;
+            ::_exit(said ? 0 : 1);
+        },
+        testing::ExitedWithCode(0), "");
 }
 
 TEST_F(ReaderProcess, OutputWithControlCharactersIsEscaped) {
@@ -98,7 +207,7 @@ TEST_F(ReaderProcess, FindsNoOtherOpenFiles) {
     ASSERT_GE(inherited, 0);
     const Error error = error_with("ls -l /proc/$$/fd; exit 3");
     ::close(inherited);
-    expect_words(error, {"/dev/null", "isotet-reply"});
+    expect_words(error, {"/dev/null", "socket"});
     EXPECT_EQ(error.message.find("private"), std::string::npos) << error.message;
 }
 
@@ -147,9 +256,18 @@ TEST_F(ReaderProcess, WorksForAParentThatWaitsForAllItsChildren) {
     for (int i = 0; i < 5; ++i) expect_two_cells(read(folder_.file("sample.inp")));
 }
 
+// Either of the two may be first at the status.
 TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatWaitsForAllItsChildren) {
     const WaitingForAllChildren host;
     const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
+    EXPECT_EQ(error.code, ErrorCode::invalid_data);
+    expect_words(error, {"sample.inp", "last words"});
+}
+
+TEST_F(ReaderProcess, ThatCrashesIsAnErrorForAParentThatIgnoresItsChildren) {
+    std::signal(SIGCHLD, SIG_IGN); // the system keeps no status
+    const Error error = error_with("echo 'last words' >&2; kill -SEGV $$");
+    std::signal(SIGCHLD, SIG_DFL);
     EXPECT_EQ(error.code, ErrorCode::invalid_data);
     expect_words(error, {"sample.inp", "without a complete reply", "SIGCHLD", "last words"});
 }

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "io/own/file_kind.hpp"
-#include "io/vtk/sealed_mapping.hpp"
+#include "io/process/sealed_mapping.hpp"
 
 namespace isotet::test {
 namespace {

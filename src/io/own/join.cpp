@@ -227,7 +227,7 @@ template <class TuplesOf>
 Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& column, std::size_t tuples,
                    const TuplesOf& tuples_of) {
     return made_array(column.type, tuples, column.components, [&](void* to) {
-        for (std::size_t p = 0; p < pieces.size(); ++p)
+        for (std::size_t p = pieces.size(); p-- > 0;) // where points were joined the first piece's value stays
             if (const Field* field = find(pieces[p].grid.*which, column.name))
                 place_tuples(field->values, column, to, [&](const auto& visit) { tuples_of(p, visit); });
     });
@@ -243,13 +243,37 @@ void note_column(const Column& column, std::size_t pieces, std::string_view kind
                                     escaped(column.name), column.pieces, pieces));
 }
 
-template <class TuplesOf>
+/// Points that were joined though their values differ: a field that jumps from piece to piece.
+void note_jumps(const std::vector<Piece>& pieces, const PointNumbers& numbers, const Field& joined,
+                std::vector<std::string>& notes) {
+    const std::size_t components = joined.values.components();
+    std::size_t jumps = 0;
+    for (const auto& [piece, point] : numbers.joined_points) {
+        const Field* field = find(pieces[piece].grid.point_fields, joined.name);
+        bool same = true;
+        for (std::size_t c = 0; field && c < components; ++c) {
+            const double a = field->values.at(point, c), b = joined.values.at(numbers(piece, point), c);
+            same = same && (a == b || (a != a && b != b));
+        }
+        if (!same) ++jumps;
+    }
+    if (jumps > 0)
+        notes.push_back(
+            fmt::format("point field \"{}\" differs in {} points that were joined: the first piece's values "
+                        "were taken; --keep-pieces keeps them apart",
+                        escaped(joined.name), jumps));
+}
+
+template <class TuplesOf, class Look>
 std::vector<Field> joined_fields(std::vector<Piece>& pieces, Fields which, std::string_view kind, std::size_t tuples,
-                                 const TuplesOf& tuples_of, std::vector<std::string>& notes) {
+                                 const TuplesOf& tuples_of, const Look& look, std::vector<std::string>& notes) {
     std::vector<Field> result;
     for (const Column& column : columns(pieces, which)) {
         note_column(column, pieces.size(), kind, notes);
-        if (column.fits) result.push_back({column.name, joined_field(pieces, which, column, tuples, tuples_of)});
+        if (column.fits) {
+            result.push_back({column.name, joined_field(pieces, which, column, tuples, tuples_of)});
+            look(result.back());
+        }
         for (Piece& piece : pieces)
             std::erase_if(piece.grid.*which, [&](const Field& field) { return field.name == column.name; });
     }
@@ -271,13 +295,14 @@ PointNumbers number_points(const std::vector<Piece>& pieces, bool by_coordinates
     }
     if (by_coordinates) {
         auto numbers = number_by_coordinates(pieces);
-        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points were merged", pieces.size(),
-                                    numbers.joined));
+        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points were merged; --keep-pieces keeps "
+                                    "them apart",
+                                    pieces.size(), numbers.joined));
         return numbers;
     }
     notes.push_back(
         fmt::format("{} pieces without global point numbers lie side by side: surfaces have seams between them "
-                    "unless points with equal coordinates are merged (--merge-pieces)",
+                    "since points with equal coordinates were to be kept apart (--keep-pieces)",
                     pieces.size()));
     return number_one_after_another(pieces);
 }
@@ -345,11 +370,13 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
         std::size_t next = first_cell[p];
         each_kept(kept, p, pieces[p].grid.cells.count(), [&](std::size_t cell) { visit(cell, next++); });
     };
-    result.grid.cell_fields = joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, result.notes);
+    result.grid.cell_fields =
+        joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, [](const Field&) {}, result.notes);
     result.grid.cells = compact(std::move(connectivity), std::move(offsets), std::move(types));
     for (Piece& piece : pieces) piece.grid.cells = Cells();
-    result.grid.point_fields =
-        joined_fields(pieces, &Grid::point_fields, "point", numbers.count, points_of, result.notes);
+    result.grid.point_fields = joined_fields(
+        pieces, &Grid::point_fields, "point", numbers.count, points_of,
+        [&](const Field& field) { note_jumps(pieces, numbers, field, result.notes); }, result.notes);
     // The coordinates, as one more field.
     for (Piece& piece : pieces) piece.grid.point_fields.push_back({"points", piece.grid.points});
     const Column coordinates = columns(pieces, &Grid::point_fields).front();

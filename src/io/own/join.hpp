@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <isotet/export.hpp>
+
 #include "io/own/loaded.hpp"
 
 namespace isotet::io {
@@ -14,6 +16,6 @@ namespace isotet::io {
 ///
 /// Errors   invalid_data when arrays do not fit together or a cell has a point out of range
 /// Cost     O(P + T); frees each piece's arrays once they are joined
-Result<ReadResult> join(Loaded loaded, bool by_coordinates);
+ISOTET_API Result<ReadResult> join(Loaded loaded, bool by_coordinates);
 
 } // namespace isotet::io

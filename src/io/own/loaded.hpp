@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
@@ -32,8 +33,8 @@ struct Loaded {
 enum class Depth { description, arrays };
 
 /// Adds a field to the description unless it is there.
-void announce(FileInfo& info, FieldInfo field);
+ISOTET_API void announce(FileInfo& info, FieldInfo field);
 
-Error broken(const std::string& path, std::string_view what);
+ISOTET_API Error broken(const std::string& path, std::string_view what);
 
 } // namespace isotet::io

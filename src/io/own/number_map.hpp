@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet::io {
@@ -41,7 +42,7 @@ public:
     /// `what`   "node", for the message
     /// Errors   invalid_data when a number was added twice
     /// Cost     O(n), or O(n log n) for sparse numbers
-    Result<void> close(std::string_view what);
+    ISOTET_API Result<void> close(std::string_view what);
 
     /// The position of a number, or `none`.
     std::uint64_t find(std::int64_t number) const noexcept {
@@ -55,8 +56,8 @@ public:
 private:
     static constexpr std::uint32_t empty = ~std::uint32_t{0};
 
-    void spread();
-    std::uint64_t find_sorted(std::int64_t number) const noexcept;
+    ISOTET_API void spread();
+    ISOTET_API std::uint64_t find_sorted(std::int64_t number) const noexcept;
 
     std::int64_t first_ = 0; ///< of consecutive numbers the first, of a table the lowest
     std::uint64_t count_ = 0;

@@ -58,6 +58,13 @@ Result<std::string> follow_links(const std::string& path) {
     return system_error(path, "cannot be written", ELOOP);
 }
 
+constexpr const char* own_files = "/proc/self/fd";
+
+std::string temporary_name() {
+    static std::atomic<unsigned> counter{0};
+    return fmt::format(".isotet-{}-{}.part", ::getpid(), counter++);
+}
+
 } // namespace
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -126,11 +133,13 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
         out.folder_ = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (!out.folder_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
 
-    static std::atomic<unsigned> counter{0};
+    // An old file's content may be private: nobody else may see the new one before it has the same bits.
+    const mode_t mode = out.mode_ ? 0600 : 0666;
+    // A file without a name is gone when this process is killed; it gets one through /proc.
+    if (::access(own_files, X_OK) == 0)
+        out.file_ = Descriptor(::openat(out.folder_.number(), ".", O_WRONLY | O_TMPFILE | O_CLOEXEC, mode));
     for (int i = 0; i < max_names && !out.file_; ++i) {
-        std::string candidate = fmt::format(".isotet-{}-{}.part", ::getpid(), counter++);
-        // An old file's content may be private: nobody else may see the new one before it has the same bits.
-        const mode_t mode = out.mode_ ? 0600 : 0666;
+        std::string candidate = temporary_name();
         out.file_ = Descriptor(
             ::openat(out.folder_.number(), candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
         if (out.file_) out.temporary_name_ = std::move(candidate);
@@ -168,13 +177,14 @@ Result<void> OutputFile::write_through(std::span<const std::byte> bytes) {
 
 Result<void> OutputFile::commit() {
     if (error_) return *error_;
-    if (temporary_name_.empty()) return Error{ErrorCode::internal, fmt::format("{} was committed twice", path_)};
+    if (!file_) return Error{ErrorCode::internal, fmt::format("{} was committed twice", path_)};
     if (auto flushed = flush(); !flushed) return flushed;
     if (mode_ && ::fchmod(file_.number(), *mode_) != 0) return fail("cannot be given its permissions", errno);
     while (::fsync(file_.number()) != 0) {
         if (errno == EINVAL || errno == ENOTSUP) break; // a file system that cannot
         if (errno != EINTR) return fail("cannot be flushed to the disk", errno);
     }
+    if (temporary_name_.empty() && !give_name()) return fail("cannot be given a name", errno);
     // Some file systems find out only here that the disk is full.
     if (::close(file_.release()) != 0 && errno != EINTR) return fail("cannot be closed", errno);
     if (::renameat(folder_.number(), temporary_name_.c_str(), folder_.number(), name_.c_str()) != 0) {
@@ -184,6 +194,17 @@ Result<void> OutputFile::commit() {
     // The new name, too, should survive a power cut; where a folder cannot be synced it need not.
     ::fsync(folder_.number());
     return {};
+}
+
+bool OutputFile::give_name() {
+    const std::string itself = fmt::format("{}/{}", own_files, file_.number());
+    for (int i = 0; i < max_names && temporary_name_.empty(); ++i) {
+        std::string candidate = temporary_name();
+        if (::linkat(AT_FDCWD, itself.c_str(), folder_.number(), candidate.c_str(), AT_SYMLINK_FOLLOW) == 0)
+            temporary_name_ = std::move(candidate);
+        else if (errno != EEXIST) return false;
+    }
+    return !temporary_name_.empty();
 }
 
 Error OutputFile::fail(std::string_view what, int number) {

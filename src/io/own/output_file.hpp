@@ -20,7 +20,8 @@ namespace isotet::io {
 ///
 /// Bytes go to a new file in the same folder; commit() flushes it to the disk, checks it and renames it over `path`.
 /// Until then, and for ever if anything fails or the OutputFile is destroyed, the old file stays as it was and the new
-/// one is removed. Of a symbolic link the file that it points to is replaced; permission bits of an old file are kept.
+/// one is removed; where the file system has files without names (Linux's O_TMPFILE), also when the process is killed
+/// before. Of a symbolic link the file that it points to is replaced; permission bits of an old file are kept.
 ///
 /// After an error every later call returns the same error.
 ///
@@ -45,12 +46,13 @@ private:
     OutputFile() = default;
     Result<void> flush();
     Result<void> write_through(std::span<const std::byte> bytes);
+    bool give_name();
     Error fail(std::string_view what, int number);
     void discard() noexcept;
 
-    std::string path_;            ///< as the user gave it, for messages
-    std::string name_;            ///< final name inside the folder
-    std::string temporary_name_;  ///< empty: nothing to remove
+    std::string path_;           ///< as the user gave it, for messages
+    std::string name_;           ///< final name inside the folder
+    std::string temporary_name_; ///< empty: nothing to remove, the file has no name yet
     Descriptor folder_;
     Descriptor file_;
     std::optional<unsigned> mode_; ///< permission bits of the old file

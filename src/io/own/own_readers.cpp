@@ -84,6 +84,9 @@ std::optional<std::string> solution_beside(const std::string& path) {
     return std::nullopt;
 }
 
+void add_file(FileInfo& info, const std::string& file) { info.files.push_back(file); }
+void add_file(ReadResult& result, const std::string& file) { result.info.files.push_back(file); }
+
 /// `most`   bytes of the mesh
 template <class Value, class Parse>
 Result<Value> with_mesh_and_solution(const std::string& path, const Progress& progress, std::size_t most,
@@ -93,8 +96,10 @@ Result<Value> with_mesh_and_solution(const std::string& path, const Progress& pr
         return with_file<Value>(path, progress, most, [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
     const auto solution = WholeFile::read(*solution_path, progress);
     if (!solution) return solution.error();
-    return with_file<Value>(path, progress, most,
-                            [&](std::string_view mesh) { return parse(mesh, std::optional(solution->text())); });
+    auto result = with_file<Value>(path, progress, most,
+                                   [&](std::string_view mesh) { return parse(mesh, std::optional(solution->text())); });
+    if (result) add_file(*result, *solution_path);
+    return result;
 }
 
 using OptionalText = std::optional<std::string_view>;
@@ -124,7 +129,10 @@ Result<Value> with_nodes_and_elements(const std::string& path, const Progress& p
     if (!nodes) return nodes.error();
     const auto elements = WholeFile::read(beside(path, ".ele"), progress, most);
     if (!elements) return elements.error();
-    return in_file<Value>(path, parse(nodes->text(), elements->text()));
+    auto result = in_file<Value>(path, parse(nodes->text(), elements->text()));
+    for (const char* extension : {".node", ".ele"})
+        if (result) add_file(*result, beside(path, extension));
+    return result;
 }
 
 Result<FileInfo> inspect_tetgen_files(const std::string& path, const ReadOptions&, const Progress& progress) {

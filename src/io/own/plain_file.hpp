@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "io/own/file_kind.hpp"
@@ -22,7 +23,7 @@ struct PlainFile {
 ///
 /// Errors   file: not there, not readable, a folder, a pipe or a device, empty; machine; out_of_memory when it is larger
 ///          than what can be addressed
-Result<PlainFile> open_plain_file(const std::string& path);
+ISOTET_API Result<PlainFile> open_plain_file(const std::string& path);
 
 /// Fills `to` with the bytes of the file from `at` on.
 ///
@@ -30,6 +31,6 @@ Result<PlainFile> open_plain_file(const std::string& path);
 Result<void> read_at(const PlainFile& file, const std::string& path, std::size_t at, std::span<std::byte> to);
 
 /// "PATH: cannot be read: REASON" for an errno.
-Error system_error(const std::string& path, std::string_view what, int number);
+ISOTET_API Error system_error(const std::string& path, std::string_view what, int number);
 
 } // namespace isotet::io

@@ -1,7 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 
@@ -50,6 +52,35 @@ struct Known {
     std::size_t piece;
 };
 
+struct Bounds {
+    Place low{}, high{};
+    bool hold(const Place& place) const {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (!(place[axis] >= low[axis] && place[axis] <= high[axis])) return false;
+        return true;
+    }
+};
+
+Bounds bounds_of(const Piece& piece) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Bounds bounds{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (std::size_t i = 0; i < piece.grid.points.tuples(); ++i) {
+        const Place here = place(piece, i);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            bounds.low[axis] = std::min(bounds.low[axis], here[axis]);
+            bounds.high[axis] = std::max(bounds.high[axis], here[axis]);
+        }
+    }
+    return bounds;
+}
+
+/// Only points that lie in the box of another piece can coincide with one of its points: most are never looked up.
+bool in_another(const std::vector<Bounds>& bounds, std::size_t piece, const Place& place) {
+    for (std::size_t other = 0; other < bounds.size(); ++other)
+        if (other != piece && bounds[other].hold(place)) return true;
+    return false;
+}
+
 } // namespace
 
 PointNumbers number_one_after_another(const std::vector<Piece>& pieces) {
@@ -90,15 +121,21 @@ std::optional<PointNumbers> number_by_ids(const std::vector<Piece>& pieces) {
 
 PointNumbers number_by_coordinates(const std::vector<Piece>& pieces) {
     PointNumbers result;
+    std::vector<Bounds> bounds;
+    for (const Piece& piece : pieces) bounds.push_back(bounds_of(piece));
     std::unordered_map<Place, Known, HashPlace> known;
-    known.reserve(all_points(pieces));
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         auto& numbers = result.numbers.emplace_back(pieces[p].grid.points.tuples());
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto [entry, is_new] = known.try_emplace(place(pieces[p], i), Known{result.count, p});
+            const Place here = place(pieces[p], i);
+            if (!in_another(bounds, p, here)) {
+                numbers[i] = result.count++;
+                continue;
+            }
+            const auto [entry, is_new] = known.try_emplace(here, Known{result.count, p});
             const bool other_piece = !is_new && entry->second.piece != p;
             numbers[i] = other_piece ? entry->second.number : result.count;
-            if (other_piece) ++result.joined;
+            if (other_piece) ++result.joined, result.joined_points.push_back({p, i});
             else ++result.count;
         }
     }

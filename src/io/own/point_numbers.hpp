@@ -15,6 +15,11 @@ struct PointNumbers {
     std::uint64_t count = 0;
     std::uint64_t joined = 0; ///< points merged with one of an earlier piece
 
+    struct Joined {
+        std::size_t piece, point;
+    };
+    std::vector<Joined> joined_points; ///< by coordinates only
+
     std::uint64_t operator()(std::size_t piece, std::uint64_t point) const {
         return numbers.empty() ? first[piece] + point : numbers[piece][point];
     }

@@ -268,6 +268,9 @@ Result<bool> visit_solution(std::string_view bytes, SolutionReader& reader) {
     visitor.headers_only = !reader.reads_values();
     auto whole = visit(bytes, reader, std::move(visitor));
     if (!whole) return Error{whole.error().code, "the .sol file beside it: " + whole.error().message};
+    if (!*whole && reader.fields().empty())
+        return Error{ErrorCode::invalid_data,
+                     "the .sol file beside it is cut short: it has neither SolAtVertices nor End"};
     return whole;
 }
 

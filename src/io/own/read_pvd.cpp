@@ -54,7 +54,11 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     auto files = entries(path);
     if (!files) return files.error();
     Loaded loaded;
-    for (const auto& [time, names] : *files) loaded.info.times.push_back(time);
+    for (const auto& [time, names] : *files) {
+        loaded.info.times.push_back(time);
+        for (const std::string& name : names)
+            if (const auto file = named_file(path, name, options.allow_outside)) loaded.info.files.push_back(*file);
+    }
     ReadOptions of_entries = options;
     of_entries.step.reset();
     auto step = choose_step(loaded.info, depth == Depth::arrays ? options : of_entries);
@@ -70,6 +74,7 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
         auto part = type == "PUnstructuredGrid" ? vtk_xml::load_parallel(*file, of_entries, depth, progress)
                                                 : vtk_xml::load_file(*file, type, of_entries, depth, true, progress);
         if (!part) return part.error();
+        for (std::string& piece : part->info.files) loaded.info.files.push_back(std::move(piece));
         for (FieldInfo& field : part->info.fields) announce(loaded.info, std::move(field));
         for (Piece& piece : part->pieces) loaded.pieces.push_back(std::move(piece));
         loaded.notes.insert(loaded.notes.end(), part->notes.begin(), part->notes.end());

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
+
 namespace isotet::io {
 
 inline bool is_space(char c) noexcept {
@@ -55,7 +57,7 @@ public:
     std::string_view quoted_of_line() noexcept;
 
     /// The next line that is not empty, from its first word to its last. Knows no comments inside the line.
-    std::string_view line() noexcept;
+    ISOTET_API std::string_view line() noexcept;
 
     /// Moves to the first character of the next line.
     void next_line() noexcept;
@@ -74,7 +76,7 @@ public:
     }
 
     /// "line 12 ('abc')", for messages: where the cursor stands and the word there. Counts lines: slow.
-    std::string where() const;
+    ISOTET_API std::string where() const;
 
 private:
     bool ends_word(const char* at) const noexcept {
@@ -122,7 +124,7 @@ private:
     const char* end_;
     char comment_;
 
-    static bool unusual_number(std::string_view word, double& value);
+    ISOTET_API static bool unusual_number(std::string_view word, double& value);
     template <std::integral Integer>
     static bool unusual_number(std::string_view word, Integer& value) {
         if (word.size() < 2 || word[0] != '+' || word[1] == '-') return false;
@@ -140,6 +142,6 @@ bool parse_number(std::string_view word, Number& value) {
 
 /// At most 40 characters of a file's own words, in quotes and with control characters and bytes that are not ASCII as
 /// \x.., for messages.
-std::string in_quotes(std::string_view text);
+ISOTET_API std::string in_quotes(std::string_view text);
 
 } // namespace isotet::io

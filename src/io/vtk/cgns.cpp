@@ -6,8 +6,10 @@
 #include <vtkCGNSReader.h>
 #include <vtkNew.h>
 
+#include "io/vtk/hdf5_walk.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaders.hpp"
+#include "io/vtk/unset_memory.hpp"
 #include "io/vtk/vtk_load.hpp"
 
 namespace isotet::io::vtk {
@@ -67,6 +69,9 @@ std::vector<FieldInfo> unglued(const std::vector<FieldInfo>& fields) {
 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
+    if (auto complete = check_adf_length(path); !complete) return complete.error();
+    if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+    const MarkedMemory marked;
     vtkNew<vtkCGNSReader> reader;
     reader->SetFileName(path.c_str());
     reader->SetUse3DVector(false); // no third component where the file has two
@@ -78,6 +83,7 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
             choose_arrays_by_name(*reader, chosen, info);
         });
     if (!loaded) return loaded;
+    if (auto set = MarkedMemory::check(path, *loaded); !set) return set.error();
     loaded->info.fields = unglued(loaded->info.fields);
     for (Piece& piece : loaded->pieces) {
         piece.grid.point_fields = unglued(std::move(piece.grid.point_fields), options, Association::point);

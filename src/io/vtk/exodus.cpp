@@ -9,6 +9,7 @@
 #include "io/own/escape.hpp"
 #include "io/vtk/exodus_file.hpp"
 #include "io/vtk/exodus_parts.hpp"
+#include "io/vtk/hdf5_walk.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/vtk_log.hpp"
@@ -154,6 +155,7 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
         const std::string& part = (*parts)[i];
         if (auto complete = check_netcdf_length(part); !complete) return complete.error();
         if (auto complete = check_hdf5_length(part); !complete) return complete.error();
+        if (auto names = check_hdf5_names(part, options.allow_outside); !names) return names.error();
         auto file = ExodusFile::open(part);
         if (!file) return file.error();
         FileInfo info = describe(*file);

@@ -146,4 +146,32 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     });
 }
 
+std::vector<std::string> data_sets_of(const std::string& file, const std::string& group) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    std::vector<std::string> names;
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Handle inside(opened.good() ? H5Gopen2(opened, group.c_str(), H5P_DEFAULT) : -1, H5Gclose);
+    if (!inside.good()) return names;
+    const auto add = [](hid_t at, const char* name, const H5L_info_t*, void* data) -> herr_t {
+        const Handle object(H5Oopen(at, name, H5P_DEFAULT), H5Oclose);
+        if (object.good() && H5Iget_type(object) == H5I_DATASET)
+            static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+        return 0;
+    };
+    H5Literate(inside, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
+    return names;
+}
+
+std::string text_attribute(const std::string& file, const std::string& group, const char* name) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return {};
+    const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle type(attribute.good() ? H5Aget_type(attribute) : -1, H5Tclose);
+    const bool fixed = type.good() && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+    if (!fixed || H5Tget_size(type) > 256 || H5Aget_storage_size(attribute) > 256) return {};
+    char text[257] = {};
+    return H5Aread(attribute, type, text) < 0 ? "" : text;
+}
+
 } // namespace isotet::io::vtk

@@ -29,4 +29,10 @@ struct ShapedValues {
 /// Errors   invalid_data: no such file or data set, not numbers, the box does not fit; the file is shorter than it says
 Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string& name, const Box& box, Depth depth);
 
+/// Names of the data sets in a group; none where there is no such group.
+std::vector<std::string> data_sets_of(const std::string& file, const std::string& group);
+
+/// A text attribute of a group; empty where there is none.
+std::string text_attribute(const std::string& file, const std::string& group, const char* name);
+
 } // namespace isotet::io::vtk

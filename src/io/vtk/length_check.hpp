@@ -15,4 +15,7 @@ Result<void> check_netcdf_length(const std::string& path);
 /// HDF5: the end of file that the superblock states is there.
 Result<void> check_hdf5_length(const std::string& path);
 
+/// ADF (CGNS): the end of file that the header states is there. Other files pass.
+Result<void> check_adf_length(const std::string& path);
+
 } // namespace isotet::io::vtk

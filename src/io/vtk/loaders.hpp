@@ -9,11 +9,6 @@ namespace isotet::io::vtk {
 /// One format, in the reader process.
 using Load = Result<Loaded> (*)(const std::string& path, const ReadOptions& options, Depth depth);
 
-struct FileLoader {
-    std::string_view format;
-    Load load;
-};
-
 /// The loader of a format, or null.
 Load loader_of(std::string_view format);
 

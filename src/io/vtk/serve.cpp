@@ -1,98 +1,67 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The reader process: limits first, then the file.
-#include <charconv>
+// The reader process: one request after another, limits and confinement first, then the file.
+#include "io/vtk/serve.hpp"
+
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 #include <fcntl.h>
 #include <malloc.h>
 #include <new>
-#include <sys/prctl.h>
+#include <poll.h>
+#include <pthread.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
-#include "core/memory.hpp"
-#include "io/vtk/child_process.hpp"
 #include "io/own/escape.hpp"
 #include "io/own/join.hpp"
+#include "io/process/channel.hpp"
+#include "io/process/messages.hpp"
+#include "io/vtk/limits.hpp"
 #include "io/vtk/loaders.hpp"
-#include "io/vtk/messages.hpp"
-#include "io/vtk/reader_process.hpp"
+#include "io/vtk/opened_files.hpp"
+#include "io/vtk/sandbox.hpp"
 #include "io/vtk/vtk_log.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-void tell(unsigned char status) { [[maybe_unused]] const ssize_t written = ::write(status_descriptor, &status, 1); }
+constexpr int idle_milliseconds = 10000;
 
-/// Bytes of address space in use.
-std::uint64_t address_space() {
-    unsigned long long pages = 0;
-    if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
-        if (std::fscanf(file, "%llu", &pages) != 1) pages = 0;
-        std::fclose(file);
-    }
-    return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+void tell(unsigned char status) { [[maybe_unused]] const ssize_t written = ::write(channel_descriptor, &status, 1); }
+
+/// A thread that ends the process when the program that started it is gone, even in the middle of a file.
+void end_with_parent() {
+    pthread_attr_t attributes;
+    ::pthread_attr_init(&attributes);
+    ::pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+    ::pthread_attr_setstacksize(&attributes, 1 << 16);
+    pthread_t thread;
+    ::pthread_create(
+        &thread, &attributes,
+        [](void*) -> void* {
+            pollfd channel{channel_descriptor, 0, 0}; // POLLHUP is always told
+            while (::poll(&channel, 1, -1) < 0 && errno == EINTR) {}
+            ::_exit(EXIT_SUCCESS);
+        },
+        nullptr);
+    ::pthread_attr_destroy(&attributes);
 }
 
-/// Dies with the parent; leaves no core file; large blocks are given back to the system when freed.
-bool tie_to_parent(const char* parent) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    long number = 0;
-    std::from_chars(parent, parent + std::strlen(parent), number);
-    const rlimit none{0, 0};
-    ::setrlimit(RLIMIT_CORE, &none);
-    ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-    return ::getppid() == number; // else the parent died before the first line of this function
-}
-
-/// The limit counts from what the program and its libraries have mapped already, before the file is looked at.
-void limit_memory(std::uint64_t limit) {
-    const std::uint64_t used = address_space(), most = limit != 0 ? limit : core::free_memory();
-    limit = most < RLIM_INFINITY - used ? used + most : RLIM_INFINITY;
-    rlimit current{};
-    ::getrlimit(RLIMIT_AS, &current);
-    const rlim_t least = std::min<rlim_t>(limit, current.rlim_cur);
-    const rlimit wanted{least, least};
-    ::setrlimit(RLIMIT_AS, &wanted);
-    std::set_new_handler([] {
-        tell(status_memory_ran_out);
-        std::set_new_handler(nullptr); // the next failure throws
-    });
-}
-
-/// Bytes of the grid's file; nothing where it is spread over several, whose sizes are not known yet.
-std::optional<std::uint64_t> size_of_grid(const Request& request) {
-    for (const std::string_view format : {"cgns", "vtkhdf", "ucd"}) {
-        struct stat status{};
-        if (request.format == format && ::stat(request.path.c_str(), &status) == 0)
-            return static_cast<std::uint64_t>(status.st_size);
-    }
-    return std::nullopt;
-}
-
-/// Processor time by the size of the file, some fifty times what the slowest encoding takes: on some broken files the
-/// CGNS library never comes to an end.
-void limit_processor_time(const Request& request) {
-    const auto size = size_of_grid(request);
-    if (!size) return;
-    rlimit current{};
-    ::getrlimit(RLIMIT_CPU, &current);
-    const rlim_t seconds = std::min<rlim_t>(10 + *size / 200000, current.rlim_cur);
-    const rlimit wanted{seconds, current.rlim_max};
-    ::setrlimit(RLIMIT_CPU, &wanted);
-}
-
-Result<Request> receive() {
+Result<Request> receive(int file) {
     struct stat status{};
-    if (::fstat(request_descriptor, &status) != 0 || status.st_size > (1 << 26))
+    if (::fstat(file, &status) != 0 || status.st_size > (1 << 26))
         return Error{ErrorCode::internal, "the reader process found no request"};
     std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
-    if (::pread(request_descriptor, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    if (::pread(file, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
         return Error{ErrorCode::internal, "the reader process could not read its request"};
     return decode_request(bytes);
 }
@@ -101,11 +70,12 @@ Reply do_task(const Request& request) {
     const Load load = loader_of(request.format);
     if (!load)
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("VTK's readers do not read format \"{}\"", escaped(request.format))};
+                     fmt::format("isotet-reader does not read format \"{}\"", escaped(request.format))};
     const bool inspecting = request.task == Task::inspect;
     auto loaded = load(request.path, request.options, inspecting ? Depth::description : Depth::arrays);
     if (!loaded) return loaded.error();
     loaded->info.format = request.format;
+    loaded->info.files = take_opened_files();
     if (inspecting) return std::move(loaded->info);
     auto joined = join(std::move(*loaded), request.options.merge_pieces_by_coordinates);
     return joined ? Reply(std::move(*joined)) : Reply(joined.error());
@@ -129,28 +99,63 @@ Reply answer(const Request& request) {
     }
 }
 
-int serve(const char* parent) {
-    if (!tie_to_parent(parent)) return EXIT_FAILURE;
-    auto request = receive();
-    if (!request) return write_reply(reply_descriptor, request.error()) ? EXIT_SUCCESS : EXIT_FAILURE;
-    collect_vtk_messages();
-    on_progress([last = -1](double fraction) mutable {
-        const int percent = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * 100);
-        if (percent > last) tell(static_cast<unsigned char>(last = percent));
-    });
-    limit_memory(request->options.memory_limit);
-    limit_processor_time(*request);
-    const auto written = write_reply(reply_descriptor, answer(*request));
-    if (written) return EXIT_SUCCESS;
-    tell(status_memory_ran_out);
-    return EXIT_FAILURE;
+/// Once: all requests that one process gets are for the same places.
+void confine_to(const Request& request) {
+    static bool confined = false;
+    if (std::exchange(confined, true)) return;
+    confine(request.readable);
+    end_with_parent();
+    watch_opened_files();
+}
+
+void serve_one(const Parcel& parcel) {
+    tell(0);
+    Reply reply = Error{};
+    if (auto request = receive(parcel.request.number()); !request) {
+        reply = request.error();
+    } else {
+        confine_to(*request);
+        take_opened_files();
+        on_progress([last = 0](double fraction) mutable {
+            const int percent = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * 100);
+            if (percent > last) tell(static_cast<unsigned char>(last = percent));
+        });
+        limit_memory(request->options.memory_limit, [] { tell(status_memory_ran_out); });
+        limit_processor_time(*request, [] { tell(status_time_ran_out); });
+        forbid_file_growth();
+        take_vtk_error(); // of the request before
+        reply = answer(*request);
+    }
+    allow_file_growth();
+    const bool good = !std::holds_alternative<Error>(reply);
+    const auto written = write_reply(parcel.reply.number(), std::move(reply));
+    if (written) tell(status_replied);
+    else tell(written.error().code == ErrorCode::out_of_memory ? status_memory_ran_out : status_file_limit);
+    if (!good || !written)
+        ::_exit(written ? EXIT_SUCCESS : EXIT_FAILURE); // what a broken file left behind is not used again
 }
 
 } // namespace
-} // namespace isotet::io::vtk
 
-std::optional<int> isotet::run_as_reader(int argc, char** argv) {
-    if (argc == 3 && argv[1] == std::string_view(io::vtk::reader_process_argument)) return io::vtk::serve(argv[2]);
-    io::vtk::this_program_can_be_reader();
-    return std::nullopt;
+int serve() {
+    int kind = 0;
+    socklen_t size = sizeof kind;
+    if (::getsockopt(channel_descriptor, SOL_SOCKET, SO_TYPE, &kind, &size) != 0 || kind != SOCK_SEQPACKET) {
+        std::fputs("isotet-reader reads grids for isotet, which starts it: there is nothing to call it for\n", stderr);
+        return EXIT_FAILURE;
+    }
+    const rlimit none{0, 0};
+    ::setrlimit(RLIMIT_CORE, &none);
+    ::mallopt(M_MMAP_THRESHOLD, 1 << 20); // large blocks are given back to the system when freed
+    std::signal(SIGXFSZ, SIG_IGN);        // a write that fails says why
+    collect_vtk_messages();
+    pollfd channel{channel_descriptor, POLLIN, 0};
+    while (::poll(&channel, 1, idle_milliseconds) > 0) {
+        const auto parcel = receive_parcel(channel_descriptor);
+        if (!parcel) break;
+        serve_one(*parcel);
+    }
+    return EXIT_SUCCESS;
 }
+
+} // namespace isotet::io::vtk

@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // VTK's readers tell their errors through a window class that prints. This one listens.
+#include <algorithm>
 #include <cstdio>
 #include <mutex>
 
@@ -26,13 +27,22 @@ Collected& collected() {
     return state;
 }
 
+/// "0x55d0c8" in a sentence, the same sentence with "0x...": where something lay in memory helps no one.
+std::string without_addresses(std::string text) {
+    for (std::size_t at = 0; (at = text.find("0x", at)) != std::string::npos; at += 5) {
+        const std::size_t end = std::min(text.find_first_not_of("0123456789abcdefABCDEF", at + 2), text.size());
+        if (end - at >= 6) text.replace(at + 2, end - at - 2, "...");
+    }
+    return text;
+}
+
 /// "ERROR: In /build/x.cxx, line 12\nvtkClass (0x55): sentence\n\n" becomes "sentence".
 std::string sentence_of(std::string_view text) {
     if (const auto address = text.find("): "); address != std::string_view::npos) text.remove_prefix(address + 3);
     else if (const auto line = text.find('\n');
              line != std::string_view::npos && text.substr(0, 20).find(": In ") != std::string_view::npos)
         text.remove_prefix(line + 1);
-    return escaped(text);
+    return without_addresses(escaped(text));
 }
 
 class Listener : public vtkOutputWindow {

@@ -35,7 +35,10 @@ std::map<std::string, std::string, std::less<>> entities(std::string_view text) 
     return result;
 }
 
-std::string without_entities(std::string_view text) {
+constexpr std::size_t max_growth = 16 << 20; ///< bytes that entities may add
+
+/// Nothing when entities make far more of the text than it is.
+std::optional<std::string> without_entities(std::string_view text) {
     const auto root = std::min(text.find("<Xdmf"), text.size());
     const auto known = entities(text.substr(0, root));
     std::string result;
@@ -50,6 +53,7 @@ std::string without_entities(std::string_view text) {
                                 : known.find(text.substr(mark + 1, end - mark - 1));
         if (entity != known.end()) {
             result += entity->second;
+            if (result.size() > text.size() + max_growth) return std::nullopt;
             at = end + 1;
         } else {
             result += '&';
@@ -57,6 +61,23 @@ std::string without_entities(std::string_view text) {
         }
     }
     return result;
+}
+
+constexpr std::size_t max_queries = 10000;
+
+/// A path as references are written, which goes over the document once at most: //Grid[@Name="a"]/Topology[1].
+bool is_simple(std::string_view query) {
+    const auto steps = query.find("//");
+    if (query.size() > 1000 ||
+        (steps != std::string_view::npos && query.find("//", steps + 2) != std::string_view::npos))
+        return false;
+    bool inside = false;
+    for (const char c : query) {
+        if (c == '|' || (c == '[' && inside) || (c == '/' && inside)) return false;
+        if (c == '[') inside = true;
+        if (c == ']') inside = false;
+    }
+    return true;
 }
 
 std::optional<double> time_of(pugi::xml_node grid) {
@@ -91,8 +112,9 @@ Result<XdmfDocument> XdmfDocument::open(const std::string& path) {
     if (!file) return file.error();
     XdmfDocument result;
     result.path_ = path;
-    const std::string text = without_entities(file->text());
-    const auto parsed = result.document_.load_buffer(text.data(), text.size());
+    const auto text = without_entities(file->text());
+    if (!text) return broken(path, fmt::format("its entities add more than {} bytes to it", max_growth));
+    const auto parsed = result.document_.load_buffer(text->data(), text->size());
     if (!parsed) return broken(path, fmt::format("broken XML near byte {}: {}", parsed.offset, parsed.description()));
     if (result.document_.select_node("//*[local-name()='include']"))
         return broken(path, "it includes other XML files, which is not read: only HDF5 and binary files are");
@@ -110,11 +132,19 @@ pugi::xml_node XdmfDocument::resolve(pugi::xml_node node) const {
         std::string_view query = same_word(reference, "XML") ? std::string_view(node.text().as_string()) : reference;
         while (!query.empty() && is_space(query.front())) query.remove_prefix(1);
         while (!query.empty() && is_space(query.back())) query.remove_suffix(1);
+        if (!is_simple(query)) return {};
+        const auto known = found_.find(query);
+        if (known != found_.end()) {
+            node = known->second;
+            continue;
+        }
+        if (found_.size() == max_queries) return {};
         try {
             node = document_.select_node(std::string(query).c_str()).node();
         } catch (const pugi::xpath_exception&) { // not an XPath
             return {};
         }
+        found_.emplace(query, node);
     }
     return {};
 }

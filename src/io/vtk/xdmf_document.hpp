@@ -2,6 +2,7 @@
 // The XML of an XDMF file: entities of its DOCTYPE replaced, references followed, grids sorted by time.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +30,8 @@ public:
 
     const std::vector<XdmfStep>& steps() const noexcept { return steps_; }
 
-    /// The element that `node` stands for: itself, or what its Reference names. Null when that is not there.
+    /// The element that `node` stands for: itself, or what its Reference names. Null when that is not there, or not a
+    /// plain path.
     pugi::xml_node resolve(pugi::xml_node node) const;
 
 private:
@@ -40,6 +42,7 @@ private:
     std::string path_;
     pugi::xml_document document_;
     std::vector<XdmfStep> steps_;
+    mutable std::map<std::string, pugi::xml_node, std::less<>> found_; ///< what references named before
     std::size_t visited_ = 0; ///< collections, each as often as it is referred to
 };
 

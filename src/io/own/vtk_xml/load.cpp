@@ -79,9 +79,11 @@ Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options
         auto file = named_file(path, element.attribute("Source").value(), options.allow_outside);
         if (!file) return file.error();
         files.push_back(std::move(*file));
-        if (depth == Depth::description) break; // pieces have the same fields
     }
     if (files.empty()) return broken(path, "the index names no pieces");
+    Loaded loaded;
+    loaded.info.files = files;
+    if (depth == Depth::description) files.resize(1); // pieces have the same fields
     std::vector<Loaded> parts(files.size());
     FirstError failed;
     core::parallel_each(files.size(), 1, [&](std::size_t i) {
@@ -90,7 +92,6 @@ Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options
         else failed.add(i, part.error());
     });
     if (auto done = failed.result(); !done) return done.error();
-    Loaded loaded;
     for (Loaded& part : parts) {
         for (FieldInfo& field : part.info.fields) announce(loaded.info, std::move(field));
         for (Piece& piece : part.pieces) loaded.pieces.push_back(std::move(piece));

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
 
@@ -66,6 +67,6 @@ Result<Array> points_of(const GridSize& size, const ImagePoints& image);
 Result<Array> points_of(const GridSize& size, const std::array<std::vector<double>, 3>& ticks);
 
 /// The hexahedra of a box, and a note that says so.
-Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes);
+ISOTET_API Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes);
 
 } // namespace isotet::io::vtk_xml

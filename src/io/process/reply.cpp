@@ -13,9 +13,9 @@
 
 #include <fmt/core.h>
 
-#include "io/vtk/messages.hpp"
-#include "io/vtk/sealed_mapping.hpp"
-#include "io/vtk/wire.hpp"
+#include "io/process/messages.hpp"
+#include "io/process/sealed_mapping.hpp"
+#include "io/process/wire.hpp"
 
 namespace isotet::io::vtk {
 namespace {
@@ -94,6 +94,7 @@ public:
             out_.number<std::uint64_t>(field.components);
         });
         out_.list(info.times, [&](double time) { out_.number(time); });
+        out_.list(info.files, [&](const std::string& file) { out_.text(file); });
     }
     void describe(ReadResult& result) {
         describe(result.info);
@@ -125,8 +126,8 @@ public:
         const auto tuples = in_.number<std::uint64_t>();
         const auto components = in_.number<std::uint64_t>();
         const auto begin = in_.number<std::uint64_t>();
-        if (tuples == 0 || components == 0)
-            return Array(type, nullptr, tuples, components == 0 ? 1 : components, nullptr);
+        if (components == 0) return in_.fail(), Array();
+        if (tuples == 0) return Array(type, nullptr, 0, components, nullptr);
         const std::uint64_t most = arrays_end_ / size_of(type);
         if (components > most || tuples > most / components || begin % alignment != 0 || begin < alignment ||
             begin > arrays_end_ || tuples * components * size_of(type) > arrays_end_ - begin)
@@ -157,6 +158,7 @@ public:
             field.components = in_.number<std::uint64_t>();
         });
         in_.list([&] { result.times.push_back(in_.number<double>()); });
+        in_.list([&] { result.files.push_back(in_.text()); });
         return result;
     }
     ReadResult result() {
@@ -194,7 +196,7 @@ Result<void> write_reply(int descriptor, Reply reply) {
     header.description_begin = file.append(out.bytes().data(), out.bytes().size());
     file.put(&header, sizeof header, 0);
     if (file.error() != 0)
-        return Error{ErrorCode::out_of_memory,
+        return Error{file.error() == EFBIG ? ErrorCode::system : ErrorCode::out_of_memory,
                      fmt::format("the reader process could not hand the grid over: {}", std::strerror(file.error()))};
     return {};
 }

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/vtk/sealed_mapping.hpp"
+#include "io/process/sealed_mapping.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/vtk/find_reader.hpp"
+#include "io/process/find_reader.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* reader_name = "isotet";
+constexpr const char* reader_name = "isotet-reader";
 
 std::string running_program() {
     std::error_code failed;
@@ -77,16 +77,16 @@ std::vector<std::string> reader_candidates(const ReaderPlaces& places) {
 Result<std::string> find_reader(const ReaderPlaces& places) {
     const std::vector<std::string> candidates = reader_candidates(places);
     for (const std::string& candidate : candidates) {
-        std::error_code failed;
-        if (can_be_run(candidate) && !fs::equivalent(candidate, places.program, failed)) return candidate;
+        if (can_be_run(candidate)) return candidate;
     }
     std::vector<std::string> shown;
     for (const std::string& candidate : candidates) shown.push_back(escaped(candidate));
-    return Error{ErrorCode::system,
-                 fmt::format("the program that runs VTK's readers was not found as {}: put isotet's folder of programs "
-                             "into PATH, name the program in ReadOptions::reader_program, or call run_as_reader() in "
-                             "main()",
-                             fmt::join(shown, ", "))};
+    return Error{
+        ErrorCode::system,
+        fmt::format("the program isotet-reader, which reads this format, was not found as {}: install isotet with "
+                    "it (it is built with -DISOTET_IO=ON), put its folder into PATH, or name it in "
+                    "ReadOptions::reader_program",
+                    fmt::join(shown, ", "))};
 }
 
 } // namespace isotet::io::vtk

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
@@ -19,6 +21,7 @@ struct Request {
     std::string format; ///< name in formats()
     std::string path;   ///< absolute
     ReadOptions options;
+    std::vector<std::string> readable; ///< folders and files that reading may look at, absolute
 };
 
 using Reply = std::variant<Error, FileInfo, ReadResult>;
@@ -26,13 +29,13 @@ using Reply = std::variant<Error, FileInfo, ReadResult>;
 std::string encode(const Request& request);
 
 /// Errors   internal when the bytes are not a request of this version
-Result<Request> decode_request(std::string_view bytes);
+ISOTET_API Result<Request> decode_request(std::string_view bytes);
 
 /// Writes a reply into a memory file. Arrays are written one by one and let go as soon as they are written, so that the
 /// peak is the grid and its largest array.
 ///
-/// Errors   out_of_memory when the memory file cannot grow
-Result<void> write_reply(int descriptor, Reply reply);
+/// Errors   out_of_memory when the memory file cannot grow; system when a limit on the size of files forbids it
+ISOTET_API Result<void> write_reply(int descriptor, Reply reply);
 
 /// Seals the memory file, maps it read only, and verifies every offset and length in it before it is used. The arrays
 /// of the reply are views of the mapping and share it.

@@ -1,12 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The formats that VTK, pugixml and HDF5 read, how each is recognized, and their readers: all in a child process.
-#include <algorithm>
+// The formats that the reader program reads, and how each is recognized. src/io/vtk/loaders.cpp has its side.
 #include <array>
-#include <cctype>
 
+#include "io/process/reader_process.hpp"
 #include "io/reader.hpp"
-#include "io/vtk/loaders.hpp"
-#include "io/vtk/reader_process.hpp"
 
 namespace isotet::io {
 namespace {
@@ -83,14 +80,14 @@ Format grid_format(std::string name, std::string title, std::vector<std::string>
 template <class T>
 Result<T> ask(Task task, std::string format, const std::string& path, const ReadOptions& options,
               const Progress& progress) {
-    auto reply = vtk::ask_reader_process(Request{task, std::move(format), path, options}, progress);
+    auto reply = vtk::ask_reader_process(Request{task, std::move(format), path, options, {}}, progress);
     if (!reply) return reply.error();
     if (auto* content = std::get_if<T>(&*reply)) return std::move(*content);
     return Error{ErrorCode::internal, path + ": the reader process answered another question"};
 }
 
 struct Named {
-    vtk::FileLoader loader;
+    std::string_view name;
     int (*recognizes)(Head head, std::string_view extension);
     const char* title;
     std::vector<std::string> extensions;
@@ -98,13 +95,13 @@ struct Named {
 
 const auto& table() {
     static const std::array<Named, 7> formats = {{
-        {{"exodus", vtk::load_exodus}, recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
-        {{"cgns", vtk::load_cgns}, recognizes_cgns, "CGNS", {".cgns"}},
-        {{"vtkhdf", vtk::load_vtkhdf}, recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
-        {{"xdmf", vtk::load_xdmf}, recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
-        {{"ensight", vtk::load_ensight}, recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},
-        {{"openfoam", vtk::load_openfoam}, recognizes_openfoam, "OpenFOAM case", {".foam", ".openfoam"}},
-        {{"ucd", vtk::load_ucd}, recognizes_ucd, "AVS UCD", {".inp"}},
+        {"exodus", recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
+        {"cgns", recognizes_cgns, "CGNS", {".cgns"}},
+        {"vtkhdf", recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
+        {"xdmf", recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
+        {"ensight", recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},
+        {"openfoam", recognizes_openfoam, "OpenFOAM case", {".foam", ".openfoam"}},
+        {"ucd", recognizes_ucd, "AVS UCD", {".inp"}},
     }};
     return formats;
 }
@@ -114,13 +111,13 @@ template <std::size_t row>
 GridReader reader() {
     GridReader result;
     const Named& named = table()[row];
-    result.format = grid_format(std::string(named.loader.format), named.title, named.extensions);
+    result.format = grid_format(std::string(named.name), named.title, named.extensions);
     result.recognizes = named.recognizes;
     result.inspect = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
-        return ask<FileInfo>(Task::inspect, std::string(table()[row].loader.format), path, options, progress);
+        return ask<FileInfo>(Task::inspect, std::string(table()[row].name), path, options, progress);
     };
     result.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
-        return ask<ReadResult>(Task::read, std::string(table()[row].loader.format), path, options, progress);
+        return ask<ReadResult>(Task::read, std::string(table()[row].name), path, options, progress);
     };
     return result;
 }
@@ -136,12 +133,6 @@ std::span<const GridReader> vtk_readers() {
     static const std::vector<GridReader> readers =
         all_readers(std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(table())>>>());
     return readers;
-}
-
-vtk::Load vtk::loader_of(std::string_view format) {
-    for (const Named& named : table())
-        if (named.loader.format == format) return named.loader.load;
-    return nullptr;
 }
 
 } // namespace isotet::io

@@ -5,7 +5,7 @@
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 
-#include "io/vtk/messages.hpp"
+#include "io/process/messages.hpp"
 
 namespace isotet::io::vtk {
 
@@ -14,8 +14,5 @@ namespace isotet::io::vtk {
 /// Errors   what the reader found; invalid_data when it crashed, or ended by itself without a reply; out_of_memory when
 ///          it hit its limit; machine when it cannot be started or took longer than ReadOptions::time_limit; cancelled
 Result<Reply> ask_reader_process(Request request, const Progress& progress);
-
-/// Remembers that this program calls run_as_reader(), so that it can be its own reader program.
-void this_program_can_be_reader();
 
 } // namespace isotet::io::vtk

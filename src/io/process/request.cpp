@@ -1,12 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Requests as bytes and back.
-#include "io/vtk/messages.hpp"
-#include "io/vtk/wire.hpp"
+#include "io/process/messages.hpp"
+#include "io/process/wire.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730001;
+constexpr std::uint32_t request_version = 0x69730002;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -39,6 +39,7 @@ std::string encode(const Request& request) {
     out.number<std::uint8_t>(options.allow_outside);
     out.text(options.displace);
     out.number(options.memory_limit);
+    out.list(request.readable, [&](const std::string& place) { out.text(place); });
     return out.bytes();
 }
 
@@ -59,9 +60,10 @@ Result<Request> decode_request(std::string_view bytes) {
     options.allow_outside = in.number<std::uint8_t>() != 0;
     options.displace = in.text();
     options.memory_limit = in.number<std::uint64_t>();
+    in.list([&] { request.readable.push_back(in.text()); });
     if (!known || !in.finished())
-        return Error{ErrorCode::internal, "the reader process was sent a request that is not of its version: "
-                                          "ReadOptions::reader_program names another one"};
+        return Error{ErrorCode::system, "the program isotet-reader that was found is of another version than isotet: "
+                                        "install both from one build"};
     return request;
 }
 

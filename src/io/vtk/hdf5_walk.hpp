@@ -1,0 +1,18 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <isotet/result.hpp>
+
+namespace isotet::io::vtk {
+
+/// Goes over the names in an HDF5 file, without their data, before anybody reads it: links and data in other files must
+/// be files that the index rules allow (check_name(), named_file()), which are gone over, too; no group may contain
+/// itself; no data set may be put together of others, elsewhere. Files of other kinds pass.
+///
+/// Cost     O(objects), at most a million
+/// Errors   invalid_data: the name that breaks a rule; it cannot be opened
+Result<void> check_hdf5_names(const std::string& path, bool allow_outside);
+
+} // namespace isotet::io::vtk
