@@ -1,0 +1,233 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <isotet/contour.hpp>
+#include <isotet/extract.hpp>
+#include <isotet/pack.hpp>
+#include <isotet/surface.hpp>
+
+#include "arrays.hpp"
+#include "call.hpp"
+#include "choice.hpp"
+#include "parts.hpp"
+
+namespace isotet::python {
+
+using namespace nb::literals;
+
+namespace {
+
+/// One surface for all isovalues, as the program writes them into one file: several have the cell field "isovalue".
+Surface join_all(std::vector<Extraction>&& extractions, const std::vector<double>& isovalues) {
+    if (extractions.size() == 1) return std::move(extractions.front().surface);
+    std::vector<Surface> surfaces;
+    surfaces.reserve(extractions.size());
+    for (Extraction& extraction : extractions) surfaces.push_back(std::move(extraction.surface));
+    return join(surfaces, isovalues);
+}
+
+ContourOptions contour_options(std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
+                               std::string_view precision, std::optional<std::string_view> method,
+                               std::uint64_t surfaces) {
+    ContourOptions options;
+    if (method) options.method = choice("method", *method, words_of_method);
+    options.surfaces = surfaces;
+    options.precision = choice("precision", precision, words_of_precision);
+    options.ties = choice("ties", ties, words_of_ties);
+    options.normals = choice("normals", normals, words_of_normals);
+    options.edge_ends = edge_ends;
+    options.source_cells = source_cells;
+    return options;
+}
+
+ContourInput contour_input(const Grid& grid, const PointField& field, const FieldsIn& fields,
+                           const FieldsIn& cell_fields) {
+    return {{grid.points, grid.cells, {}, {}}, field, fields_in(fields), fields_in(cell_fields)};
+}
+
+nb::dict field_out(const FieldReport& report) {
+    nb::dict out;
+    out["name"] = report.name;
+    out["lower"] = report.lower;
+    out["upper"] = report.upper;
+    out["no_data"] = report.no_data;
+    out["infinite"] = report.infinite;
+    out["flushed"] = report.flushed;
+    out["unchanged"] = report.unchanged;
+    return out;
+}
+
+nb::dict packing_out(const PackReport& report) {
+    nb::dict out;
+    out["points"] = report.points;
+    out["tets"] = report.tets;
+    out["clusters"] = report.clusters;
+    out["cells_left_out"] = report.cells_left_out;
+    out["pyramids"] = report.pyramids;
+    out["wedges"] = report.wedges;
+    out["hexahedra"] = report.hexahedra;
+    out["split_cells"] = report.split_cells;
+    out["collapsed_tets"] = report.collapsed_tets;
+    out["repeated_tets"] = report.repeated_tets;
+    out["negative_tets"] = report.negative_tets;
+    out["inverted_tets"] = report.inverted_tets;
+    out["flat_tets"] = report.flat_tets;
+    out["coarse_clusters"] = report.coarse_clusters;
+    out["bytes"] = report.bytes + report.source_bytes + report.gradient_bytes;
+    return out;
+}
+
+struct Extracted {
+    Surface surface;
+    std::vector<std::size_t> vertex_counts; ///< of each isovalue
+    ContourResult how;                      ///< without surfaces
+};
+
+nb::tuple extracted_out(Extracted&& extracted) {
+    nb::dict how;
+    how["method"] = word_of(extracted.how.method, words_of_method);
+    how["engine"] = extracted.how.engine;
+    how["cells_left_out"] = extracted.how.cells_left_out;
+    how["coarse_tets"] = extracted.how.coarse_tets;
+    how["pack_seconds"] = extracted.how.pack_seconds;
+    how["extract_seconds"] = extracted.how.extract_seconds;
+    how["notes"] = extracted.how.notes;
+    how["vertex_counts"] = extracted.vertex_counts;
+    return nb::make_tuple(std::move(extracted.surface), how);
+}
+
+void add_sessions(nb::module_& module) {
+    nb::class_<ContourOptions>(module, "ContourOptions")
+        .def(
+            "__init__",
+            [](ContourOptions* self, std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
+               std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces) {
+                new (self) ContourOptions(
+                    contour_options(normals, edge_ends, source_cells, ties, precision, method, surfaces));
+            },
+            "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a);
+
+    nb::class_<Contour>(module, "Contour")
+        .def(
+            "__init__",
+            [](Contour* self, const Grid& grid, const PointField& field, const FieldsIn& fields,
+               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+                ContourInput input = contour_input(grid, field, fields, cell_fields);
+                new (self) Contour(call(how, [&](const Run&) { return Contour::create(std::move(input), options); }));
+            },
+            "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
+        .def(
+            "set",
+            [](Contour& self, const Grid& grid, const PointField& field, const FieldsIn& fields,
+               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+                ContourInput input = contour_input(grid, field, fields, cell_fields);
+                const ContourUpdate update =
+                    call(how, [&](const Run& run) { return self.set(std::move(input), options, run); });
+                return word_of(update, words_of_update);
+            },
+            "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
+        .def(
+            "extract",
+            [](Contour& self, const std::vector<double>& isovalues, const CallOptions& how) {
+                return extracted_out(call(how, [&](const Run& run) -> Result<Extracted> {
+                    Result<ContourResult> result = self.extract(isovalues, run);
+                    if (!result) return result.error();
+                    Extracted out;
+                    for (const Extraction& extraction : result->surfaces)
+                        out.vertex_counts.push_back(extraction.surface.vertex_count());
+                    out.surface = join_all(std::move(result->surfaces), isovalues);
+                    out.how = *std::move(result);
+                    return out;
+                }));
+            },
+            "isovalues"_a, "call"_a)
+        .def(
+            "prepare",
+            [](Contour& self, const CallOptions& how) { call(how, [&](const Run& run) { return self.prepare(run); }); },
+            "call"_a)
+        .def(
+            "field",
+            [](Contour& self, const CallOptions& how) {
+                return field_out(call(how, [&](const Run& run) { return self.field(run); }));
+            },
+            "call"_a)
+        .def(
+            "method",
+            [](const Contour& self, std::size_t isovalues) {
+                const nb::gil_scoped_release released;
+                return word_of(self.method(isovalues), words_of_method);
+            },
+            "isovalues"_a);
+}
+
+void add_packed_grids(nb::module_& module) {
+    nb::class_<PackedGrid>(module, "PackedGrid")
+        .def("field", [](const PackedGrid& self) { return field_out(self.field()); })
+        .def("report", [](const PackedGrid& self) { return packing_out(self.report()); })
+        .def_prop_ro("point_count", &PackedGrid::user_point_count)
+        .def_prop_ro("cell_count", &PackedGrid::user_cell_count)
+        .def_prop_ro("precision", [](const PackedGrid& self) { return word_of(self.precision(), words_of_precision); })
+        .def(
+            "with_field",
+            [](const PackedGrid& self, const PointField& field, const CallOptions& how) {
+                return call(how, [&](const Run& run) { return self.with_field(field, run); });
+            },
+            "field"_a, "call"_a)
+        .def(
+            "with_points",
+            [](const PackedGrid& self, const ArrayIn& points, const CallOptions& how) {
+                const Array moved = array_in(points);
+                return call(how, [&](const Run& run) { return self.with_points(moved, run); });
+            },
+            "points"_a, "call"_a)
+        .def(
+            "extract",
+            [](const PackedGrid& self, const std::vector<double>& isovalues, const FieldsIn& fields,
+               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+                ExtractOptions extraction;
+                extraction.ties = options.ties;
+                extraction.normals = options.normals;
+                extraction.edge_ends = options.edge_ends;
+                extraction.source_cells = options.source_cells;
+                extraction.point_fields = fields_in(fields);
+                extraction.cell_fields = fields_in(cell_fields);
+                return call(how, [&](const Run& run) -> Result<Surface> {
+                    Result<std::vector<Extraction>> result = extract(self, isovalues, extraction, run);
+                    if (!result) return result.error();
+                    return join_all(*std::move(result), isovalues);
+                });
+            },
+            "isovalues"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a);
+
+    module.def(
+        "pack",
+        [](const Grid& grid, const PointField& field, std::string_view precision, bool source_cells, bool split_cells,
+           bool gradients, const CallOptions& how) {
+            PackOptions options;
+            options.precision = choice("precision", precision, words_of_precision);
+            options.source_cells = source_cells;
+            options.split_cells = split_cells;
+            options.gradients = gradients;
+            return call(how, [&](const Run& run) { return pack(grid, field, options, run); });
+        },
+        "grid"_a, "field"_a, "precision"_a, "source_cells"_a, "split_cells"_a, "gradients"_a, "call"_a);
+}
+
+} // namespace
+
+void add_contours(nb::module_& module) {
+    add_sessions(module);
+    add_packed_grids(module);
+}
+
+} // namespace isotet::python

@@ -1,0 +1,172 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/make.hpp>
+#include <isotet/read.hpp>
+#include <isotet/write.hpp>
+
+#include "arrays.hpp"
+#include "call.hpp"
+#include "parts.hpp"
+
+namespace isotet::python {
+
+using namespace nb::literals;
+
+namespace {
+
+using Names = std::optional<std::vector<std::string>>;
+
+Cells cells_in(const ArrayIn& connectivity, const std::optional<ArrayIn>& offsets, const std::optional<ArrayIn>& types,
+               int uniform_type) {
+    Cells cells;
+    cells.connectivity = array_in(connectivity);
+    if (offsets) cells.offsets = array_in(*offsets);
+    if (types) cells.types = array_in(*types);
+    cells.uniform_type = static_cast<CellType>(uniform_type);
+    return cells;
+}
+
+nb::tuple cells_out(const Cells& cells) {
+    const auto optional = [](const Array& array) { return array.empty() ? nb::none() : array_out(array); };
+    return nb::make_tuple(array_out(cells.connectivity), optional(cells.offsets), optional(cells.types),
+                          static_cast<int>(cells.uniform_type));
+}
+
+ReadOptions read_options(const std::string& format, const Names& fields, const Names& cell_fields,
+                         std::optional<std::size_t> step, bool merge_pieces, const std::string& reader_program) {
+    ReadOptions options;
+    options.format = format;
+    options.point_fields = fields;
+    options.cell_fields = cell_fields;
+    options.step = step;
+    options.merge_pieces_by_coordinates = merge_pieces;
+    options.reader_program = reader_program;
+    return options;
+}
+
+nb::dict info_out(const FileInfo& info) {
+    nb::dict fields, cell_fields, out;
+    for (const FieldInfo& field : info.fields) {
+        nb::dict& of = field.association == Association::point ? fields : cell_fields;
+        const std::string_view type = name_of(field.type);
+        of[field.name.c_str()] = nb::make_tuple(nb::str(type.data(), type.size()), field.components);
+    }
+    out["format"] = info.format;
+    out["fields"] = fields;
+    out["cell_fields"] = cell_fields;
+    out["times"] = info.times;
+    return out;
+}
+
+nb::list formats_out() {
+    nb::list out;
+    for (const Format& format : formats()) {
+        nb::dict entry;
+        entry["name"] = format.name;
+        entry["title"] = format.title;
+        entry["extensions"] = format.extensions;
+        entry["reads_grid"] = format.reads_grid;
+        entry["writes_grid"] = format.writes_grid;
+        entry["reads_surface"] = format.reads_surface;
+        entry["writes_surface"] = format.writes_surface;
+        entry["needs_vtk"] = format.needs_vtk;
+        out.append(entry);
+    }
+    return out;
+}
+
+} // namespace
+
+void add_grids(nb::module_& module) {
+    nb::class_<Cells>(module, "Cells")
+        .def(
+            "__init__",
+            [](Cells* self, const ArrayIn& connectivity, const std::optional<ArrayIn>& offsets,
+               const std::optional<ArrayIn>& types,
+               int uniform_type) { new (self) Cells(cells_in(connectivity, offsets, types, uniform_type)); },
+            "connectivity"_a, "offsets"_a.none(), "types"_a.none(), "uniform_type"_a)
+        .def("__len__", &Cells::count)
+        .def("arrays", &cells_out);
+
+    nb::class_<Grid>(module, "Grid")
+        .def(
+            "__init__",
+            [](Grid* self, const ArrayIn& points, const Cells& cells, const FieldsIn& fields,
+               const FieldsIn& cell_fields) {
+                new (self) Grid{array_in(points), cells, fields_in(fields), fields_in(cell_fields)};
+            },
+            "points"_a, "cells"_a, "fields"_a, "cell_fields"_a)
+        .def_prop_ro("points", [](const Grid& self) { return array_out(self.points); })
+        .def_prop_ro("cells", [](const Grid& self) { return self.cells; }) // shares the arrays
+        .def_prop_ro("fields", [](const Grid& self) { return fields_out(self.point_fields); })
+        .def_prop_ro("cell_fields", [](const Grid& self) { return fields_out(self.cell_fields); });
+
+    nb::class_<PointField>(module, "PointField")
+        .def(
+            "__init__",
+            [](PointField* self, const std::string& name, const ArrayIn& values) {
+                new (self) PointField{.name = name, .values = array_in(values), .averaged = false, .note = {}};
+            },
+            "name"_a, "values"_a)
+        .def_ro("name", &PointField::name)
+        .def_ro("averaged", &PointField::averaged)
+        .def_ro("note", &PointField::note)
+        .def_prop_ro("values", [](const PointField& self) { return array_out(self.values); });
+
+    module.def(
+        "find_field",
+        [](const Grid& grid, const std::string& name, const CallOptions& options) {
+            return call(options, [&](const Run& run) { return find_field(grid, name, {}, run); });
+        },
+        "grid"_a, "name"_a, "call"_a);
+
+    module.def(
+        "read",
+        [](const std::string& path, const std::string& format, const Names& fields, const Names& cell_fields,
+           std::optional<std::size_t> step, bool merge_pieces, const std::string& reader_program,
+           const CallOptions& options) {
+            const ReadOptions how = read_options(format, fields, cell_fields, step, merge_pieces, reader_program);
+            ReadResult result = call(options, [&](const Run& run) { return read(path, how, run); });
+            return nb::make_tuple(std::move(result.grid), info_out(result.info), result.step, result.notes);
+        },
+        "path"_a, "format"_a, "fields"_a.none(), "cell_fields"_a.none(), "step"_a.none(), "merge_pieces"_a,
+        "reader_program"_a, "call"_a);
+
+    module.def(
+        "inspect",
+        [](const std::string& path, const std::string& format, const std::string& reader_program,
+           const CallOptions& options) {
+            const ReadOptions how = read_options(format, {}, {}, {}, false, reader_program);
+            return info_out(call(options, [&](const Run& run) { return inspect(path, how, run); }));
+        },
+        "path"_a, "format"_a, "reader_program"_a, "call"_a);
+
+    module.def(
+        "write_grid",
+        [](const Grid& grid, const std::string& path, const std::string& format, const CallOptions& options) {
+            return call(options, [&](const Run& run) { return write_grid(grid, path, {format}, run); }).notes;
+        },
+        "grid"_a, "path"_a, "format"_a, "call"_a);
+
+    module.def(
+        "make",
+        [](const std::string& shape, std::uint64_t side, const std::vector<std::string>& fields, std::uint64_t seed,
+           const CallOptions& options) {
+            const MakeOptions how{shape, side, fields, seed};
+            return call(options, [&](const Run& run) { return make_grid(how, run); });
+        },
+        "shape"_a, "side"_a, "fields"_a, "seed"_a, "call"_a);
+
+    module.def("formats", &formats_out);
+}
+
+} // namespace isotet::python

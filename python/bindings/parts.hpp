@@ -1,0 +1,13 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The parts of the module isotet._isotet.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace isotet::python {
+
+void add_grids(nanobind::module_& module);    ///< Grid, read, inspect, make, formats
+void add_contours(nanobind::module_& module); ///< Contour, PackedGrid, pack
+void add_surfaces(nanobind::module_& module); ///< Surface, check, write, read_surface
+
+} // namespace isotet::python

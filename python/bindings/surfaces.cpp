@@ -1,0 +1,137 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/check.hpp>
+#include <isotet/read.hpp>
+#include <isotet/surface.hpp>
+#include <isotet/write.hpp>
+
+#include "arrays.hpp"
+#include "call.hpp"
+#include "choice.hpp"
+#include "parts.hpp"
+
+namespace isotet::python {
+
+using namespace nb::literals;
+
+namespace {
+
+/// Surfaces that were extracted have numbers of points and cells as int64, also where there are none.
+bool is_there(const Array& numbers) { return !numbers.empty() || numbers.type() == ScalarType::int64; }
+
+nb::object array_or_none(const Array& array, bool there) { return there ? array_out(array) : nb::none(); }
+
+Array optional_array(const std::optional<ArrayIn>& array) { return array ? array_in(*array) : Array(); }
+
+nb::dict report_out(const SurfaceReport& report) {
+    nb::dict out;
+    out["vertices"] = report.vertices;
+    out["triangles"] = report.triangles;
+    out["area"] = report.area;
+    out["volume"] = report.volume;
+    out["closed"] = report.closed;
+    out["sound"] = report.sound;
+    out["clean"] = report.clean;
+    out["components"] = report.components;
+    out["euler"] = report.euler;
+    out["genus"] = report.genus;
+    out["boundary_edges"] = report.boundary_edges;
+    out["inconsistent_edges"] = report.inconsistent_edges;
+    out["blamed_edges"] = report.blamed_edges;
+    out["non_manifold_edges"] = report.non_manifold_edges;
+    out["equal_corner_triangles"] = report.equal_corner_triangles;
+    out["zero_area_triangles"] = report.zero_area_triangles;
+    out["duplicate_triangles"] = report.duplicate_triangles;
+    out["blamed_duplicates"] = report.blamed_duplicates;
+    out["double_sheets"] = report.double_sheets;
+    out["touching_vertices"] = report.touching_vertices;
+    out["coincident_vertices"] = report.coincident_vertices;
+    out["unused_vertices"] = report.unused_vertices;
+    out["collapsed_by_welding"] = report.collapsed_by_welding;
+    nb::list findings;
+    for (const Finding& finding : report.findings) findings.append(nb::make_tuple(finding.what, finding.where));
+    out["findings"] = findings;
+    return out;
+}
+
+} // namespace
+
+void add_surfaces(nb::module_& module) {
+    nb::class_<Surface>(module, "Surface")
+        .def(
+            "__init__",
+            [](Surface* self, const ArrayIn& points, const ArrayIn& triangles, std::string_view normals_kind,
+               const std::optional<ArrayIn>& normals, const std::optional<ArrayIn>& edge_ends,
+               const std::optional<ArrayIn>& edge_weights, const std::optional<ArrayIn>& source_cells,
+               const FieldsIn& fields, const FieldsIn& cell_fields) {
+                const Normals kind = choice("normals_kind", normals_kind, words_of_normals);
+                new (self) Surface{array_in(points),
+                                   array_in(triangles),
+                                   kind,
+                                   optional_array(normals),
+                                   optional_array(edge_ends),
+                                   optional_array(edge_weights),
+                                   optional_array(source_cells),
+                                   fields_in(fields),
+                                   fields_in(cell_fields)};
+            },
+            "points"_a, "triangles"_a, "normals_kind"_a, "normals"_a.none(), "edge_ends"_a.none(),
+            "edge_weights"_a.none(), "source_cells"_a.none(), "fields"_a, "cell_fields"_a)
+        .def_prop_ro("points", [](const Surface& self) { return array_out(self.positions); })
+        .def_prop_ro("triangles", [](const Surface& self) { return array_out(self.triangles); })
+        .def_prop_ro("normals_kind", [](const Surface& self) { return word_of(self.normals_kind, words_of_normals); })
+        .def_prop_ro(
+            "normals",
+            [](const Surface& self) { return array_or_none(self.normals, self.normals_kind != Normals::none); })
+        .def_prop_ro("edge_ends",
+                     [](const Surface& self) { return array_or_none(self.edge_ends, is_there(self.edge_ends)); })
+        .def_prop_ro("edge_weights",
+                     [](const Surface& self) { return array_or_none(self.edge_weights, is_there(self.edge_ends)); })
+        .def_prop_ro("source_cells",
+                     [](const Surface& self) { return array_or_none(self.source_cells, is_there(self.source_cells)); })
+        .def_prop_ro("fields", [](const Surface& self) { return fields_out(self.point_fields); })
+        .def_prop_ro("cell_fields", [](const Surface& self) { return fields_out(self.cell_fields); })
+        .def_prop_ro("vertex_count", &Surface::vertex_count)
+        .def_prop_ro("triangle_count", &Surface::triangle_count)
+        .def("area", &area, nb::call_guard<nb::gil_scoped_release>());
+
+    module.def(
+        "check",
+        [](const Surface& surface, bool closed, const Grid* grid, const PointField* field, bool weld, int max_findings,
+           const CallOptions& options) {
+            CheckOptions how;
+            how.closed = closed;
+            how.grid = grid;
+            how.field = field;
+            how.weld = weld;
+            how.max_findings = max_findings;
+            return report_out(call(options, [&](const Run& run) { return check(surface, how, run); }));
+        },
+        "surface"_a, "closed"_a, "grid"_a.none(), "field"_a.none(), "weld"_a, "max_findings"_a, "call"_a);
+
+    module.def(
+        "write_surface",
+        [](const Surface& surface, const std::string& path, const std::string& format, const CallOptions& options) {
+            return call(options, [&](const Run& run) { return write_surface(surface, path, {format}, run); }).notes;
+        },
+        "surface"_a, "path"_a, "format"_a, "call"_a);
+
+    module.def(
+        "read_surface",
+        [](const std::string& path, const std::string& format, const CallOptions& options) {
+            return call(options, [&](const Run& run) { return read_surface(path, {format}, run); }).surface;
+        },
+        "path"_a, "format"_a, "call"_a);
+}
+
+} // namespace isotet::python

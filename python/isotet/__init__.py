@@ -1,0 +1,30 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Isosurfaces of large unstructured grids: tetrahedra, hexahedra, wedges and pyramids.
+
+    surface = isotet.contour(points, cells, values, 0.5)    # arrays in, arrays out
+    surface.points, surface.triangles, surface.area
+
+    packed = isotet.pack(points, cells, values)             # once, then many surfaces in milliseconds
+    surface = packed.contour([0.1, 0.2], fields={"p": p})
+
+    grid = isotet.read("artery.vtu")                        # files
+    grid.contour(0.2, "Umag").write("speed.vtp")
+
+With PyVista, and without an import: ``grid.isotet.contour(...)`` and ``plotter.isotet.add_isovalue(...)``. A filter for VTK's
+pipelines is in `isotet.vtk`.
+
+Surfaces are closed, but for the boundary of the grid; vertices are shared; the same arrays give the same bytes on every
+machine. Functions may be called from many threads; they let other Python threads run meanwhile.
+
+Errors are ValueError (wrong arguments, broken data), TypeError (what is no number), MemoryError, OSError (files), and
+`Error` for all else, each with a sentence: what, the value seen, the rule.
+"""
+
+from ._grid import Contour, Grid, PackedGrid, contour, formats, inspect, make, pack, read
+from ._isotet import Error, __version__
+from ._surface import Surface, SurfaceReport, check, read_surface
+
+__all__ = [
+    "Contour", "Error", "Grid", "PackedGrid", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
+    "inspect", "make", "pack", "read", "read_surface",
+]  # fmt: skip

@@ -1,0 +1,135 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Which Python objects become which arrays. Without a copy where isotet takes the array as it is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import _isotet
+
+# VTK's numbers of meshio's cell types. Those that are not contoured are left out by isotet, which counts them.
+_VTK_TYPES = {
+    "vertex": 1, "line": 3, "triangle": 5, "polygon": 7, "quad": 9, "tetra": 10, "hexahedron": 12, "wedge": 13,
+    "pyramid": 14, "line3": 21, "triangle6": 22, "quad8": 23, "tetra10": 24, "hexahedron20": 25, "wedge15": 26,
+    "pyramid13": 27, "quad9": 28, "hexahedron27": 29, "wedge18": 32, "hexahedron24": 33, "triangle7": 34, "line4": 35,
+}  # fmt: skip
+_TYPE_OF_CORNERS = {4: 10, 8: 12, 6: 13, 5: 14}
+
+
+def _native(what: str, array, integers_only: bool = False) -> np.ndarray:
+    """A contiguous array of a type that isotet has."""
+    if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
+        raise ValueError(f"{what} is a masked array with masked values: only values may have some, which are no data")
+    array = np.asarray(array)
+    kind, bits = array.dtype.kind, 8 * array.dtype.itemsize
+    if kind == "b":
+        array = array.astype(np.uint8)
+    elif kind == "f" and bits == 16:
+        array = array.astype(np.float32)
+    elif kind not in "iuf" or bits > 64:
+        raise TypeError(f"{what} has type {array.dtype}, but must have integers, float16, float32 or float64")
+    if integers_only and kind not in "iu":
+        raise TypeError(f"{what} has type {array.dtype}, but must have integers")
+    if not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
+    return np.ascontiguousarray(array)
+
+
+def points_in(points) -> np.ndarray:
+    """float32 or float64, N x 3."""
+    array = _native("points", points)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"points has shape {array.shape}, but must have shape (N, 3)")
+    return array if array.dtype.kind == "f" else array.astype(np.float64)
+
+
+def values_in(what: str, values) -> np.ndarray:
+    """One or two dimensions; masked values become NaN."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        keeps = values.dtype.kind == "f"
+        values = (values if keeps else values.astype(np.float64)).filled(np.nan)
+    array = _native(what, values)
+    if array.ndim not in (1, 2):
+        raise ValueError(f"{what} has shape {array.shape}, but must have one or two dimensions")
+    return array
+
+
+def scalars_in(what: str, values) -> np.ndarray:
+    """One value a point."""
+    array = values_in(what, values)
+    if array.ndim == 2 and array.shape[1] != 1:
+        raise ValueError(f"{what} has shape {array.shape}, but one value a point is contoured: shape (N,)")
+    return array.reshape(-1)
+
+
+def fields_in(what: str, fields) -> list[tuple[str, np.ndarray]]:
+    """Names and arrays, of a mapping."""
+    if not fields:
+        return []
+    if not hasattr(fields, "items"):
+        raise TypeError(f"{what} is a {type(fields).__name__}, but must map names to arrays")
+    return [(str(name), values_in(f"{what}[{name!r}]", values)) for name, values in fields.items()]
+
+
+def _indices(what: str, array) -> np.ndarray:
+    array = _native(what, array, integers_only=True)
+    return array if array.dtype.itemsize >= 4 else array.astype(np.int32)
+
+
+def _blocks_in(blocks) -> _isotet.Cells:
+    """meshio's cells: pairs of a type and an array of corners, one row a cell."""
+    arrays, types = [], []
+    for name, corners in blocks:
+        corners = _indices(f"cells[{name!r}]", corners)
+        if corners.ndim != 2:
+            raise ValueError(f"cells[{name!r}] has shape {corners.shape}, but must have one row a cell")
+        arrays.append(corners)
+        types.append(_VTK_TYPES.get(name, 0))
+    if len(arrays) == 1 and types[0] in _TYPE_OF_CORNERS.values() and _TYPE_OF_CORNERS.get(arrays[0].shape[1]) == types[0]:
+        return _isotet.Cells(arrays[0].reshape(-1), None, None, types[0])
+    counts = [len(corners) for corners in arrays]
+    connectivity = np.concatenate([corners.reshape(-1) for corners in arrays]) if arrays else np.empty(0, np.int64)
+    if connectivity.dtype.kind not in "iu":  # int64 and uint64 together
+        connectivity = np.concatenate([corners.reshape(-1).astype(np.int64) for corners in arrays])
+    offsets = np.zeros(sum(counts) + 1, np.int64)
+    np.cumsum(np.repeat([corners.shape[1] for corners in arrays], counts), out=offsets[1:])
+    return _isotet.Cells(connectivity, offsets, np.repeat(np.array(types, np.uint8), counts), 10)
+
+
+def cells_in(cells, offsets=None, types=None) -> _isotet.Cells:
+    """Cells as the functions of isotet take them."""
+    if isinstance(cells, _isotet.Cells):
+        return cells
+    if hasattr(cells, "items"):
+        return _blocks_in(cells.items())
+    if isinstance(cells, (list, tuple)) and cells and not np.isscalar(cells[0]):
+        first = cells[0]
+        if hasattr(first, "type") and hasattr(first, "data"):
+            return _blocks_in((block.type, block.data) for block in cells)
+        if isinstance(first, (list, tuple)) and first and isinstance(first[0], str):
+            return _blocks_in(cells)
+    corners = _indices("cells", cells)
+    if offsets is None and types is None:
+        if corners.ndim != 2 or corners.shape[1] not in _TYPE_OF_CORNERS:
+            raise ValueError(
+                f"cells has shape {corners.shape}, but without offsets and types must have shape (N, 4) for tetrahedra, "
+                "(N, 5) for pyramids, (N, 6) for wedges or (N, 8) for hexahedra"
+            )
+        return _isotet.Cells(corners.reshape(-1), None, None, _TYPE_OF_CORNERS[corners.shape[1]])
+    if offsets is None or types is None:
+        raise ValueError("cells need offsets and types, or neither of them")
+    if corners.ndim != 1:
+        raise ValueError(f"cells has shape {corners.shape}, but with offsets must have one dimension")
+    types = _native("types", types, integers_only=True)
+    if types.dtype != np.uint8:
+        if types.size and not (0 <= types.min() and types.max() <= 255):
+            raise ValueError(f"types has the values {types.min()} to {types.max()}, but VTK's numbers are 0 to 255")
+        types = types.astype(np.uint8)
+    return _isotet.Cells(corners, _indices("offsets", offsets).reshape(-1), types.reshape(-1), 10)
+
+
+def isovalues_in(isovalues) -> list[float]:
+    """One number, or any sequence of them."""
+    if isinstance(isovalues, (float, int)):
+        return [float(isovalues)]
+    return np.asarray(isovalues, np.float64).reshape(-1).tolist()

@@ -1,0 +1,430 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Grids, and their surfaces."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _isotet
+from ._arrays import cells_in, fields_in, isovalues_in, points_in, scalars_in
+from ._surface import Surface, call_options
+
+Progress = Callable[[str, float], object]
+
+
+class Grid:
+    """Points, cells and fields, as they are: arrays are shared with whoever gave them, and must not change meanwhile.
+
+    points
+        N x 3 numbers; float32 or float64 are not copied.
+    cells, offsets, types
+        One of: integers of shape (M, 4) for tetrahedra, (M, 5) pyramids, (M, 6) wedges, (M, 8) hexahedra, with VTK's order
+        of corners; meshio's cells (a mapping from "tetra", "hexahedron" and so on to such arrays, or its list of blocks);
+        or corners of all cells one after another, with `offsets` (M + 1) and `types` (M, VTK's numbers). Cells that are
+        not contoured are left out.
+    fields, cell_fields
+        Mappings from names to arrays: one row a point, one row a cell.
+
+    Raises ValueError for wrong shapes, TypeError for types that are no numbers. What is wrong inside the arrays is found
+    when the grid is contoured.
+
+    >>> import isotet
+    >>> grid = isotet.Grid([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2, 3]], fields={"T": [0.0, 1.0, 1.0, 1.0]})
+    >>> grid
+    <isotet.Grid: 4 points, 1 cells, fields T>
+    >>> grid.contour(0.5).points.tolist()
+    [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]]
+    """
+
+    __slots__ = ("_grid", "info", "step", "notes", "__weakref__")
+
+    def __init__(self, points, cells, *, offsets=None, types=None, fields: Mapping[str, Any] | None = None,
+                 cell_fields: Mapping[str, Any] | None = None):  # fmt: skip
+        self._grid = _isotet.Grid(points_in(points), cells_in(cells, offsets, types), fields_in("fields", fields),
+                                  fields_in("cell_fields", cell_fields))  # fmt: skip
+        self.info: dict[str, Any] = {}
+        self.step = 0
+        self.notes: list[str] = []
+
+    @classmethod
+    def _of(cls, grid: _isotet.Grid, info: dict[str, Any] | None = None, step: int = 0, notes: Iterable[str] = ()) -> Grid:
+        self = cls.__new__(cls)
+        self._grid, self.info, self.step, self.notes = grid, info or {}, step, list(notes)
+        return self
+
+    @property
+    def points(self) -> np.ndarray:
+        """N x 3."""
+        return self._grid.points
+
+    @property
+    def cells(self) -> np.ndarray:
+        """M x corners where all cells are of one type and were given so, else the corners one after another."""
+        connectivity, offsets, _, uniform = self._grid.cells.arrays()
+        return connectivity if offsets is not None else connectivity.reshape(-1, {10: 4, 12: 8, 13: 6, 14: 5, 11: 8}[uniform])
+
+    @property
+    def offsets(self) -> np.ndarray | None:
+        """None where all cells are of one type, else M + 1: where the corners of each cell begin."""
+        return self._grid.cells.arrays()[1]
+
+    @property
+    def types(self) -> np.ndarray | None:
+        """None where all cells are of one type, else M of VTK's numbers."""
+        return self._grid.cells.arrays()[2]
+
+    @property
+    def fields(self) -> dict[str, np.ndarray]:
+        """Arrays with one row a point, by name."""
+        return self._grid.fields
+
+    @property
+    def cell_fields(self) -> dict[str, np.ndarray]:
+        """Arrays with one row a cell, by name."""
+        return self._grid.cell_fields
+
+    def _field(self, field, call: _isotet.CallOptions | None = None) -> _isotet.PointField:
+        """A field by name, or of values."""
+        if field is None or isinstance(field, str):
+            return _isotet.find_field(self._grid, field or "", call or call_options(0, None))
+        return _isotet.PointField("values", scalars_in("field", field))
+
+    def _carried(self, fields, of: str) -> list[tuple[str, np.ndarray]]:
+        """Fields to carry: of a mapping; or names of fields of the grid."""
+        if fields is None:
+            return list(self.fields.items()) if of == "fields" else []
+        if hasattr(fields, "items"):
+            return fields_in(of, fields)
+        if isinstance(fields, (str, np.ndarray)):
+            raise TypeError(f"{of} is a {type(fields).__name__}, but must be names, or map names to arrays")
+        own = getattr(self, of)
+        missing = [name for name in fields if name not in own]
+        if missing:
+            raise ValueError(f"{of} has no '{missing[0]}': there are {', '.join(own) or 'none'}")
+        return [(name, own[name]) for name in fields]
+
+    def contour(self, isovalues: float | Sequence[float], field=None, *, normals: str = "none",
+                fields: Mapping[str, Any] | Iterable[str] | None = None,
+                cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
+                source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
+                threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+        """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
+
+        isovalues
+            A number in the unit of the field; or several, which give one surface with the cell field "isovalue".
+        field
+            A name ("p"; "velocity:x" or "velocity:mag" of a vector; a cell field is averaged to the points), or one value
+            a point. Without it the only field there is.
+        normals
+            "none"; "gradient", one a vertex, along the field's gradient; "face", one a triangle.
+        fields, cell_fields
+            What the surface carries: names, or mappings from names to arrays. Without them all `fields` and no
+            `cell_fields`, as the program does.
+        edge_ends, source_cells
+            Where each vertex lies, and of which cell each triangle is.
+        ties
+            "merge": edges that meet in a point whose value is the isovalue share a vertex; "keep": one each.
+        precision
+            Of positions and values inside: "float32" or "float64".
+        method
+            "direct" or "clusters"; chosen by the number of surfaces otherwise.
+        threads
+            At most so many; 0: all.
+        progress
+            Called with the step and the fraction done; an exception of it stops the work, as Ctrl-C does.
+
+        Raises ValueError for wrong arguments or data, MemoryError before more memory is taken than is free.
+        """
+        values = isovalues_in(isovalues)
+        call = call_options(threads, progress)
+        options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values))
+        session = _isotet.Contour(self._grid, self._field(field, call), self._carried(fields, "fields"),
+                                  self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
+        return Surface._of(*session.extract(values, call))
+
+    def write(self, path: str | os.PathLike[str], *, format: str = "", progress: Progress | None = None) -> list[str]:
+        """Writes the grid as .vtu or legacy .vtk, whole or not at all. Returns sentences on what the format could not hold.
+
+        Raises OSError where the file cannot be written, ValueError for an unknown format.
+        """
+        return _isotet.write_grid(self._grid, os.fspath(path), format, call_options(0, progress))
+
+    def __len__(self) -> int:
+        """The number of cells."""
+        return len(self._grid.cells)
+
+    def __repr__(self) -> str:
+        names = list(self.fields) + list(self.cell_fields)
+        carried = f", fields {', '.join(names)}" if names else ""
+        return f"<isotet.Grid: {len(self.points)} points, {len(self)} cells{carried}>"
+
+
+class PackedGrid:
+    """A grid in clusters, made by `pack`: the arrays it was made of are not needed any more."""
+
+    __slots__ = ("_packed", "__weakref__")
+
+    def __init__(self):
+        raise TypeError("use isotet.pack()")
+
+    @classmethod
+    def _of(cls, packed: _isotet.PackedGrid) -> PackedGrid:
+        self = cls.__new__(cls)
+        self._packed = packed
+        return self
+
+    def contour(self, isovalues: float | Sequence[float], *, normals: str = "none",
+                fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
+                edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", threads: int = 0,
+                progress: Progress | None = None) -> Surface:  # fmt: skip
+        """The surface on which the packed field has a value, in a time that grows with the surface, not with the grid.
+
+        The parameters are those of `Grid.contour`; `normals="gradient"` needs ``pack(..., gradients=True)``, `source_cells`
+        and `cell_fields` need ``pack(..., source_cells=True)``. `fields` are arrays of the grid that was packed.
+
+        Raises ValueError for wrong arguments, and where something was not packed; MemoryError.
+        """
+        options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, self._packed.precision, None, 0)
+        surface = self._packed.extract(isovalues_in(isovalues), fields_in("fields", fields),
+                                       fields_in("cell_fields", cell_fields), options,
+                                       call_options(threads, progress))  # fmt: skip
+        return Surface._of(surface, {"method": "clusters"})
+
+    def set_field(self, values, *, name: str = "values", threads: int = 0, progress: Progress | None = None) -> None:
+        """Another field on the same cells, or its next time step: one value a point. Surfaces that exist stay as they are.
+
+        Raises ValueError where the number of values is not that of the points; the grid is then as before.
+        """
+        field = _isotet.PointField(name, scalars_in("values", values))
+        self._packed = self._packed.with_field(field, call_options(threads, progress))
+
+    def set_points(self, points, *, threads: int = 0, progress: Progress | None = None) -> None:
+        """Other coordinates of the same points: a mesh that moves.
+
+        Raises ValueError for another number of points, and where a cell turned over: pack again. The grid is then as before.
+        """
+        self._packed = self._packed.with_points(points_in(points), call_options(threads, progress))
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The smallest and the largest finite value at the points of the cells; the first is larger where there is none."""
+        field = self._packed.field()
+        return field["lower"], field["upper"]
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What packing found: tets, clusters, cells left out, inverted and repeated tets, and the bytes it takes."""
+        return self._packed.report()
+
+    @property
+    def field_report(self) -> dict[str, Any]:
+        """How values are stored: points without data, whether values are unchanged."""
+        return self._packed.field()
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the packed grid."""
+        return self._packed.report()["bytes"]
+
+    def __len__(self) -> int:
+        """The number of cells of the grid that was packed."""
+        return self._packed.cell_count
+
+    def __repr__(self) -> str:
+        report = self._packed.report()
+        return (f"<isotet.PackedGrid: {report['points']} points, {report['tets']} tets, "
+                f"field {self._packed.field()['name']}, {report['bytes']} bytes>")  # fmt: skip
+
+
+class Contour:
+    """A session: answers isovalues of one grid and field after another, and keeps what may be kept.
+
+    It extracts directly, and packs the grid when so many surfaces were asked for that this pays; `set` finds out what is the
+    same as before.
+
+    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method
+        As for `Grid.contour`.
+    surfaces
+        How many surfaces will be asked for in all; 0: not known.
+
+    >>> import isotet
+    >>> grid = isotet.make("kuhn", 8, ["sphere", "gyroid"])
+    >>> session = isotet.Contour(grid, "sphere", surfaces=100)
+    >>> session.contour(0.5).method
+    'clusters'
+    >>> session.set(grid, "gyroid")
+    'field'
+    """
+
+    __slots__ = ("_session", "_options", "__weakref__")
+
+    def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
+                 edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
+                 method: str | None = None, surfaces: int = 0):  # fmt: skip
+        call = call_options(0, None)
+        self._options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, surfaces)
+        self._session = _isotet.Contour(grid._grid, grid._field(field), grid._carried(fields, "fields"),
+                                        grid._carried(cell_fields, "cell_fields"), self._options, call)  # fmt: skip
+
+    def set(self, grid: Grid, field=None, *, fields=None, cell_fields=None, threads: int = 0,
+            progress: Progress | None = None) -> str:  # fmt: skip
+        """Another grid, field or time step. Arrays may be the same, the same in other memory, or changed in place.
+
+        Returns what differs: "nothing", "field", "points" (and perhaps the field) or "grid".
+
+        Raises ValueError as `Grid.contour`; the session is then as before.
+        """
+        call = call_options(threads, progress)
+        return self._session.set(grid._grid, grid._field(field, call), grid._carried(fields, "fields"),
+                                 grid._carried(cell_fields, "cell_fields"), self._options, call)  # fmt: skip
+
+    def contour(self, isovalues: float | Sequence[float], *, threads: int = 0, progress: Progress | None = None) -> Surface:
+        """The surface of one isovalue, or one of several with the cell field "isovalue".
+
+        Raises ValueError for an isovalue that is not finite and for broken grids; MemoryError.
+        """
+        return Surface._of(*self._session.extract(isovalues_in(isovalues), call_options(threads, progress)))
+
+    def prepare(self, *, threads: int = 0, progress: Progress | None = None) -> None:
+        """Packs now what the next surface would pack first; nothing where surfaces are extracted directly."""
+        self._session.prepare(call_options(threads, progress))
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The smallest and the largest finite value of the field; the first is larger where there is none."""
+        field = self._session.field(call_options(0, None))
+        return field["lower"], field["upper"]
+
+    @property
+    def method(self) -> str:
+        """How the next surface is extracted: "direct" or "clusters"."""
+        return self._session.method(1)
+
+
+def contour(points, cells, values, isovalues: float | Sequence[float], *, offsets=None, types=None, normals: str = "none",
+            fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
+            edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
+            method: str | None = None, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+    """The surface on which values at the points of a grid, linear in each tetrahedron, equal an isovalue.
+
+    points, cells, offsets, types
+        The grid, as `Grid` takes it.
+    values
+        One number a point; NaN, and masked values of a masked array, are no data: cells with such a corner give nothing.
+    isovalues
+        One number in the unit of `values`; or several, which give one surface with the cell field "isovalue".
+
+    The other parameters are those of `Grid.contour`.
+
+    Raises ValueError for wrong shapes and broken grids, TypeError for types that are no numbers, MemoryError.
+
+    >>> import isotet
+    >>> points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> surface = isotet.contour(points, [[0, 1, 2, 3]], [0.0, 1.0, 1.0, 1.0], 0.25)
+    >>> surface
+    <isotet.Surface: 3 vertices, 1 triangles>
+    >>> surface.points.tolist()
+    [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]]
+    """
+    grid = Grid(points, cells, offsets=offsets, types=types)
+    return grid.contour(isovalues, values, normals=normals, fields=fields, cell_fields=cell_fields, edge_ends=edge_ends,
+                        source_cells=source_cells, ties=ties, precision=precision, method=method, threads=threads,
+                        progress=progress)  # fmt: skip
+
+
+def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients: bool = False, source_cells: bool = False,
+         split_cells: bool = False, precision: str = "float32", threads: int = 0,
+         progress: Progress | None = None) -> PackedGrid:  # fmt: skip
+    """Packs a grid once, to contour it many times: about 10 bytes a tetrahedron stay.
+
+    points, cells, values, offsets, types
+        As for `contour`. Or a `Grid`, and `values` the name of a field or one value a point: ``pack(grid, values="p")``.
+    gradients
+        Keep a gradient at each point, for ``contour(normals="gradient")``: 4 bytes a point.
+    source_cells
+        Keep the cell of each tetrahedron, for cell fields: 4 bytes a tetrahedron.
+    split_cells
+        Split pyramids, wedges and hexahedra into tetrahedra first: 2 to 3 times the triangles.
+
+    Raises ValueError for wrong shapes and broken grids, MemoryError before more memory is taken than is free.
+
+    >>> import isotet
+    >>> packed = isotet.pack(isotet.make("kuhn", 8, ["sphere"]))
+    >>> packed.contour(0.5).triangles.shape == packed.contour([0.5]).triangles.shape
+    True
+    """
+    grid = points if isinstance(points, Grid) else Grid(points, cells, offsets=offsets, types=types)
+    call = call_options(threads, progress)
+    if values is None and grid is not points:
+        raise TypeError("pack() needs values")
+    packed = _isotet.pack(grid._grid, grid._field(values, call), precision, source_cells, split_cells, gradients, call)
+    return PackedGrid._of(packed)
+
+
+def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, cell_fields: Iterable[str] | None = None,
+         step: int | None = None, format: str = "", merge_pieces: bool = False, reader_program: str = "",
+         progress: Progress | None = None) -> Grid:  # fmt: skip
+    """Reads a grid: VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, Gocad and more (`formats`).
+
+    path, format
+        The file; its format is found out by its content, then its name, unless it is named.
+    fields, cell_fields
+        Names of the fields to read; without them all.
+    step
+        Which of several time steps, from 0.
+    merge_pieces
+        Join points of equal coordinates where pieces have no global numbers.
+    reader_program
+        The program `isotet`, which reads formats that need VTK's readers (Exodus, CGNS, EnSight, VTKHDF). Without it: the
+        one in PATH.
+
+    Grid.info has the fields and times of the file, Grid.notes what was noticed.
+
+    Raises OSError where the file cannot be read or its format is not known, ValueError where its content is broken or a
+    field or step is not there.
+    """
+    names = None if fields is None else [str(name) for name in fields]
+    cell_names = None if cell_fields is None else [str(name) for name in cell_fields]
+    return Grid._of(*_isotet.read(os.fspath(path), format, names, cell_names, step, merge_pieces, reader_program,
+                                  call_options(0, progress)))  # fmt: skip
+
+
+def inspect(path: str | os.PathLike[str], *, format: str = "", reader_program: str = "") -> dict[str, Any]:
+    """What the file at `path` holds, without reading it whole: format, fields and cell_fields (type and columns), times.
+
+    `format` and `reader_program` are those of `read`. Raises OSError and ValueError as it does.
+    """
+    return _isotet.inspect(os.fspath(path), format, reader_program, call_options(0, None))
+
+
+def make(shape: str = "kuhn", side: int = 32, fields: Sequence[str] = ("sphere", "gyroid"), seed: int = 1) -> Grid:
+    """A test grid on the cube from -1 to 1: "kuhn", "perturbed", "shuffled", "hex", "wedge", "pyramid", "mixed" and others.
+
+    side
+        Cubes along an edge.
+    fields
+        Of "sphere", "torus", "plane", "gyroid", "wavelet", "integer".
+    seed
+        Of what is drawn: another one gives another grid of the same kind.
+
+    Raises ValueError for unknown names, with those that there are.
+
+    >>> import isotet
+    >>> isotet.make("hex", 4, ["sphere"])
+    <isotet.Grid: 125 points, 64 cells, fields sphere>
+    """
+    return Grid._of(_isotet.make(shape, side, list(fields), seed, call_options(0, None)))
+
+
+def formats() -> list[dict[str, Any]]:
+    """The file formats: name, title, extensions, what is read and written, and whether the program is needed to read it.
+
+    >>> import isotet
+    >>> [format["name"] for format in isotet.formats() if format["writes_grid"]]
+    ['vtu', 'vtk']
+    """
+    return _isotet.formats()

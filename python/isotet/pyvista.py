@@ -1,0 +1,239 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""isotet in PyVista, found by entry points: nobody has to import this.
+
+``grid.isotet.contour(...)`` for UnstructuredGrid and MultiBlock, ``plotter.isotet.add_isovalue(...)``.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+import pyvista
+
+from .vtk import IsotetContour, _arrays_of, _finish, _levels, _Session
+
+_MANY = 1 << 20  # surfaces that a slider may ask for
+
+
+def _check_method(method: str) -> None:
+    if method not in ("contour", "marching_cubes", "flying_edges"):
+        raise ValueError(f"Method '{method}' is not supported")
+    if method != "contour":
+        warnings.warn(f"isotet has a method of its own: method='{method}' is ignored", stacklevel=4)
+
+
+def _scalars_name(grid, scalars) -> str:
+    """The name of the array to contour; an array is stored as "Contour Data", as pyvista does."""
+    if isinstance(scalars, str):
+        return scalars
+    if scalars is None:
+        if grid.active_scalars_name is None:
+            from pyvista.core.utilities.arrays import set_default_active_scalars
+
+            set_default_active_scalars(grid)
+        return grid.active_scalars_name
+    if isinstance(scalars, (Sequence, np.ndarray)):
+        grid["Contour Data"] = scalars
+        return "Contour Data"
+    raise TypeError(f"Invalid type for `scalars` ({type(scalars)}). Should be either a numpy.ndarray, a string, or None.")
+
+
+def _isovalues(isosurfaces, rng, range_of_data) -> list[float]:
+    if isinstance(isosurfaces, (int, np.integer)):
+        lower, upper = range_of_data() if rng is None else rng
+        if not lower <= upper:
+            raise ValueError(f"rng is {lower} to {upper}, but must ascend")
+        return _levels(float(lower), float(upper), int(isosurfaces))
+    return np.asarray(isosurfaces, float).reshape(-1).tolist()
+
+
+class GridAccessor:
+    """``grid.isotet`` of a pyvista.UnstructuredGrid."""
+
+    def __init__(self, grid: pyvista.UnstructuredGrid):
+        self._grid = grid
+        self._session = _Session()
+        self._expected = 0
+
+    def _scalars(self, scalars, preference: str):
+        grid = self._grid
+        if grid.n_arrays < 1 and not isinstance(scalars, (Sequence, np.ndarray)):
+            raise ValueError("Input dataset for the contour filter must have scalar.")
+        name = _scalars_name(grid, scalars)
+        association = grid.get_array_association(name, preference=preference)
+        if association != pyvista.FieldAssociation.POINT:
+            raise TypeError("Contour filter only works on point data.")
+        return grid.GetPointData().GetArray(name)
+
+    def contour(self, isosurfaces: int | Sequence[float] = 10, scalars=None, compute_normals: bool = False,
+                compute_gradients: bool = False, compute_scalars: bool = True, rng=None, preference: str = "point",
+                method: str = "contour", progress_bar: bool = False) -> pyvista.PolyData:  # fmt: skip
+        """Isosurfaces, as of `pyvista.UnstructuredGrid.contour`, whose parameters and array names these are.
+
+        isosurfaces
+            How many, evenly over the range with both ends; or isovalues.
+        scalars
+            A name of point data, or one value a point, which is stored as "Contour Data"; else the active scalars.
+        compute_normals
+            Normals of the field's gradient, one a vertex, as "Normals".
+        compute_scalars
+            The isovalue at each vertex, under the name of the scalars.
+        rng
+            The range for a number of isosurfaces; else that of the data.
+        preference
+            "point" or "cell" where both have an array of that name; cells cannot be contoured.
+        compute_gradients, progress_bar
+            Accepted, without effect. `method` is, too, with a warning.
+
+        The grid is packed when this pays; what was packed is kept, and used while cells and points are the same. After
+        cells were changed in place through NumPy, call ``grid.Modified()`` of their arrays, as for VTK's filters.
+
+        Raises TypeError for cell data, ValueError for broken grids and isovalues that are not finite.
+        """
+        _check_method(method)
+        grid = self._grid
+        array = self._scalars(scalars, preference)
+        values = _isovalues(isosurfaces, rng, lambda: grid.get_data_range(array.GetName(), preference="point"))
+        out = pyvista.PolyData()
+        if grid.n_cells == 0 or not values:
+            return out
+        cell_fields = _arrays_of(grid.GetCellData())
+        surface = self._session.contour(
+            grid, array, values, normals=compute_normals, surfaces=self._expected,
+            fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields)  # fmt: skip
+        left_out = surface._how["cells_left_out"]
+        if left_out:
+            warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours tetrahedra, hexahedra, voxels, "
+                          "wedges and pyramids", stacklevel=2)  # fmt: skip
+        _finish(surface, values, array, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
+        out.GetFieldData().PassData(grid.GetFieldData())
+        return out
+
+    def pack(self, scalars=None, *, compute_normals: bool = False) -> None:
+        """Packs the grid now, and keeps it packed for all contours to come, instead of when so many were asked for that it pays."""
+        self._expected = _MANY
+        array = self._scalars(scalars, "point")
+        cell_fields = _arrays_of(self._grid.GetCellData())
+        self._session.set(self._grid, array, normals=compute_normals, surfaces=_MANY, fields=[], cell_fields=cell_fields)
+        self._session.prepare()
+
+    def clear(self) -> None:
+        """Frees what was packed."""
+        self._session, self._expected = _Session(), 0
+
+
+class BlocksAccessor:
+    """``blocks.isotet`` of a pyvista.MultiBlock."""
+
+    def __init__(self, blocks: pyvista.MultiBlock):
+        self._blocks = blocks
+
+    def contour(self, isosurfaces: int | Sequence[float] = 10, scalars: str | None = None, compute_normals: bool = False,
+                compute_gradients: bool = False, compute_scalars: bool = True, rng=None, preference: str = "point",
+                method: str = "contour", progress_bar: bool = False) -> pyvista.MultiBlock:  # fmt: skip
+        """Isosurfaces of every block, in a MultiBlock of the same structure: the same isovalues for all of them.
+
+        The parameters are those of `GridAccessor.contour`; `scalars` is a name. Blocks that are None, or do not have the
+        scalars as point data, give an empty pyvista.PolyData; blocks of other types than UnstructuredGrid are converted.
+        """
+        _check_method(method)
+        blocks = [block for block in self._leaves(self._blocks) if block is not None]
+        if scalars is None:
+            scalars = next((block.active_scalars_name for block in blocks if block.active_scalars_name), None)
+        if not isinstance(scalars, str):
+            raise TypeError("scalars of a MultiBlock must be the name of an array")
+        have = [block for block in blocks if scalars in block.point_data]
+        if not have:
+            raise ValueError(f"no block has point data '{scalars}'")
+
+        def range_of_data():
+            ranges = np.array([block.get_data_range(scalars, preference="point") for block in have], float)
+            return np.nanmin(ranges[:, 0]), np.nanmax(ranges[:, 1])
+
+        values = _isovalues(isosurfaces, rng, range_of_data)
+        return self._contour_all(self._blocks, values, scalars, compute_normals, compute_scalars)
+
+    def _leaves(self, blocks):
+        for block in blocks:
+            if isinstance(block, pyvista.MultiBlock):
+                yield from self._leaves(block)
+            else:
+                yield block
+
+    def _contour_all(self, blocks, values, scalars, compute_normals, compute_scalars) -> pyvista.MultiBlock:
+        out = pyvista.MultiBlock()
+        for name, block in zip(blocks.keys(), blocks, strict=True):
+            if isinstance(block, pyvista.MultiBlock):
+                surface = self._contour_all(block, values, scalars, compute_normals, compute_scalars)
+            elif block is None or scalars not in block.point_data:
+                surface = pyvista.PolyData()
+            else:
+                grid = block if isinstance(block, pyvista.UnstructuredGrid) else block.cast_to_unstructured_grid()
+                surface = grid.isotet.contour(values, scalars, compute_normals=compute_normals, compute_scalars=compute_scalars)
+            out.append(surface, name)
+        return out
+
+
+class PlotterComponent:
+    """``plotter.isotet`` of a pyvista.Plotter."""
+
+    def __init__(self, plotter: pyvista.Plotter):
+        self._plotter = plotter
+
+    def add_isovalue(self, grid: pyvista.UnstructuredGrid, scalars: str | None = None, compute_normals: bool = False,
+                     compute_scalars: bool = True, value: float | None = None, rng=None, color_by: str | None = None,
+                     title: str | None = None, pointa=(0.4, 0.9), pointb=(0.9, 0.9), widget_color=None,
+                     **kwargs):  # fmt: skip
+        """An isosurface and a slider for its isovalue, which it follows while the slider is dragged.
+
+        As `pyvista.Plotter.add_mesh_isovalue`; the grid is packed before the plot opens.
+
+        grid
+            A pyvista.UnstructuredGrid.
+        scalars
+            A name of point data; else the active scalars.
+        value
+            The isovalue at first; else the middle of the range.
+        rng
+            Both ends of the slider; else the range of the data.
+        color_by
+            Point data that colours the surface, over its range in the grid; else the scalars do.
+        kwargs
+            For `pyvista.Plotter.add_mesh`.
+
+        Returns the actor of the surface. Raises TypeError for other meshes and for cell data.
+        """
+        if not isinstance(grid, pyvista.UnstructuredGrid):
+            raise TypeError(f"the mesh is a {type(grid).__name__}, but must be an UnstructuredGrid: cast_to_unstructured_grid()")
+        name = _scalars_name(grid, scalars)
+        if grid.get_array_association(name, preference="point") != pyvista.FieldAssociation.POINT:
+            raise TypeError(f"Contour filter only works on Point data. Array ({name}) is in the Cell data.")
+        lower, upper = grid.get_data_range(name, preference="point") if rng is None else rng
+        contour = IsotetContour()
+        contour.SetExpectedSurfaces(_MANY)
+        contour.SetComputeNormals(compute_normals)
+        contour.SetComputeScalars(compute_scalars)
+        contour.SetInputDataObject(grid)
+        contour.SetInputArrayToProcess(0, 0, 0, 0, name)
+        contour.SetValue(0, (lower + upper) / 2 if value is None else value)
+        contour.Update()
+
+        def moved(value: float) -> None:
+            contour.SetValue(0, value)
+            contour.Update()
+
+        self._plotter.add_slider_widget(moved, [lower, upper], value=contour.GetValue(0), title=title or name,
+                                        pointa=pointa, pointb=pointb, color=widget_color, interaction_event="always")  # fmt: skip
+        if color_by is None:
+            kwargs.setdefault("clim", [lower, upper])
+        else:
+            kwargs.setdefault("clim", grid.get_data_range(color_by, preference="point"))
+            kwargs["scalars"] = color_by
+        return self._plotter.add_mesh(contour, **kwargs)
+
+
+pyvista.register_dataset_accessor("isotet", pyvista.UnstructuredGrid)(GridAccessor)
+pyvista.register_dataset_accessor("isotet", pyvista.MultiBlock)(BlocksAccessor)
+pyvista.register_plotter_component("isotet")(PlotterComponent)

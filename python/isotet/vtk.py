@@ -1,0 +1,288 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""isotet in VTK's pipelines, from Python. Needs the package vtk.
+
+`IsotetContour` is a filter with the methods of vtkContourFilter; `grid_of` and `to_polydata` convert data sets.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Any
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPolyData
+
+from . import _isotet
+from ._arrays import points_in, scalars_in, values_in
+from ._grid import Grid
+from ._surface import Surface, call_options
+
+__all__ = ["IsotetContour", "grid_of", "to_polydata"]
+
+_TETRAHEDRON = 10
+
+
+def _types_of(grid):
+    """The array of cell types: its method has another name since VTK 9.6."""
+    types = grid.GetCellTypes() if hasattr(grid, "GetDistinctCellTypes") else grid.GetCellTypesArray()
+    return types if hasattr(types, "GetMTime") else grid.GetCellTypesArray()
+
+
+def _cells_of(grid) -> _isotet.Cells:
+    """The cells of a vtkUnstructuredGrid, shared."""
+    types = _types_of(grid)
+    if grid.GetNumberOfCells() == 0 or types is None:
+        return _isotet.Cells(np.empty(0, np.int64), None, None, _TETRAHEDRON)
+    types = vtk_to_numpy(types)
+    cells = grid.GetCells()
+    connectivity = np.ascontiguousarray(vtk_to_numpy(cells.GetConnectivityArray()))
+    if types[0] == _TETRAHEDRON and (types == _TETRAHEDRON).all():
+        return _isotet.Cells(connectivity, None, None, _TETRAHEDRON)
+    return _isotet.Cells(connectivity, np.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray())), types, _TETRAHEDRON)
+
+
+def _points_of(grid) -> np.ndarray:
+    points = grid.GetPoints()
+    return np.empty((0, 3), np.float32) if points is None else points_in(vtk_to_numpy(points.GetData()))
+
+
+def _arrays_of(attributes, leave_out: str | None = None) -> list[tuple[str, np.ndarray]]:
+    """The named arrays of numbers of point or cell data, shared."""
+    out = []
+    for i in range(attributes.GetNumberOfArrays()):
+        array = attributes.GetArray(i)  # None for strings
+        if array is not None and array.GetName() and array.GetName() != leave_out:
+            out.append((array.GetName(), values_in(array.GetName(), vtk_to_numpy(array))))
+    return out
+
+
+def grid_of(grid) -> Grid:
+    """A vtkUnstructuredGrid, or pyvista.UnstructuredGrid, as `isotet.Grid`: arrays are shared, and must not change meanwhile."""
+    fields, cell_fields = _arrays_of(grid.GetPointData()), _arrays_of(grid.GetCellData())
+    return Grid._of(_isotet.Grid(_points_of(grid), _cells_of(grid), fields, cell_fields))
+
+
+def _add_arrays(attributes, arrays: dict[str, np.ndarray], copy: bool) -> None:
+    for name, values in arrays.items():
+        array = numpy_to_vtk(values, deep=copy)
+        array.SetName(name)
+        attributes.AddArray(array)
+
+
+def to_polydata(surface: Surface):
+    """A surface as vtkPolyData, with its normals ("Normals") and fields. The arrays are copies."""
+    return _fill(vtkPolyData(), surface, copy=True)
+
+
+def _fill(out, surface: Surface, *, copy: bool):
+    """Without `copy` the surface must be left alone afterwards: VTK may write to its points and fields.
+
+    Triangles are always copied: vtkCellArray.SetData() makes arrays of its own on the memory of those given, and lets go
+    of the Python object that keeps that memory.
+    """
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(surface.points, deep=copy))
+    triangles = surface.triangles.reshape(-1)
+    fits = triangles.dtype == np.uint32 and len(surface.points) < 2**31
+    triangles = triangles.view(np.int32) if fits else triangles.astype(np.int64)
+    cells = vtkCellArray()
+    cells.SetData(3, numpy_to_vtk(triangles, deep=True))
+    out.SetPoints(points)
+    out.SetPolys(cells)
+    _add_arrays(out.GetPointData(), surface.fields, copy)
+    _add_arrays(out.GetCellData(), surface.cell_fields, copy)
+    normals = surface.normals
+    if normals is not None:
+        array = numpy_to_vtk(normals, deep=copy)
+        array.SetName("Normals")
+        (out.GetPointData() if surface.normals_kind == "gradient" else out.GetCellData()).SetNormals(array)
+    return out
+
+
+class _Session:
+    """A session for one grid of VTK's, which may change at any time.
+
+    Cells are taken for the same while VTK's modified times say so, as VTK's own filters do. Points and values are compared
+    with what they were: NumPy code that changes them in place leaves no other trace.
+    """
+
+    def __init__(self):
+        self._session: _isotet.Contour | None = None
+        self._cells: _isotet.Cells | None = None
+        self._times: tuple[int, ...] = ()
+
+    @staticmethod
+    def times_of(grid) -> tuple[int, ...]:
+        """Modified times of the cells. VTK never gives the same one twice, so they tell arrays apart, too."""
+        cells, types = grid.GetCells(), _types_of(grid)
+        parts = (cells, cells.GetConnectivityArray(), cells.GetOffsetsArray(), types) if cells else (types,)
+        return tuple(part.GetMTime() for part in parts if part is not None)
+
+    def contour(self, grid, scalars, isovalues: list[float], *, normals: bool, surfaces: int,
+                fields: list[tuple[str, np.ndarray]], cell_fields: list[tuple[str, np.ndarray]]) -> Surface:  # fmt: skip
+        self.set(grid, scalars, normals=normals, surfaces=surfaces, fields=fields, cell_fields=cell_fields)
+        assert self._session is not None
+        return Surface._of(*self._session.extract(isovalues, call_options(0, None)))
+
+    def set(self, grid, scalars, *, normals: bool, surfaces: int, fields, cell_fields) -> None:
+        times = self.times_of(grid)
+        if self._cells is None or times != self._times:
+            self._cells, self._times = _cells_of(grid), times
+        values = scalars_in(scalars.GetName() or "scalars", vtk_to_numpy(scalars))
+        field = _isotet.PointField(scalars.GetName() or "scalars", values)
+        kind = "gradient" if normals else "none"
+        options = _isotet.ContourOptions(kind, False, False, "merge", "float32", None, surfaces)
+        mine = _isotet.Grid(_points_of(grid), self._cells, [], [])
+        call = call_options(0, None)
+        if self._session is None:
+            self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call)
+        else:
+            self._session.set(mine, field, fields, cell_fields, options, call)
+
+    def prepare(self) -> None:
+        assert self._session is not None
+        self._session.prepare(call_options(0, None))
+
+
+def _levels(lower: float, upper: float, count: int) -> list[float]:
+    """VTK's GenerateValues()."""
+    return np.linspace(lower, upper, count).tolist()
+
+
+def _finish(surface: Surface, isovalues: list[float], scalars, compute_scalars: bool, own_cell_fields: bool, out):
+    """A surface as vtkContourFilter gives it: the contoured scalars are an array of isovalues."""
+    _fill(out, surface, copy=False)
+    if len(isovalues) != 1 and not own_cell_fields:
+        out.GetCellData().RemoveArray("isovalue")
+    if compute_scalars:
+        kind = vtk_to_numpy(scalars).dtype
+        values = np.repeat(np.array(isovalues, kind if kind.kind == "f" else np.float64), surface._how["vertex_counts"])
+        array = numpy_to_vtk(values)
+        array.SetName(scalars.GetName())
+        out.GetPointData().SetScalars(array)
+    return out
+
+
+class IsotetContour(VTKPythonAlgorithmBase):
+    """A vtkAlgorithm like vtkContourFilter, for vtkUnstructuredGrid: it follows a moving isovalue.
+
+    The grid is packed when many surfaces are expected (`SetExpectedSurfaces`) or were asked for, and not again while its
+    cells and points are the same; another array or time step only stores values. Point and cell arrays are carried.
+
+    >>> import pyvista, isotet.vtk
+    >>> sphere = pyvista.ImageData(dimensions=(9, 9, 9)).cast_to_unstructured_grid()
+    >>> sphere["r"] = ((sphere.points - 4.0) ** 2).sum(axis=1) ** 0.5
+    >>> contour = isotet.vtk.IsotetContour()
+    >>> contour.SetInputDataObject(sphere)
+    >>> contour.SetInputArrayToProcess(0, 0, 0, 0, "r")
+    >>> contour.SetValue(0, 2.5)
+    >>> done = contour.Update()
+    >>> pyvista.wrap(contour.GetOutputDataObject(0)).is_manifold
+    True
+    """
+
+    _MAX_SESSIONS = 64  # blocks of a composite data set, each with a session
+
+    def __init__(self):
+        super().__init__(nInputPorts=1, inputType="vtkUnstructuredGrid", nOutputPorts=1, outputType="vtkPolyData")
+        self._values: list[float] = [0.0]
+        self._compute_normals, self._compute_scalars = False, True
+        self._expected = 0
+        self._sessions: OrderedDict[Any, _Session] = OrderedDict()
+        self.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, 0)
+
+    def _set(self, name: str, value) -> None:
+        if getattr(self, name) != value:
+            setattr(self, name, value)
+            self.Modified()
+
+    def SetValue(self, i: int, value: float) -> None:
+        values = self._values + [0.0] * (i + 1 - len(self._values))
+        values[i] = float(value)
+        self._set("_values", values)
+
+    def GetValue(self, i: int) -> float:
+        return self._values[i]
+
+    def GetValues(self) -> list[float]:
+        return list(self._values)
+
+    def SetNumberOfContours(self, count: int) -> None:
+        self._set("_values", (self._values + [0.0] * count)[:count])
+
+    def GetNumberOfContours(self) -> int:
+        return len(self._values)
+
+    def GenerateValues(self, count: int, *lower_upper) -> None:
+        """`count` values from the first to the last, both included."""
+        lower, upper = lower_upper[0] if len(lower_upper) == 1 else lower_upper
+        self._set("_values", _levels(lower, upper, count))
+
+    def SetComputeNormals(self, compute: bool) -> None:
+        """Normals along the gradient of the field, one a vertex."""
+        self._set("_compute_normals", bool(compute))
+
+    def GetComputeNormals(self) -> bool:
+        return self._compute_normals
+
+    def SetComputeScalars(self, compute: bool) -> None:
+        self._set("_compute_scalars", bool(compute))
+
+    def GetComputeScalars(self) -> bool:
+        return self._compute_scalars
+
+    def SetExpectedSurfaces(self, count: int) -> None:
+        """How many surfaces will be asked for, over all isovalues and time steps; 0: not known."""
+        self._expected = int(count)
+
+    def GetExpectedSurfaces(self) -> int:
+        return self._expected
+
+    def _scalars_of(self, grid):
+        info = self.GetInputArrayInformation(0)
+        association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
+        if association is not None and association != vtkDataObject.FIELD_ASSOCIATION_POINTS:
+            raise ValueError("isotet contours point data, but the array to process is of cells: convert it first")
+        name = info.Get(vtkDataObject.FIELD_NAME())
+        scalars = grid.GetPointData().GetArray(name) if name else grid.GetPointData().GetScalars()
+        if scalars is None:
+            raise ValueError(f"there is no point array '{name}'" if name else "there are no active point scalars")
+        return scalars
+
+    def _session_of(self, grid) -> _Session:
+        """By the connectivity: blocks of a composite data set come one after another."""
+        key = grid.GetCells().GetConnectivityArray().GetAddressAsString("vtkObject")
+        session = self._sessions.pop(key, None) or _Session()
+        self._sessions[key] = session
+        while len(self._sessions) > self._MAX_SESSIONS:
+            self._sessions.popitem(last=False)
+        return session
+
+    def RequestData(self, request, inputs, outputs) -> int:
+        try:
+            grid, out = self.GetInputData(inputs, 0, 0), vtkPolyData.GetData(outputs, 0)
+            if grid is None or grid.GetNumberOfCells() == 0:
+                return 1
+            scalars = self._scalars_of(grid)
+            cell_fields = _arrays_of(grid.GetCellData())
+            surface = self._session_of(grid).contour(
+                grid, scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
+                fields=_arrays_of(grid.GetPointData(), scalars.GetName()), cell_fields=cell_fields)  # fmt: skip
+            _finish(surface, self._values, scalars, self._compute_scalars, any(n == "isovalue" for n, _ in cell_fields), out)
+            out.GetFieldData().PassData(grid.GetFieldData())
+        except Exception as error:  # noqa: BLE001 - VTK would say that a method failed, and not why
+            self._fail(error)
+            return 0
+        return 1
+
+    def _fail(self, error: Exception) -> None:
+        """Tells VTK's observers, or its log where there are none."""
+        if self.HasObserver("ErrorEvent"):
+            self.InvokeEvent("ErrorEvent", str(error))
+        else:
+            from vtkmodules.vtkCommonCore import vtkLogger
+
+            vtkLogger.Log(vtkLogger.VERBOSITY_ERROR, __file__, 0, f"IsotetContour: {error}")

@@ -1,0 +1,251 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""What comes out."""
+
+import copy
+import pickle
+import sys
+
+import numpy as np
+import pytest
+import pyvista
+
+import isotet
+from conftest import same
+
+
+def test_methods_give_the_same_surface_in_another_order(sphere):
+    direct, packed = (sphere.contour(0.5, "sphere", method=method) for method in ("direct", "clusters"))
+    assert (direct.method, packed.method) == ("direct", "clusters")
+    assert sorted(map(tuple, direct.points.tolist())) == sorted(map(tuple, packed.points.tolist()))
+    assert same(packed, isotet.pack(sphere, values="sphere").contour(0.5, fields=sphere.fields))
+
+
+def test_everything_that_can_be_asked_for(sphere):
+    cells = np.arange(len(sphere))
+    surface = sphere.contour(0.5, "sphere", normals="gradient", fields={"gyroid": sphere.fields["gyroid"], "p": sphere.points},
+                             cell_fields={"number": cells}, edge_ends=True, source_cells=True)  # fmt: skip
+    vertices, triangles = len(surface.points), len(surface.triangles)
+    assert surface.normals.shape == (vertices, 3)
+    assert surface.normals_kind == "gradient"
+    assert np.allclose(np.linalg.norm(surface.normals, axis=1), 1, atol=1e-6)
+    assert np.einsum("ij,ij->i", surface.normals, surface.points).min() > 0, "towards higher values"
+    assert surface.edge_ends.shape == (vertices, 2)
+    assert surface.edge_ends.dtype == np.int64
+    assert surface.edge_weights.shape == (vertices,)
+    assert surface.source_cells.shape == (triangles,)
+    assert np.array_equal(surface.cell_fields["number"], surface.source_cells)
+    assert np.allclose(surface.fields["p"], surface.points, atol=1e-6)
+    assert set(surface.fields) == {"gyroid", "p"}
+    faces = sphere.contour(0.5, "sphere", normals="face", fields=[])
+    assert faces.normals.shape == (triangles, 3)
+    assert faces.fields == {}
+    assert faces.normals_kind == "face"
+
+
+def test_fields_are_named_or_given(sphere):
+    assert list(sphere.contour(0.5, "sphere").fields) == ["sphere", "gyroid"]
+    assert list(sphere.contour(0.5, "sphere", fields=["gyroid"]).fields) == ["gyroid"]
+    with pytest.raises(ValueError, match="fields has no 'pressure': there are sphere, gyroid"):
+        sphere.contour(0.5, "sphere", fields=["pressure"])
+    with pytest.raises(ValueError, match="sphere"):
+        sphere.contour(0.5, "spere")
+    with pytest.raises(ValueError):
+        sphere.contour(0.5)  # two fields: which?
+
+
+def test_components_and_cell_fields_are_contoured(sphere):
+    grid = isotet.Grid(sphere.points, sphere.cells, fields={"v": sphere.points}, cell_fields={"one": np.ones(len(sphere))})
+    x = grid.contour(0.1, "v:x", fields=[])
+    assert np.allclose(x.points[:, 0], 0.1, atol=1e-6)
+    assert len(grid.contour(1.5, "one").triangles) == 0
+
+
+def test_packed_grids_say_what_was_not_packed(sphere):
+    packed = isotet.pack(sphere, values="sphere")
+    for asked in ({"normals": "gradient"}, {"source_cells": True}, {"cell_fields": {"n": np.arange(len(sphere))}}):
+        with pytest.raises(ValueError, match="pack"):
+            packed.contour(0.5, **asked)
+    packed = isotet.pack(sphere, values="sphere", gradients=True, source_cells=True)
+    assert packed.contour(0.5, normals="gradient", source_cells=True).normals is not None
+
+
+def test_other_cells_are_cut_as_they_are_or_split():
+    grid = isotet.make("hex", 6, ["sphere"])
+    whole, split = isotet.pack(grid, values="sphere"), isotet.pack(grid, values="sphere", split_cells=True)
+    assert whole.report["hexahedra"] == 216 and whole.report["tets"] == 0
+    assert split.report["hexahedra"] == 0 and split.report["tets"] > 1000
+    assert 2 * len(whole.contour(0.5).triangles) < len(split.contour(0.5).triangles)
+
+
+def test_packed_grids_take_fields_and_points(sphere):
+    packed = isotet.pack(sphere.points, sphere.cells, sphere.fields["sphere"])
+    before = packed.contour(0.5)
+    packed.set_field(sphere.fields["gyroid"], name="gyroid")
+    assert same(packed.contour(0.5), isotet.pack(sphere, values="gyroid").contour(0.5))
+    assert packed.field_report["name"] == "gyroid"
+    packed.set_field(sphere.fields["sphere"])
+    packed.set_points(2 * sphere.points)
+    assert packed.contour(0.5).area == pytest.approx(4 * before.area)
+    with pytest.raises(ValueError, match="values"):
+        packed.set_field(np.zeros(3))
+    with pytest.raises(ValueError):
+        packed.set_points(-sphere.points)
+    assert packed.contour(0.5).area == pytest.approx(4 * before.area), "as it was"
+    lower, upper = packed.range
+    assert (lower, upper) == (sphere.fields["sphere"].min(), sphere.fields["sphere"].max())
+    assert packed.report["tets"] == len(packed) == len(sphere)
+    assert 0 < packed.nbytes < 100 * len(sphere)
+    with pytest.raises(TypeError, match=r"isotet.pack\(\)"):
+        isotet.PackedGrid()
+
+
+def test_sessions_find_out_what_is_the_same(sphere):
+    session = isotet.Contour(sphere, "sphere", surfaces=100, fields=[])
+    assert session.method == "clusters"
+    session.prepare()
+    first = session.contour(0.5)
+    assert session.range == (sphere.fields["sphere"].min(), sphere.fields["sphere"].max())
+    assert session.set(sphere, "sphere", fields=[]) in ("nothing", "field")
+    assert same(session.contour(0.5), first)
+    elsewhere = isotet.Grid(np.array(sphere.points), np.array(sphere.cells))
+    assert session.set(elsewhere, np.array(sphere.fields["gyroid"])) == "field"
+    moved = np.array(sphere.points)
+    grid = isotet.Grid(moved, sphere.cells)
+    assert session.set(grid, sphere.fields["sphere"]) == "field"
+    session.contour(0.5)
+    moved *= 2  # in place, behind the session's back
+    assert session.set(isotet.Grid(moved, sphere.cells), sphere.fields["sphere"]) == "points"
+    assert session.contour(0.5).area == pytest.approx(4 * first.area)
+    assert session.set(isotet.make("kuhn", 5, ["sphere"]), "sphere") == "grid"
+    with pytest.raises(ValueError):
+        session.set(sphere, np.zeros(3))
+
+
+def test_arrays_are_read_only_and_copies_are_not(sphere):
+    surface = sphere.contour(0.5, "sphere")
+    for array in (surface.points, surface.triangles, surface.fields["sphere"]):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    mine = surface.points.copy()
+    mine[0] = 7
+
+
+def test_area_and_check(sphere):
+    surface = sphere.contour(0.5, "sphere", edge_ends=True)
+    report = isotet.check(surface, closed=True)
+    assert report.sound and report["sound"] and report.closed
+    assert report.area == surface.area == pytest.approx(4 * np.pi * 0.25, rel=0.2)
+    assert report.euler == 2
+    assert report.genus == [0]
+    open_one = sphere.contour(1.2, "sphere", edge_ends=True)
+    assert not isotet.check(open_one, closed=True, max_findings=2).sound
+    assert 1 <= len(isotet.check(open_one, closed=True, max_findings=2).findings) <= 4
+    assert isotet.check(open_one, grid=sphere, field="sphere").sound
+    with pytest.raises(AttributeError):
+        report.beauty  # noqa: B018
+    with pytest.raises(ValueError, match="vert"):
+        isotet.check(isotet.Surface([[0, 0, 0]], [[0, 0, 5]]))
+
+
+@pytest.mark.parametrize("ending", ["vtp", "ply", "stl", "obj", "vtk", "ts"])
+def test_written_surfaces_are_read_back(sphere, tmp_path, ending):
+    surface = sphere.contour([0.4, 0.5], "sphere")
+    path = tmp_path / f"surface.{ending}"
+    assert isinstance(surface.write(path), list)
+    again = isotet.read_surface(str(path))
+    assert len(again.triangles) == len(surface.triangles)
+    assert again.area == pytest.approx(surface.area)
+    if ending == "vtp":
+        assert same(again, surface)
+
+
+def test_grids_are_written_and_read(tmp_path):
+    grid = isotet.make("mixed", 3, ["sphere", "integer"])
+    grid.write(tmp_path / "grid.vtu")
+    again = isotet.read(tmp_path / "grid.vtu", fields=["sphere"])
+    assert list(again.fields) == ["sphere"]
+    assert same(again.contour(0.5), grid.contour(0.5, "sphere", fields=["sphere"]))
+    assert again.info["fields"] == {"sphere": ("float32", 1), "integer": ("int32", 1)}
+    assert isotet.inspect(tmp_path / "grid.vtu")["format"] == "vtu"
+    assert again.info["times"] == []
+
+
+def test_errors_of_files(tmp_path):
+    with pytest.raises(OSError, match="nowhere"):
+        isotet.read(tmp_path / "nowhere.vtu")
+    (tmp_path / "broken.vtu").write_text("<VTKFile type='UnstructuredGrid'>")
+    with pytest.raises(ValueError, match="broken"):
+        isotet.read(tmp_path / "broken.vtu")
+    surface = isotet.make("kuhn", 3, ["sphere"]).contour(0.5)
+    with pytest.raises(OSError):
+        surface.write(tmp_path / "no_folder" / "s.vtp")
+    with pytest.raises(ValueError, match="can be written as vtp"):
+        surface.write(tmp_path / "s.png")
+    assert issubclass(isotet.Error, Exception)
+
+
+def test_too_much_memory_is_a_memory_error():
+    with pytest.raises(MemoryError, match="needs 14.0 TB, but"):
+        isotet.make("kuhn", 4096, [])
+
+
+def test_surfaces_are_pickled_and_copied(sphere):
+    surface = sphere.contour([0.4, 0.5], "sphere", normals="gradient", edge_ends=True, source_cells=True)
+    assert same(pickle.loads(pickle.dumps(surface)), surface)
+    assert same(copy.deepcopy(surface), surface)
+    assert copy.copy(surface).method == surface.method
+
+
+def test_own_surfaces():
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    surface = isotet.Surface(corners, [[0, 1, 2]], normals=[[0, 0, 1]], fields={"t": [1, 2, 3]}, cell_fields={"c": [4]})
+    assert surface.area == 0.5
+    assert surface.normals_kind == "face"
+    assert surface.fields["t"].tolist() == [1, 2, 3]
+    with pytest.raises(ValueError, match="triangles has shape"):
+        isotet.Surface(corners, [[0, 1]])
+    with pytest.raises(ValueError, match="vertex -1"):
+        isotet.Surface(corners, [[0, 1, -1]])
+
+
+def test_threads_change_nothing(sphere):
+    assert same(sphere.contour(0.3, "gyroid", threads=1), sphere.contour(0.3, "gyroid", threads=2))
+
+
+def test_what_is_shown(sphere):
+    assert repr(sphere) == "<isotet.Grid: 343 points, 1296 cells, fields sphere, gyroid>"
+    surface = sphere.contour([0.4, 0.5], "sphere", fields=[])
+    assert repr(surface) == f"<isotet.Surface: {len(surface.points)} vertices, {len(surface.triangles)} triangles, fields isovalue>"
+    assert "1296 tets, field sphere" in repr(isotet.pack(sphere, values="sphere"))
+    for name in isotet.__all__:
+        assert getattr(isotet, name).__doc__, name
+
+
+def test_other_packages(sphere):
+    surface = sphere.contour(0.5, "sphere", normals="gradient")
+    mesh = surface.to_trimesh()
+    assert mesh.is_watertight
+    assert mesh.area == pytest.approx(surface.area)
+    assert np.array_equal(mesh.faces, surface.triangles)
+    assert np.allclose(mesh.vertex_normals, surface.normals, atol=1e-6)
+    assert np.array_equal(mesh.vertex_attributes["gyroid"], surface.fields["gyroid"])
+    assert np.array_equal(surface.to_meshio().cells_dict["triangle"], surface.triangles)
+    polydata = surface.to_pyvista()
+    assert polydata.is_manifold
+    assert np.array_equal(polydata.regular_faces, surface.triangles)
+    assert np.array_equal(polydata["gyroid"], surface.fields["gyroid"])
+    assert np.array_equal(polydata.point_data["Normals"], surface.normals)
+
+
+def test_surfaces_show_themselves_in_notebooks(sphere, monkeypatch, capsys):
+    surface = sphere.contour(0.5, "sphere", normals="gradient")
+    plotted = []
+    monkeypatch.setattr(pyvista.PolyData, "plot", lambda mesh, **how: plotted.append((mesh.n_cells, how)))
+    surface._ipython_display_()
+    assert plotted == [(len(surface.triangles), {"notebook": True, "smooth_shading": True})]
+    sphere.contour(9, "sphere")._ipython_display_()
+    assert len(plotted) == 1, "nothing to plot"
+    monkeypatch.setitem(sys.modules, "pyvista", None)  # not installed
+    surface._ipython_display_()
+    assert len(plotted) == 1
+    assert capsys.readouterr().out.splitlines()[-1] == repr(surface)

@@ -1,0 +1,136 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""IsotetContour in a pipeline of VTK's."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject
+from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter, vtkPolyDataNormals
+
+from isotet.vtk import IsotetContour
+from test_pyvista import cubes
+
+
+def pipeline(grid, name="r", value=2.5):
+    contour = IsotetContour()
+    contour.SetInputDataObject(grid)
+    contour.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name)
+    contour.SetValue(0, value)
+    return contour
+
+
+def output(contour):
+    contour.Update()
+    return pv.wrap(contour.GetOutputDataObject(0))
+
+
+def test_it_has_the_methods_of_vtkcontourfilter():
+    grid = cubes().triangulate()
+    ours, theirs = pipeline(grid), vtkContourFilter()
+    theirs.SetInputData(grid)
+    theirs.SetInputArrayToProcess(0, 0, 0, 0, "r")
+    for contour in (ours, theirs):
+        contour.SetComputeNormals(False)
+        contour.GenerateValues(3, 1.0, 3.0)
+    assert ours.GetValues() == [theirs.GetValue(i) for i in range(theirs.GetNumberOfContours())]
+    one, other = output(ours), output(theirs)
+    assert one.area == pytest.approx(other.area, rel=1e-3)
+    assert set(one.point_data) == set(other.point_data)
+    ours.SetNumberOfContours(1)
+    ours.SetComputeScalars(False)
+    ours.SetComputeNormals(True)
+    assert (ours.GetNumberOfContours(), ours.GetComputeScalars(), ours.GetComputeNormals()) == (1, False, True)
+    assert set(output(ours).point_data) == {"x", "v", "Normals"}
+
+
+def test_it_runs_when_something_was_modified_and_only_then():
+    grid = cubes().triangulate()
+    contour = pipeline(grid)
+    runs = []
+    contour.AddObserver("StartEvent", lambda *_: runs.append(1))
+    first = output(contour).area
+    output(contour)
+    assert len(runs) == 1
+    contour.SetValue(0, 2.5)  # the same
+    output(contour)
+    assert len(runs) == 1
+    contour.SetValue(0, 2.0)
+    assert output(contour).area < first
+    assert len(runs) == 2
+    grid["r"] *= 2
+    grid.GetPointData().GetArray("r").Modified()
+    assert output(contour).area == pytest.approx(grid.contour([2.0], "r").area, rel=1e-3)
+    assert len(runs) == 3
+    contour.SetInputArrayToProcess(0, 0, 0, 0, "x")
+    assert output(contour).area == pytest.approx(64)
+
+
+def test_pipelines_on_both_sides():
+    append = vtkAppendFilter()
+    append.AddInputData(cubes())
+    contour = IsotetContour()
+    contour.SetInputConnection(append.GetOutputPort())
+    contour.SetInputArrayToProcess(0, 0, 0, 0, "r")
+    contour.SetValue(0, 2.5)
+    normals = vtkPolyDataNormals()
+    normals.SetInputConnection(contour.GetOutputPort())
+    assert output(normals).is_manifold
+    contour.SetValue(0, 1.5)
+    assert output(normals).area == pytest.approx(4 * np.pi * 1.5**2, rel=0.2)
+
+
+def test_active_scalars_are_the_default():
+    contour = IsotetContour()
+    contour.SetInputDataObject(cubes())
+    contour.SetValue(0, 2.5)
+    assert output(contour).n_cells > 0
+
+
+def test_composite_data_sets_come_block_by_block():
+    blocks = pv.MultiBlock([cubes(), cubes(6)])
+    contour = pipeline(blocks)
+    contour.SetExpectedSurfaces(100)
+    surfaces = output(contour)
+    assert [surface.n_cells > 0 for surface in surfaces] == [True, True]
+    assert len(contour._sessions) == 2
+    kept = list(contour._sessions.values())
+    contour.SetValue(0, 2.0)
+    output(contour)
+    assert list(contour._sessions.values()) == kept
+
+
+@pytest.mark.parametrize("storage", ["Use32BitStorage", "Use64BitStorage", "UseFixedSize32BitStorage", "UseFixedSize64BitStorage"])
+def test_every_storage_of_cells(storage):
+    grid = cubes().triangulate()
+    wanted = output(pipeline(grid))
+    cells = vtkCellArray()
+    if "Fixed" in storage:
+        getattr(cells, storage)(4)
+    else:
+        getattr(cells, storage)()
+    cells.Append(grid.GetCells())
+    grid.SetCells(10, cells)
+    assert output(pipeline(grid)).area == wanted.area
+
+
+def test_empty_grids_give_empty_surfaces():
+    assert output(pipeline(pv.UnstructuredGrid())).n_cells == 0
+
+
+def test_errors_say_why():
+    contour = pipeline(cubes(), "pressure")
+    heard = []
+
+    def hear(caller, event, text):
+        heard.append(text)
+
+    hear.CallDataType = "string0"
+    contour.AddObserver("ErrorEvent", hear)
+    contour.Update()
+    assert heard[0] == "there is no point array 'pressure'"
+    grid = cubes()
+    contour = pipeline(grid)
+    contour.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "number")
+    contour.AddObserver("ErrorEvent", hear)
+    contour.Update()
+    assert "isotet contours point data" in heard[-1]
