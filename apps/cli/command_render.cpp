@@ -8,11 +8,10 @@
 #include <isotet/annotation.hpp>
 #include <isotet/compare_pictures.hpp>
 #include <isotet/picture_file.hpp>
-#include <isotet/render.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "device_choice.hpp"
+#include "drawer.hpp"
 #include "json_output.hpp"
 #include "output_names.hpp"
 #include "render_frames.hpp"
@@ -33,53 +32,108 @@ std::string name_of_picture(const RenderCommand& command) {
     return std::filesystem::path(file).stem().string() + ".png";
 }
 
-/// Draws the scene, and writes beside it what belongs to it.
-Result<Picture> draw_annotated(Renderer& renderer, const RenderInput& input, const RenderCommand& command,
-                               double azimuth, Console& console) {
-    PictureOptions options = command.picture;
-    options.camera = camera_of(command.view, command.parallel ? Projection::parallel : Projection::perspective);
+/// Where the options want the camera; fit() does the rest, unless it is all given.
+Camera camera_of_command(const RenderCommand& command) {
+    const Projection projection = command.parallel ? Projection::parallel : Projection::perspective;
+    if (command.camera) return *command.camera;
+    if (!command.angles.empty())
+        return camera_of(command.angles[0], command.angles[1], command.up.value_or(UpAxis::plus_z), projection);
+    return command.up ? camera_of(command.view, *command.up, projection) : camera_of(command.view, projection);
+}
+
+/// Draws one picture after another. All steps have the camera of the first.
+class FrameDrawer {
+public:
+    FrameDrawer(const RenderCommand& command, Drawer& drawer, Console& console)
+        : command_(command), drawer_(drawer), console_(console) {}
+
+    /// Draws the scene, and writes beside it what belongs to it.
+    Result<Picture> draw(const RenderInput& input, double azimuth);
+
+    const Camera& camera() const { return *camera_; } ///< of the last picture
+
+private:
+    Result<std::optional<PictureSize>> room_for(const Annotation& annotation, PictureSize whole);
+    void point_camera(const RenderInput& input, double azimuth, double aspect);
+
+    const RenderCommand& command_;
+    Drawer& drawer_;
+    Console& console_;
+    std::optional<Camera> camera_;
+};
+
+/// What text leaves of the picture; nothing where there is none, or where it is too small.
+Result<std::optional<PictureSize>> FrameDrawer::room_for(const Annotation& annotation, PictureSize whole) {
+    if (annotation.empty()) return std::optional<PictureSize>();
+    Result<std::optional<PictureSize>> room = room_beside(annotation, whole);
+    if (!room) return room;
+    if (!*room) {
+        console_.note(fmt::format("the picture, {} x {}, is too small for text", whole.width, whole.height));
+        return room;
+    }
+    for (const std::string& text : {annotation.title, annotation.caption}) {
+        const Result<std::size_t> missing = count_missing_letters(text);
+        if (!missing) return missing.error();
+        if (*missing == 0) continue;
+        console_.note(fmt::format("the font of isotet lacks letters of '{}': they are boxes in the picture", text));
+        break; // the caption has the title's as a rule
+    }
+    return room;
+}
+
+void FrameDrawer::point_camera(const RenderInput& input, double azimuth, double aspect) {
+    if (camera_ && command_.all_steps) return;
+    camera_ = camera_of_command(command_);
+    camera_->orbit(azimuth, 0);
+    if (command_.camera) return;
+    if (command_.fit_surface) input.scene->fit_surfaces(*camera_, aspect);
+    else
+        input.scene->fit(*camera_, aspect,
+                         command_.orbit > 0 ? IsosurfaceScene::Fit::orbit : IsosurfaceScene::Fit::once);
+    camera_->zoom(command_.zoom);
+}
+
+Result<Picture> FrameDrawer::draw(const RenderInput& input, double azimuth) {
+    PictureOptions options = command_.picture;
     const PictureSize whole{options.width, options.height};
-    options.camera.orbit(azimuth, 0);
-    const Annotation annotation = annotation_of(command, input);
-    std::optional<PictureSize> room;
-    if (!annotation.empty()) {
-        const Result<std::optional<PictureSize>> left = room_beside(annotation, whole);
-        if (!left) return left.error();
-        room = *left;
-        if (!room) console.note(fmt::format("the picture, {} x {}, is too small for text", whole.width, whole.height));
+    Annotation annotation = annotation_of(command_, input);
+    const Result<std::optional<PictureSize>> room = room_for(annotation, whole);
+    if (!room) return room.error();
+    if (*room) {
+        options.width = (*room)->width;
+        options.height = (*room)->height;
     }
-    if (room) {
-        for (const std::string& text : {annotation.title, annotation.caption}) {
-            const Result<std::size_t> missing = count_missing_letters(text);
-            if (!missing) return missing.error();
-            if (*missing == 0) continue;
-            console.note(fmt::format("the font of isotet lacks letters of '{}': they are boxes in the picture", text));
-            break; // the caption has the title's as a rule
-        }
-        options.width = room->width;
-        options.height = room->height;
-    }
-    input.scene->fit(options.camera, static_cast<double>(options.width) / options.height,
-                     command.orbit > 0 ? IsosurfaceScene::Fit::orbit : IsosurfaceScene::Fit::once);
-    Result<Picture> picture = renderer.draw(input.scene->scene(), options, console.run());
-    if (!picture || !room) return picture;
+    point_camera(input, azimuth, static_cast<double>(options.width) / options.height);
+    options.camera = *camera_;
+    Result<Picture> picture = drawer_.draw(input.scene->scene(), options, console_.run());
+    if (!picture || !*room) return picture;
+    if (annotation.orientation) annotation.orientation->camera = *camera_;
     return annotate(*picture, annotation, whole, options.background);
 }
 
 /// Extracts, draws and writes one picture after another; returns the last one.
-Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Renderer& renderer,
-                            RenderInput& input, PictureFiles& files, PictureNumbers& numbers, Console& console) {
+Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Drawer& drawer,
+                            RenderSource& source, RenderInput& input, PictureFiles& files, PictureNumbers& numbers,
+                            Console& console) {
     Result<Picture> picture = Error{};
+    FrameDrawer frame_drawer(command, drawer, console);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (console.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (frames.size() > 1) console.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
-        if (i == 0 || frames[i].isovalues != frames[i - 1].isovalues) {
+        const bool next_step = i > 0 && frames[i].step != frames[i - 1].step;
+        if (next_step) {
+            Result<RenderInput> next = source.read(frames[i].step, drawer.device(), console);
+            if (!next) return next.error();
+            next->read_seconds += input.read_seconds;
+            input = *std::move(next);
+        }
+        if (i == 0 || next_step || frames[i].isovalues != frames[i - 1].isovalues) {
             if (auto shown = input.scene->show(frames[i].isovalues, console.run()); !shown) return shown.error();
             console.notes(input.scene->take_notes());
             note_empty_surfaces(input, console);
         }
         const Stopwatch drawing;
-        picture = draw_annotated(renderer, input, command, frames[i].azimuth, console);
+        picture = frame_drawer.draw(input, frames[i].azimuth);
         if (!picture) return picture;
         numbers.draw_seconds += drawing.seconds();
         const Stopwatch writing;
@@ -90,7 +144,11 @@ Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const Render
     if (Result<void> finished = files.finish(); !finished) return finished.error();
     numbers.write_seconds += writing.seconds();
     numbers.bytes = files.bytes();
-    numbers.drawing = renderer.work();
+    numbers.drawing = drawer.work();
+    numbers.camera = to_text(frame_drawer.camera());
+    console.detail("--camera " + numbers.camera);
+    if (const std::string film = files.film_command(command.frames_per_second); !film.empty())
+        console.note("a film of them: " + film);
     return picture;
 }
 
@@ -107,8 +165,8 @@ Result<void> compare(const Picture& picture, const Picture& reference, const Ren
 }
 
 /// Looks at the names of all files before anything is done.
-Result<PictureFiles> open_files(const RenderCommand& command) {
-    const Result<std::size_t> pictures = count_frames(command);
+Result<PictureFiles> open_files(const RenderCommand& command, std::size_t steps) {
+    const Result<std::size_t> pictures = count_frames(command, steps);
     if (!pictures) return pictures.error();
     Result<PictureFiles> files = PictureFiles::open(name_of_picture(command), *pictures, command.frames_per_second);
     if (!files) return files;
@@ -127,8 +185,7 @@ Result<void> check_method(const RenderCommand& command) {
         return {};
     }
     const std::string_view name = name_of(*command.method.draw);
-    if (!command.color_by.empty())
-        return usage_error("--color-by colours surfaces, but --method {} makes none", name);
+    if (!command.color_by.empty()) return usage_error("--color-by colours surfaces, but --method {} makes none", name);
     if (command.engine != EngineChoice::automatic)
         return usage_error("--engine says what extracts, but --method {} extracts nothing", name);
     return {};
@@ -139,34 +196,44 @@ Result<void> check_method(const RenderCommand& command) {
 Result<ExitCode> run_render(const RenderCommand& command) {
     Console console(command.common);
     if (Result<void> fits = check_method(command); !fits) return fits.error();
-    Result<PictureFiles> files = open_files(command);
-    if (!files) return files.error();
+    // The number of steps is known only when the file was looked into; all else is checked before.
+    std::optional<PictureFiles> files;
+    const auto open = [&](std::size_t steps) -> Result<void> {
+        Result<PictureFiles> opened = open_files(command, steps);
+        if (!opened) return opened.error();
+        files = *std::move(opened);
+        return {};
+    };
+    if (!command.all_steps)
+        if (Result<void> opened = open(1); !opened) return opened.error();
     std::optional<Picture> reference;
     if (!command.reference.empty()) {
         Result<Picture> read = read_picture(command.reference);
         if (!read) return read.error();
         reference = *std::move(read);
     }
-    const Result<Device> device = open_drawing_device(command.device, console);
-    if (!device) return device.error();
-    Result<Renderer> renderer = Renderer::create(*device);
-    if (!renderer) return renderer.error();
-    Result<RenderInput> input = read_render_input(command, *device, console);
+    Result<Drawer> drawer = Drawer::open(command, console);
+    if (!drawer) return drawer.error();
+    Result<RenderSource> source = RenderSource::open(command, console);
+    if (!source) return source.error();
+    if (!files)
+        if (Result<void> opened = open(source->steps()); !opened) return opened.error();
+    Result<RenderInput> input = source->read(0, drawer->device(), console);
     if (!input) return input.error();
-    const Result<std::vector<RenderFrame>> frames = frames_of(command, input->isovalues);
+    const Result<std::vector<RenderFrame>> frames = frames_of(command, input->isovalues, source->steps());
     if (!frames) return frames.error();
 
     PictureNumbers numbers;
     numbers.file = files->out();
     numbers.pictures = frames->size();
-    const Result<Picture> last = draw_frames(*frames, command, *renderer, *input, *files, numbers, console);
+    const Result<Picture> last = draw_frames(*frames, command, *drawer, *source, *input, *files, numbers, console);
     if (!last) return last.error();
     if (reference)
         if (Result<void> compared = compare(*last, *reference, command, numbers, console); !compared)
             return compared.error();
     const bool differs = numbers.differs.value_or(0) > command.threshold;
-    return finish(console, command.common, render_table(command, *input, *device, numbers),
-                  render_json(command, *input, *device, numbers),
+    return finish(console, command.common, render_table(command, *input, drawer->device(), numbers),
+                  render_json(command, *input, drawer->device(), numbers),
                   differs ? ExitCode::check_failed : ExitCode::done);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <isotet/export.hpp>
@@ -78,7 +79,23 @@ struct ISOTET_API Camera {
     void zoom(double factor);
 };
 
+/// An axis of the world that points upwards in a picture.
+enum class UpAxis : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
+
 /// A camera with the direction of a view; fit() does the rest.
 ISOTET_API Camera camera_of(View view, Projection projection = Projection::perspective);
+
+/// The same with another axis upwards; along that axis itself the view keeps its own.
+ISOTET_API Camera camera_of(View view, UpAxis up, Projection projection = Projection::perspective);
+
+/// A camera that looks from the front (-y where z is up, +z where y is, -y where x is), `azimuth` degrees to the right
+/// of it and `elevation` degrees above, -90 to 90.
+ISOTET_API Camera camera_of(double azimuth, double elevation, UpAxis up = UpAxis::plus_z,
+                            Projection projection = Projection::perspective);
+
+/// All of a camera in one word, "perspective:TARGET:DIRECTION:UP:DISTANCE:ANGLE" or "parallel:TARGET:DIRECTION:UP:HEIGHT",
+/// vectors as three numbers separated by commas; and back. Numbers are the shortest that are read back as they were.
+ISOTET_API std::string to_text(const Camera& camera);
+ISOTET_API std::optional<Camera> parse_camera(std::string_view text);
 
 } // namespace isotet

@@ -1,55 +1,25 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Drawing on a Vulkan device. draw.hpp draws without one.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <string_view>
-#include <vector>
 
-#include <isotet/camera.hpp>
 #include <isotet/device.hpp>
 #include <isotet/device_grid.hpp>
 #include <isotet/export.hpp>
 #include <isotet/picture.hpp>
 #include <isotet/progress.hpp>
-#include <isotet/grid.hpp>
 #include <isotet/result.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/surface.hpp>
 
 namespace isotet {
-
-class TetSurface;
 
 namespace render {
 class MeshBuffers;
 class FieldBuffer;
 }
-
-/// A colour map, from 0 to 1. All but turbo and cool_warm are perceptually uniform.
-enum class ColorMap : std::uint8_t { viridis, cividis, plasma, turbo, cool_warm };
-
-/// "viridis", "cool-warm" and so on, and back.
-ISOTET_API std::string_view name_of(ColorMap map) noexcept;
-ISOTET_API std::optional<ColorMap> parse_color_map(std::string_view name) noexcept;
-
-/// The colour at a place of the map; places outside 0 to 1 have those of its ends.
-ISOTET_API Color color_at(ColorMap map, double place) noexcept;
-
-/// Which value has which colour.
-///
-/// `lower`, `upper`   values at the ends of the map, lower < upper, both finite; on a logarithmic scale lower > 0
-/// `no_data`          where a value is NaN. Values beyond the ends have the colours of the ends
-struct ISOTET_API ColorScale {
-    ColorMap map = ColorMap::viridis;
-    double lower = 0, upper = 1;
-    bool logarithmic = false;
-    Color no_data{0.72F, 0.72F, 0.72F, 1};
-
-    /// The place of a value in the map, not limited to 0 to 1; NaN for what is no number.
-    double place_of(double value) const noexcept;
-};
 
 /// Triangles in a device's memory that were uploaded, ready to be drawn. Moving is cheap; it keeps the device open.
 class ISOTET_API DeviceMesh {
@@ -101,44 +71,6 @@ private:
     friend class Renderer;
     explicit DeviceColors(std::unique_ptr<render::FieldBuffer> buffer);
     std::unique_ptr<render::FieldBuffer> buffer_;
-};
-
-/// Something with triangles that is drawn: an uploaded mesh, a surface where the Vulkan engine left it, or tets that
-/// give their triangles while they are drawn (draw_tets.hpp).
-struct DrawnSurface {
-    const DeviceMesh* mesh = nullptr; ///< one of `mesh`, `surface` and `tets`; borrowed
-    const DeviceSurface* surface = nullptr;
-    const DeviceColors* colors = nullptr; ///< borrowed; null: `color` everywhere. Tets have none
-    Color color{0.70F, 0.75F, 0.80F, 1};  ///< its opacity does not count
-    double opacity = 1;                   ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
-                                          ///< drawn
-    const TetSurface* tets = nullptr;
-};
-
-/// Straight lines of one colour, drawn as opaque.
-struct DrawnLines {
-    std::vector<std::array<std::array<double, 3>, 2>> lines; ///< both ends of each
-    Color color{0.25F, 0.25F, 0.25F, 1};
-    double width = 1; ///< pixels
-};
-
-/// The twelve edges of a box.
-ISOTET_API DrawnLines outline_of(const Box& box);
-
-/// What is drawn; nothing at all is fine, and gives the background.
-///
-/// `bounds`   everything lies within
-struct Scene {
-    std::vector<DrawnSurface> surfaces;
-    std::vector<DrawnLines> lines;
-    Box bounds;
-};
-
-struct PictureOptions {
-    std::uint32_t width = 1200, height = 900; ///< pixels, 1 to 32768 each
-    std::uint32_t samples = 3;                ///< an axis and pixel, 1 to 8: their mean is the pixel
-    Color background{1, 1, 1, 1};
-    Camera camera;
 };
 
 /// Draws scenes on a device. Nothing is read back but the picture (and a count where something is translucent). Drawing

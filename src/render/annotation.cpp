@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "core/guard.hpp"
+#include "render/orientation.hpp"
 #include "render/text.hpp"
 #include "render/ticks.hpp"
 
@@ -65,7 +66,12 @@ private:
     bool has_column() const { return annotation_.scale || !annotation_.legend.empty(); }
     double column_width() const;
     double column_height() const;
-    double caption_height() const { return annotation_.caption.empty() ? 0 : 2.2 * size_; }
+    bool has_bar() const { return annotation_.orientation && annotation_.orientation->bar; }
+    double caption_height() const { return annotation_.caption.empty() && !has_bar() ? 0 : 2.2 * size_; }
+    double axes_radius() const { return 2.1 * size_; }
+    double axes_height() const { return annotation_.orientation && has_column() ? 3.6 * axes_radius() : 0; }
+    double paint_scale_bar(Picture& picture, const Color& ink) const;
+    void paint_orientation(Picture& picture, const Color& ink) const;
     double bar_height() const { return std::round(0.55 * whole_.height); }
     void paint_bar(Picture& picture, double x, double y, const Color& ink) const;
     void paint_entry(Picture& picture, double x, double y, const LegendEntry& entry, const Color& ink) const;
@@ -114,6 +120,7 @@ double Layout::column_width() const {
     for (const Tick& tick : ticks_) widest = std::max(widest, swatch_ + 0.8 * size_ + text_->width(tick.label));
     for (const LegendEntry& entry : entries_)
         widest = std::max(widest, swatch_ + 0.5 * size_ + text_->width(entry.text));
+    if (annotation_.orientation) widest = std::max(widest, 3 * axes_radius());
     return widest + 1.5 * pad_;
 }
 
@@ -125,7 +132,9 @@ double Layout::column_height() const {
 std::optional<PictureSize> Layout::room() const {
     const double width = std::floor(whole_.width - column_width()),
                  height = std::floor(whole_.height - caption_height());
-    if (width < 0.5 * whole_.width || height < 0.5 * whole_.height || column_height() > whole_.height) return {};
+    if (width < 0.5 * whole_.width || height < 0.5 * whole_.height ||
+        column_height() + axes_height() + caption_height() > whole_.height)
+        return {};
     return PictureSize{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
 }
 
@@ -147,10 +156,31 @@ void Layout::paint_bar(Picture& picture, double x, double y, const Color& ink) c
     }
 }
 
+/// At the right of the caption; returns how wide it is.
+double Layout::paint_scale_bar(Picture& picture, const Color& ink) const {
+    const render::ScaleBar bar =
+        render::scale_bar(*annotation_.orientation, whole_.height - caption_height(), 0.16 * whole_.width);
+    const double right = whole_.width - pad_, left = right - bar.pixels, text = small_->width(bar.label);
+    const double y = std::round(whole_.height - 0.9 * size_ - small_->ascent() / 2), stroke = std::max(1.0, size_ / 12);
+    const double end = 0.3 * size_;
+    fill(picture, left, y - stroke / 2, bar.pixels, stroke, ink);
+    fill(picture, left, y - end, stroke, 2 * end, ink);
+    fill(picture, right - stroke, y - end, stroke, 2 * end, ink);
+    small_->paint(picture, left - text - 0.5 * size_, std::round(whole_.height - 0.9 * size_), bar.label, ink);
+    return bar.pixels + text + 1.5 * size_;
+}
+
+void Layout::paint_orientation(Picture& picture, const Color& ink) const {
+    const double radius = axes_radius(), reach = 1.75 * radius;
+    const double x = has_column() ? whole_.width - column_width() / 2 : reach;
+    render::paint_axes(picture, x, whole_.height - caption_height() - reach, radius, annotation_.orientation->camera,
+                       *small_, ink);
+}
+
 void Layout::paint(Picture& picture, const Color& ink) const {
     if (has_column()) {
         const double x = std::round(whole_.width - column_width() + 0.5 * pad_);
-        double y = std::round((whole_.height - caption_height() - column_height()) / 2);
+        double y = std::round((whole_.height - caption_height() - axes_height() - column_height()) / 2);
         if (!title_.empty()) {
             text_->paint(picture, x, std::round(y + text_->ascent()), title_, ink);
             y = std::round(y + 1.3 * line_);
@@ -164,8 +194,10 @@ void Layout::paint(Picture& picture, const Color& ink) const {
             y = std::round(y + line_);
         }
     }
+    if (annotation_.orientation) paint_orientation(picture, ink);
+    const double bar = has_bar() ? paint_scale_bar(picture, ink) : 0;
     if (annotation_.caption.empty()) return;
-    const std::string caption = shortened(*small_, annotation_.caption, whole_.width - 2 * pad_);
+    const std::string caption = shortened(*small_, annotation_.caption, whole_.width - 2 * pad_ - bar);
     small_->paint(picture, pad_, std::round(whole_.height - 0.9 * size_), caption, ink);
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <isotet/render.hpp>
+#include <isotet/scene.hpp>
 
 #include "render/color_tables.hpp"
 

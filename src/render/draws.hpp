@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace isotet::render {
 
 /// What is drawn, ready to be recorded.
 struct Draws {
+    std::vector<std::unique_ptr<MeshBuffers>> uploaded; ///< for this picture only
+    std::vector<std::unique_ptr<FieldBuffer>> uploaded_colors;
     std::vector<LineDraw> lines;
     std::vector<MeshDraw> meshes;
     std::vector<TetDraw> tets;

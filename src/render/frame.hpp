@@ -10,7 +10,7 @@
 #include <isotet/render.hpp>
 
 #include "render/draws.hpp"
-#include "render/space.hpp"
+#include "render/view.hpp"
 #include "vulkan/draw_pipelines.hpp"
 #include "vulkan/recorder.hpp"
 #include "vulkan/target.hpp"

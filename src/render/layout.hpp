@@ -8,7 +8,9 @@
 #include <isotet/picture.hpp>
 
 #include "core/case_table.hpp"
+#include "render/color_places.hpp"
 #include "render/kernels/scene.h"
+#include "render/linear_light.hpp"
 #include "vulkan/engine/layout.hpp"
 
 namespace isotet::render {
@@ -16,10 +18,11 @@ namespace isotet::render {
 namespace layout {
 
 static_assert(sizeof(View) == 64 + 12 + 4 + 12 + 4 * 4 + 4 * 8 + 12 + 4);
-static_assert(sizeof(Mesh) == 8 * 8 + 3 * 12 + 3 * 4 && sizeof(Lines) == 8 + 12 + 4);
+static_assert(sizeof(Mesh) == 8 * 8 + 3 * 12 + 3 * 4 && sizeof(Lines) == 8 + 12 + 4 + 4);
 static_assert(sizeof(FragmentList) == 4 && sizeof(Fragment) == 16);
 static_assert(sizeof(TetRegisters) == 68 && sizeof(TetTables) == 176 && sizeof(TetPage) == sizeof(Mesh) + 6 * 8 + 12);
 static_assert(sizeof(TwinPush) == 20 && page_tets % tet_group == 0);
+static_assert(table_entries == entries_per_map);
 static_assert(sizeof(DrawPush) == 16 && sizeof(ResolvePush) == 8);
 
 /// What marching tetrahedra looks up, by the same numbers in C++ and in shaders.
@@ -53,6 +56,9 @@ inline vec3 vector(const std::array<double, 3>& v) {
 } // namespace layout
 
 /// A colour in linear light.
-layout::vec3 linear_light(const Color& color);
+inline layout::vec3 light_of(const Color& color) {
+    const Light light = linear_light(color);
+    return {light[0], light[1], light[2]};
+}
 
 } // namespace isotet::render

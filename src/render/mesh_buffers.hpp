@@ -21,10 +21,6 @@ public:
     vulkan::Buffer positions, triangles, normals; ///< as layout::Mesh has them; normals may be empty
     std::array<double, 3> origin{};           ///< positions are relative to it
     std::uint32_t vertices = 0, triangle_count = 0;
-
-private:
-    Result<void> upload_positions(const Surface& surface);
-    Result<void> upload_triangles(const Surface& surface);
 };
 
 } // namespace isotet::render

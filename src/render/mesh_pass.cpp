@@ -3,12 +3,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cmath>
 #include <limits>
 
 #include <fmt/core.h>
 
 #include "core/errors.hpp"
+#include "render/check_drawing.hpp"
 #include "render_shaders.hpp"
 #include "vulkan/engine/surface_buffers.hpp"
 
@@ -42,10 +42,8 @@ Result<void> take_mesh(MeshDraw& draw, const MeshBuffers& mesh, const FieldBuffe
     const bool of_triangles = colors->coloring == layout::by_triangle;
     if (colors->coloring != layout::by_vertex && !of_triangles)
         return invalid_argument("colours of a grid were given to a mesh that was uploaded");
-    const std::uint64_t needed = of_triangles ? mesh.triangle_count : mesh.vertices;
-    if (colors->count == needed) return {};
-    return invalid_argument(fmt::format("{} values shall colour a mesh with {} {}", colors->count, needed,
-                                        of_triangles ? "triangles" : "vertices"));
+    return check_count(colors->count, mesh.vertices, mesh.triangle_count,
+                       of_triangles ? Association::cell : Association::point);
 }
 
 Result<void> take_surface(MeshDraw& draw, const vulkan::SurfaceBuffers& surface, const FieldBuffer* colors) {
@@ -80,9 +78,8 @@ Result<void> take_surface(MeshDraw& draw, const vulkan::SurfaceBuffers& surface,
 void take_colors(MeshDraw& draw, const FieldBuffer& colors) {
     use(draw, draw.mesh.values, colors.values);
     use(draw, draw.mesh.table, colors.table);
-    draw.mesh.no_data = linear_light(colors.scale.no_data);
-    if (colors.scale.logarithmic)
-        draw.mesh.log_factor = static_cast<float>(1 / std::log(colors.scale.upper / colors.scale.lower));
+    draw.mesh.no_data = light_of(colors.scale.no_data);
+    draw.mesh.log_factor = log_factor_of(colors.scale);
     if (by_corner(colors.coloring)) draw.indices = VK_NULL_HANDLE;
 }
 
@@ -90,14 +87,13 @@ void take_colors(MeshDraw& draw, const FieldBuffer& colors) {
 
 Result<MeshDraw> make_mesh_draw(vulkan::DrawPipelines& pipelines, const Space& space, const DrawnSurface& drawn,
                                 const MeshBuffers* mesh, const FieldBuffer* colors) {
-    if (!(drawn.opacity >= 0 && drawn.opacity <= 1))
-        return invalid_argument(fmt::format("an opacity of {}, but it must be from 0 to 1", drawn.opacity));
+    if (Result<void> right = check_opacity(drawn.opacity); !right) return right.error();
     MeshDraw draw;
     place(draw, space, mesh ? mesh->origin : drawn.surface->origin());
     const Result<void> taken =
         mesh ? take_mesh(draw, *mesh, colors) : take_surface(draw, *drawn.surface->buffers(), colors);
     if (!taken) return taken.error();
-    draw.mesh.color = linear_light(drawn.color);
+    draw.mesh.color = light_of(drawn.color);
     draw.mesh.opacity = static_cast<float>(drawn.opacity);
     if (colors) take_colors(draw, *colors);
     draw.translucent = drawn.opacity < 1;

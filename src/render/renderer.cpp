@@ -1,7 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // isotet::Renderer: a picture is planned, cut into parts, and each part drawn by a Frame.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/core.h>
 
@@ -12,52 +11,21 @@
 #include "core/carry_out.hpp"
 #include "core/guard.hpp"
 #include "core/packed.hpp"
+#include "render/check_drawing.hpp"
 #include "render/field_buffer.hpp"
 #include "render/frame.hpp"
 #include "render/mesh_buffers.hpp"
-#include "render/vector_math.hpp"
+#include "render/view.hpp"
 
 namespace isotet {
 
 namespace {
 
-constexpr std::uint32_t max_pixels_per_axis = 32768, max_samples = 8;
-
-Result<void> check_camera(const Camera& camera) {
-    const auto is_unit = [](const std::array<double, 3>& v) { return std::abs(render::dot(v, v) - 1) < 1e-6; };
-    if (!is_unit(camera.direction) || !is_unit(camera.up) || std::abs(render::dot(camera.direction, camera.up)) > 1e-6)
-        return invalid_argument("a camera whose direction and up are not unit vectors at right angles");
-    if (!std::ranges::all_of(camera.target, [](double x) { return std::isfinite(x); }))
-        return invalid_argument("a camera whose target is not finite");
-    const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
-    if (camera.projection == Projection::parallel) {
-        if (positive(camera.height)) return {};
-        return invalid_argument(
-            fmt::format("a camera that shows a height of {}, but it must be positive", camera.height));
-    }
-    if (!positive(camera.distance))
-        return invalid_argument(fmt::format("a camera at a distance of {}, but it must be positive", camera.distance));
-    if (camera.angle >= 0.1 && camera.angle <= 170) return {};
-    return invalid_argument(
-        fmt::format("a camera with an angle of {} degrees, but it must be from 0.1 to 170", camera.angle));
-}
-
-Result<void> check_options(const PictureOptions& options) {
-    for (const std::uint32_t pixels : {options.width, options.height}) {
-        if (pixels >= 1 && pixels <= max_pixels_per_axis) continue;
-        return invalid_argument(fmt::format("a picture of {} x {} pixels, but each must be from 1 to {}", options.width,
-                                            options.height, max_pixels_per_axis));
-    }
-    if (options.samples < 1 || options.samples > max_samples)
-        return invalid_argument(
-            fmt::format("{} samples an axis, but they must be from 1 to {}", options.samples, max_samples));
-    return check_camera(options.camera);
-}
-
 /// Whether there is anything to draw: tets, a mesh, or a surface that was extracted.
 bool has_triangles(const DrawnSurface& drawn) {
     if (drawn.opacity == 0) return false;
     if (drawn.tets) return drawn.tets->tets() > 0;
+    if (drawn.triangles) return drawn.triangles->triangle_count() > 0;
     if (drawn.mesh) return drawn.mesh->triangle_count() > 0;
     return drawn.surface && drawn.surface->triangle_count() > 0;
 }
@@ -117,6 +85,7 @@ Result<DeviceColors> DeviceColors::of_grid(const Device& device, const PackedGri
 }
 
 struct Renderer::Data {
+    Device device;
     std::unique_ptr<render::Frame> frame;
     DeviceWork work;
 
@@ -144,9 +113,22 @@ Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOpti
             if (!added) return added.error();
             continue;
         }
-        Result<render::MeshDraw> draw =
-            render::make_mesh_draw(frame->pipelines(), space, drawn, drawn.mesh ? drawn.mesh->buffers_.get() : nullptr,
-                                   drawn.colors ? drawn.colors->buffer_.get() : nullptr);
+        const render::MeshBuffers* mesh = drawn.mesh ? drawn.mesh->buffers_.get() : nullptr;
+        const render::FieldBuffer* colors = drawn.colors ? drawn.colors->buffer_.get() : nullptr;
+        if (drawn.triangles) {
+            Result<DeviceMesh> uploaded = DeviceMesh::upload(device, *drawn.triangles);
+            if (!uploaded) return uploaded.error();
+            mesh = draws.uploaded.emplace_back(std::move(uploaded->buffers_)).get();
+            colors = nullptr;
+        }
+        if (drawn.triangles && drawn.values) {
+            const SurfaceColors& values = *drawn.values;
+            Result<DeviceColors> uploaded =
+                DeviceColors::of_mesh(device, values.values, values.association, values.scale);
+            if (!uploaded) return uploaded.error();
+            colors = draws.uploaded_colors.emplace_back(std::move(uploaded->buffer_)).get();
+        }
+        Result<render::MeshDraw> draw = render::make_mesh_draw(frame->pipelines(), space, drawn, mesh, colors);
         if (!draw) return draw.error();
         draws.meshes.push_back(*std::move(draw));
     }
@@ -155,7 +137,7 @@ Result<render::Draws> Renderer::Data::plan(const Scene& scene, const PictureOpti
 
 Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& options, const Progress& progress) {
     work = {};
-    if (Result<void> right = check_options(options); !right) return right.error();
+    if (Result<void> right = render::check_options(options); !right) return right.error();
     const render::Space space(scene.bounds);
     Result<render::Draws> draws = plan(scene, options, space);
     if (!draws) return draws.error();
@@ -165,6 +147,7 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
     Picture picture{options.width, options.height, {}};
     picture.pixels.resize(std::size_t{options.width} * options.height);
     const std::uint32_t widest = std::max(1U, frame->max_samples_per_axis() / options.samples);
+    const render::Sight sight = space.look(options.camera, options.width, options.height);
     render::Part part;
     part.width = std::min(options.width, widest);
     const std::uint64_t rows =
@@ -176,9 +159,9 @@ Result<Picture> Renderer::Data::draw(const Scene& scene, const PictureOptions& o
             part.width = std::min(options.width - part.x, widest);
             part.height = std::min(options.height - part.y, highest);
             render::layout::View view{};
-            space.look(options.camera, options.width, options.height, part, view);
+            render::fill(view, sight, options, part);
             view.samples = options.samples;
-            view.background = render::linear_light(options.background);
+            view.background = render::light_of(options.background);
             view.background_opacity = std::clamp(options.background.opacity, 0.0F, 1.0F);
             if (Result<void> drawn = frame->draw(*draws, view, part, picture, work); !drawn) return drawn.error();
         }
@@ -202,7 +185,7 @@ Result<Renderer> Renderer::create(const Device& device) {
     return core::guarded("preparing to draw", [&]() -> Result<Renderer> {
         auto frame = render::Frame::make(device.context());
         if (!frame) return frame.error();
-        return Renderer(std::make_unique<Data>(Data{*std::move(frame), {}}));
+        return Renderer(std::make_unique<Data>(Data{device, *std::move(frame), {}}));
     });
 }
 

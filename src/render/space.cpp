@@ -5,9 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/layout.hpp"
-#include "render/vector_math.hpp"
-
 namespace isotet::render {
 
 namespace {
@@ -18,11 +15,6 @@ constexpr double depth_room = 1e-2;
 /// least.
 constexpr double depth_ratio = 1e-4;
 
-/// A row of a matrix that maps (x, y, z, 1).
-struct Row {
-    Vector along{};
-    double shift = 0;
-};
 Row sum(const Row& a, double times_a, const Row& b, double times_b) {
     return {plus({a.along[0] * times_a, a.along[1] * times_a, a.along[2] * times_a}, b.along, times_b),
             a.shift * times_a + b.shift * times_b};
@@ -47,8 +39,7 @@ std::array<double, 3> Space::place(const std::array<double, 3>& point) const {
     return placed;
 }
 
-void Space::look(const Camera& camera, std::uint32_t width, std::uint32_t height, const Part& part,
-                 layout::View& view) const {
+Sight Space::look(const Camera& camera, std::uint32_t width, std::uint32_t height) const {
     const bool flat = camera.projection == Projection::parallel;
     const Vector eye = plus(place(camera.target), camera.direction, camera.distance * scale_);
     const auto row = [&](const Vector& along) { return Row{along, -dot(along, eye)}; };
@@ -68,23 +59,7 @@ void Space::look(const Camera& camera, std::uint32_t width, std::uint32_t height
     const double aspect = static_cast<double>(width) / height;
     const Row x = sum(right, 1 / (size * aspect), one, 0), y = sum(down, 1 / size, one, 0);
     const Row z = sum(depth, 1 / (farthest - nearest), one, -nearest / (farthest - nearest));
-    // Of the whole picture the part is what shall fill clip space.
-    const auto cut = [&](const Row& whole, double pixels, double begin, double count) {
-        return sum(whole, pixels / count, w, -(2 * begin + count - pixels) / count);
-    };
-    const Row rows[4] = {cut(x, width, part.x, part.width), cut(y, height, part.y, part.height),
-                         flat ? z : sum(z, farthest, one, 0), w};
-    for (int column = 0; column < 4; ++column) {
-        const auto number = [&](const Row& r) {
-            return static_cast<float>(column < 3 ? r.along[static_cast<std::size_t>(column)] : r.shift);
-        };
-        view.clip_from_scene.columns[column] = {number(rows[0]), number(rows[1]), number(rows[2]), number(rows[3])};
-    }
-    view.eye = layout::vector(flat ? camera.direction : eye);
-    view.parallel = flat;
-    view.up = layout::vector(camera.up);
-    view.width = part.width;
-    view.height = part.height;
+    return {x, y, flat ? z : sum(z, farthest, one, 0), w, flat ? camera.direction : eye, flat, camera.up};
 }
 
 } // namespace isotet::render

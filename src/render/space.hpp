@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// From the user's coordinates to the scene's, and to the clip space of a part of the picture.
+// From the user's coordinates to the scene's, and to the clip space of the picture.
 #pragma once
 
 #include <array>
@@ -7,13 +7,24 @@
 
 #include <isotet/camera.hpp>
 
-#include "render/kernels/scene.h"
+#include "render/vector_math.hpp"
 
 namespace isotet::render {
 
-/// A rectangle of the picture, in pixels.
-struct Part {
-    std::uint32_t x = 0, y = 0, width = 0, height = 0;
+/// A row of a matrix that maps (x, y, z, 1).
+struct Row {
+    Vector along{};
+    double shift = 0;
+
+    double at(const Vector& point) const { return dot(along, point) + shift; }
+};
+
+/// How a camera sees the scene: rows of the matrix from the scene to clip space, y downwards, depth 0 to 1.
+struct Sight {
+    Row x, y, z, w;
+    Vector eye{}; ///< where it is, or in which direction if `parallel`
+    bool parallel = false;
+    Vector up{};
 };
 
 /// The user's coordinates, moved and scaled so that the bounds of the scene lie within 1 of 0.
@@ -24,9 +35,8 @@ public:
     std::array<double, 3> place(const std::array<double, 3>& point) const;
     double scale() const noexcept { return scale_; }
 
-    /// Fills how the camera sees a part of a picture of `width` x `height`.
-    void look(const Camera& camera, std::uint32_t width, std::uint32_t height, const Part& part,
-              layout::View& view) const;
+    /// How the camera sees a picture of `width` x `height`.
+    Sight look(const Camera& camera, std::uint32_t width, std::uint32_t height) const;
 
 private:
     std::array<double, 3> centre_{}, half_{}; ///< of the bounds

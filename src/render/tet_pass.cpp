@@ -46,7 +46,7 @@ Result<void> add_tet_draws(vulkan::DrawPipelines& pipelines, const Space& space,
         one.page = tets.describe(part);
         one.page.mesh.offset = layout::vector(space.place(tets.store().origin));
         one.page.mesh.scale = static_cast<float>(space.scale());
-        one.page.mesh.color = linear_light(drawn.color);
+        one.page.mesh.color = light_of(drawn.color);
         one.page.mesh.opacity = static_cast<float>(drawn.opacity);
         one.tets = part.tets;
         tets.add_uses(part, by_groups ? vulkan::Access::mesh_read : vulkan::Access::draw_read, one.uses);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <isotet/render.hpp>
+#include <isotet/scene.hpp>
 
 namespace isotet::render {
 

@@ -46,7 +46,8 @@ public:
 
 private:
     Result<Extraction> extract_surface(Bed& bed, double isovalue) override {
-        Result<DirectExtraction> direct = extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), {}, bed.run);
+        Result<DirectExtraction> direct =
+            extract_direct(bed.grid, bed.field, std::span(&isovalue, 1), {.split_cells = true}, bed.run);
         if (!direct) return direct.error();
         return std::move(direct->surfaces.front());
     }
@@ -151,7 +152,7 @@ private:
 Result<void> Bed::pack() {
     if (packed) return {};
     const Stopwatch packing;
-    Result<PackedGrid> made = isotet::pack(grid, field, {}, run);
+    Result<PackedGrid> made = isotet::pack(grid, field, {.split_cells = true}, run);
     if (!made) return made.error();
     packed = *std::move(made);
     pack_seconds = packing.seconds();

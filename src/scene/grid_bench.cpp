@@ -16,8 +16,8 @@ namespace isotet {
 namespace {
 
 /// One isovalue, from the search to the picture.
-Result<void> measure_isovalue(measure::Contestant& contestant, measure::Bed& bed, double isovalue, const PictureOptions& picture,
-                              BenchTimes& times, BenchOutcome& outcome) {
+Result<void> measure_isovalue(measure::Contestant& contestant, measure::Bed& bed, double isovalue,
+                              const PictureOptions& picture, BenchTimes& times, BenchOutcome& outcome) {
     const Result<DrawnSurface> drawn = contestant.make(bed, isovalue, times, outcome);
     if (!drawn) return drawn.error();
     if (!bed.renderer) return {};
@@ -103,7 +103,7 @@ GridBench::~GridBench() = default;
 
 Result<GridBench> GridBench::create(Grid grid, PointField field, std::optional<Device> device) {
     return core::guarded("starting to measure", [&]() -> Result<GridBench> {
-        const Result<FieldSample> sample = FieldSample::create(grid, field);
+        const Result<FieldSample> sample = FieldSample::create(grid, field, true);
         if (!sample) return sample.error();
         std::optional<Renderer> renderer;
         if (device) {

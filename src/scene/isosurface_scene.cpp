@@ -9,8 +9,11 @@
 #include <isotet/boundary.hpp>
 #include <isotet/device_grid.hpp>
 
+#include "core/errors.hpp"
 #include "core/guard.hpp"
 #include "core/stopwatch.hpp"
+#include "scene/clip_surface.hpp"
+#include "scene/colored_surface.hpp"
 
 namespace isotet {
 
@@ -18,12 +21,25 @@ namespace {
 
 constexpr double opacity_among_several = 0.35;
 
-/// Isosurfaces have colours of their own: from the dark to the light of the map, in the order of their values.
-Color color_among(const std::vector<ShownSurface>& surfaces, std::size_t which, ColorMap map) {
-    if (surfaces.size() < 2) return DrawnSurface{}.color;
+constexpr Color single_color{0.92F, 0.48F, 0.16F, 1}; ///< stands out from the boundary, and from blue and green
+
+/// Isosurfaces have colours of their own: from the dark to the light of the map, in the order of their values, or by their
+/// place in a range.
+Color color_among(const std::vector<ShownSurface>& surfaces, std::size_t which, const SceneLook& look) {
+    if (look.isovalue_range && surfaces[which].isovalue) {
+        const auto [lower, upper] = *look.isovalue_range;
+        return color_at(look.map, lower < upper ? (*surfaces[which].isovalue - lower) / (upper - lower) : 0.5);
+    }
+    if (surfaces.size() < 2) return single_color;
     const auto below = std::ranges::count_if(
         surfaces, [&](const ShownSurface& one) { return one.isovalue < surfaces[which].isovalue; });
-    return color_at(map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(surfaces.size() - 1));
+    return color_at(look.map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(surfaces.size() - 1));
+}
+
+bool holds(const Box& box, const Box& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(box.lower[axis] <= other.lower[axis] && other.upper[axis] <= box.upper[axis])) return false;
+    return true;
 }
 
 /// Device memory that pictures of this size need beside a store, with the numbers of all tets.
@@ -36,15 +52,16 @@ std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
 } // namespace
 
 struct IsosurfaceScene::Data {
-    Device device;
+    std::optional<Device> device; ///< that draws; nothing: the CPU does
     SceneLook look = {};
-    std::optional<Surface> surface = {};  ///< that was given; else there is
-    std::optional<Contour> contour = {};  ///< with gradient normals
-    ContourInput without_device = {};     ///< of the session, if it has a device: to go on without it
-    bool required = false;           ///< the device
+    std::optional<Surface> surface = {}; ///< that was given; else there is
+    std::optional<Contour> contour = {}; ///< with gradient normals
+    ContourInput without_device = {};    ///< of the session, if it has a device: to go on without it
+    bool required = false;               ///< the device
     Box bounds = {};
     std::optional<Surface> boundary = {};
-    std::optional<DeviceMesh> boundary_mesh = {};
+    std::vector<Surface> slices = {};
+    std::vector<DrawnLines> edges = {};
     std::optional<TetStore> store = {};
     std::optional<TetIndex> index = {};
     std::optional<DeviceColors> grid_colors = {};
@@ -52,23 +69,33 @@ struct IsosurfaceScene::Data {
     std::vector<DeviceSurface> on_device = {};
     std::deque<DeviceMesh> meshes = {}; ///< places that do not move
     std::deque<DeviceColors> mesh_colors = {};
+    std::deque<Surface> extracted = {}; ///< without a device
+    std::deque<SurfaceColors> values = {};
+    std::deque<DeviceMesh> fixed_meshes = {}; ///< of what is there for all isovalues
+    std::deque<DeviceColors> fixed_colors = {};
+    std::deque<SurfaceColors> fixed_values = {};
+    std::vector<DrawnSurface> fixed = {}; ///< slices and boundary
+    std::vector<Box> boxes = {};          ///< of surfaces shown; empty where they are on the device
     Scene scene = {};
     std::vector<ShownSurface> shown = {};
     SceneReport report = {};
     std::vector<std::string> notes = {};
 
     Result<void> look_around(const Grid& grid, const Run& run);
+    Result<void> add_fixed(const Surface& one, const ColorField* field, const Color& color, double opacity);
     Result<void> start(IsosurfaceOptions options, const Run& run);
     Result<void> load_tets(const IsosurfaceOptions& options, const Run& run);
     Result<void> show_tets(std::span<const double> isovalues);
     Result<void> show_extracted(std::span<const double> isovalues, const Run& run);
     Result<void> show_on_device(std::span<const double> isovalues, const Run& run);
-    Result<void> add_mesh(const Surface& extracted);
+    Result<void> add_surface(Surface one);
+    bool hides_another(std::size_t which) const;
+    std::uint64_t smallest_size() const;
     void dress();
     void clear();
 };
 
-/// The boundary if it is drawn, and the box around the grid.
+/// The boundary if it is drawn, slices, and the box around the grid.
 Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run) {
     const core::Stopwatch looking;
     if (look.boundary_opacity > 0) {
@@ -77,9 +104,11 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
         boundary = *std::move(found);
         bounds = bounds_of(*boundary);
         report.boundary_faces = boundary->triangle_count();
-        Result<DeviceMesh> mesh = DeviceMesh::upload(device, *boundary);
-        if (!mesh) return mesh.error();
-        boundary_mesh = *std::move(mesh);
+        if (look.boundary_colors)
+            if (auto colored = scene::color_boundary(*boundary, grid, *look.boundary_colors, run); !colored)
+                return colored;
+        for (const Plane& plane : look.clips) boundary = scene::clipped(*boundary, plane);
+        if (look.edges) edges.push_back(scene::edges_of(*boundary));
     } else {
         const Result<GridReport> surveyed = survey(grid, {.faces = false}, run);
         if (!surveyed) return surveyed.error();
@@ -87,13 +116,49 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
         bounds.add(surveyed->upper);
     }
     report.boundary_seconds = looking.seconds();
+    const ColorField* colors = look.colors ? &*look.colors : nullptr;
+    for (const Plane& plane : look.slices) {
+        Result<Surface> slice = scene::slice_of(grid, plane, colors, run);
+        if (!slice) return slice.error();
+        report.slice_triangles += slice->triangle_count();
+        if (look.edges) edges.push_back(scene::edges_of(*slice));
+        slices.push_back(*std::move(slice));
+    }
+    for (const Surface& slice : slices)
+        if (auto added = add_fixed(slice, colors, single_color, 1); !added) return added;
+    if (!boundary) return {};
+    return add_fixed(*boundary, look.boundary_colors ? &*look.boundary_colors : nullptr, {0.62F, 0.66F, 0.70F, 1},
+                     look.boundary_opacity);
+}
+
+/// Adds what is drawn for all isovalues. Its first field of points or cells colours it.
+Result<void> IsosurfaceScene::Data::add_fixed(const Surface& one, const ColorField* field, const Color& color,
+                                              double opacity) {
+    DrawnSurface& drawn = fixed.emplace_back();
+    drawn.color = color;
+    drawn.opacity = opacity;
+    if (!device) {
+        drawn.triangles = &one;
+        if (field) drawn.values = &fixed_values.emplace_back(scene::carried_colors(one, *field));
+        return {};
+    }
+    Result<DeviceMesh> mesh = DeviceMesh::upload(*device, one);
+    if (!mesh) return mesh.error();
+    drawn.mesh = &fixed_meshes.emplace_back(*std::move(mesh));
+    if (!field) return {};
+    const SurfaceColors carried = scene::carried_colors(one, *field);
+    Result<DeviceColors> colors = DeviceColors::of_mesh(*device, carried.values, carried.association, carried.scale);
+    if (!colors) return colors.error();
+    drawn.colors = &fixed_colors.emplace_back(*std::move(colors));
     return {};
 }
 
 /// Starts the session. A device colours by the grid's own values; on the CPU surfaces carry the field that colours.
 Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& run) {
     ContourOptions options;
-    options.normals = Normals::gradient;
+    options.normals = look.shade_by == ShadeBy::gradient || wanted.draw || wanted.where == ExtractOn::device
+                          ? Normals::gradient
+                          : Normals::none;
     options.method = wanted.draw ? Method::clusters : wanted.method;
     options.surfaces = wanted.surfaces;
     const bool by_cells = look.colors && look.colors->association == Association::cell;
@@ -101,12 +166,15 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}}, carrying = plain;
     if (by_points) carrying.point_fields.push_back({look.colors->name, look.colors->values});
     if (by_cells) carrying.cell_fields.push_back({look.colors->name, look.colors->values});
-    const bool card = device.info().kind != DeviceKind::software &&
-                      options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
     required = wanted.where == ExtractOn::device;
-    const bool use_device = !wanted.draw && (required || (card && wanted.where == ExtractOn::best));
+    if (!device && (required || wanted.draw))
+        return invalid_argument("a scene without a device, but it is to extract, or to draw tets, on one");
+    const bool in_memory = !look.clips.empty() || look.shade_by == ShadeBy::vertices; // surfaces are worked on
+    const bool card = device && device->info().kind != DeviceKind::software &&
+                      options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
+    const bool use_device = !wanted.draw && (required || (card && !in_memory && wanted.where == ExtractOn::best));
     if (use_device) {
-        options.engine = vulkan_engine(device);
+        options.engine = vulkan_engine(*device);
         options.engine_required = required;
         options.edge_ends = by_points;
         options.source_cells = by_cells;
@@ -128,7 +196,7 @@ Result<void> IsosurfaceScene::Data::load_tets(const IsosurfaceOptions& options, 
     TetStoreOptions store_options;
     store_options.gradients = options.draw == DrawMethod::textures || options.draw == DrawMethod::mesh;
     store_options.picture_bytes = picture_bytes(options.picture, packed.report().tets);
-    Result<TetStore> uploaded = TetStore::upload(device, packed, *options.draw, store_options, run);
+    Result<TetStore> uploaded = TetStore::upload(*device, packed, *options.draw, store_options, run);
     if (!uploaded) return uploaded.error();
     store = *std::move(uploaded);
     report.store = store->report();
@@ -177,8 +245,8 @@ Result<void> IsosurfaceScene::Data::show_extracted(std::span<const double> isova
     report.method = result->method;
     report.field = result->field;
     report.pack_seconds += result->pack_seconds;
-    for (const Extraction& extraction : result->surfaces)
-        if (Result<void> added = add_mesh(extraction.surface); !added) return added;
+    for (Extraction& extraction : result->surfaces)
+        if (Result<void> added = add_surface(std::move(extraction.surface)); !added) return added;
     return {};
 }
 
@@ -186,7 +254,7 @@ Result<void> IsosurfaceScene::Data::show_on_device(std::span<const double> isova
     const PackedGrid packed = *contour->packed();
     if (look.colors && !grid_colors) {
         Result<DeviceColors> colors =
-            DeviceColors::of_grid(device, packed, look.colors->values, look.colors->association, look.colors->scale);
+            DeviceColors::of_grid(*device, packed, look.colors->values, look.colors->association, look.colors->scale);
         if (!colors) return colors.error();
         grid_colors = *std::move(colors);
     }
@@ -206,40 +274,68 @@ Result<void> IsosurfaceScene::Data::show_on_device(std::span<const double> isova
     return {};
 }
 
-Result<void> IsosurfaceScene::Data::add_mesh(const Surface& extracted) {
-    Result<DeviceMesh> mesh = DeviceMesh::upload(device, extracted);
-    if (!mesh) return mesh.error();
+Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
+    shown.push_back({.isovalue = {}, .vertices = one.vertex_count(), .triangles = one.triangle_count()});
+    if (surface && look.colors) { // of a surface that was given
+        auto& fields = look.colors->association == Association::point ? one.point_fields : one.cell_fields;
+        fields = {{look.colors->name, look.colors->values}};
+    }
+    for (const Plane& plane : look.clips) one = scene::clipped(one, plane);
+    if (look.shade_by == ShadeBy::vertices) {
+        Result<Array> normals = vertex_normals(one);
+        if (!normals) return normals.error();
+        one.normals = *std::move(normals);
+        one.normals_kind = Normals::gradient; // one a vertex
+    } else if (look.shade_by == ShadeBy::faces) {
+        one.normals_kind = Normals::none;
+    }
+    boxes.push_back(bounds_of(one));
     DrawnSurface& drawn = scene.surfaces.emplace_back();
+    std::optional<SurfaceColors> colors;
+    if (look.colors) colors = scene::carried_colors(one, *look.colors);
+    if (!device) {
+        drawn.triangles = &extracted.emplace_back(std::move(one));
+        if (colors) drawn.values = &values.emplace_back(*std::move(colors));
+        return {};
+    }
+    Result<DeviceMesh> mesh = DeviceMesh::upload(*device, one);
+    if (!mesh) return mesh.error();
     drawn.mesh = &meshes.emplace_back(*std::move(mesh));
-    shown.push_back({.isovalue = {}, .vertices = extracted.vertex_count(), .triangles = extracted.triangle_count()});
-    if (!look.colors) return {};
-    const ColorField& field = *look.colors;
-    const auto& carried = field.association == Association::point ? extracted.point_fields : extracted.cell_fields;
-    const Array& values = surface ? field.values : carried.front().values; // else interpolated by the session
-    Result<DeviceColors> colors = DeviceColors::of_mesh(device, values, field.association, field.scale);
-    if (!colors) return colors.error();
-    drawn.colors = &mesh_colors.emplace_back(*std::move(colors));
+    if (!colors) return {};
+    Result<DeviceColors> uploaded = DeviceColors::of_mesh(*device, colors->values, colors->association, colors->scale);
+    if (!uploaded) return uploaded.error();
+    drawn.colors = &mesh_colors.emplace_back(*std::move(uploaded));
     return {};
+}
+
+/// Whether a surface may hide another one: one that has its box inside this one's. Of surfaces side by side, such as planes,
+/// all may.
+bool IsosurfaceScene::Data::hides_another(std::size_t which) const {
+    if (boxes.size() != shown.size()) return shown[which].size() > smallest_size(); // they are on the device
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (i != which && !boxes[i].empty() && !holds(boxes[i], boxes[which])) return true;
+    return false;
+}
+
+std::uint64_t IsosurfaceScene::Data::smallest_size() const {
+    std::uint64_t smallest = 0;
+    for (const ShownSurface& one : shown)
+        if (one.size() > 0 && (smallest == 0 || one.size() < smallest)) smallest = one.size();
+    return smallest;
 }
 
 /// Colours and opacities, and what is around the surfaces.
 void IsosurfaceScene::Data::dress() {
-    std::size_t smallest = 0;
-    for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i].size() > 0 && (shown[smallest].size() == 0 || shown[i].size() < shown[smallest].size()))
-            smallest = i;
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        scene.surfaces[i].color = color_among(shown, i, look.map);
+        scene.surfaces[i].color = color_among(shown, i, look);
         scene.surfaces[i].opacity =
-            look.opacity.value_or(shown.size() == 1 || i == smallest ? 1 : opacity_among_several);
+            look.opacity.value_or(shown.size() > 1 && hides_another(i) ? opacity_among_several : 1);
     }
+    scene.lines = edges;
+    for (DrawnLines& lines : scene.lines) lines.lift = 1e-3;
     if (look.outline) scene.lines.push_back(outline_of(bounds));
-    for (DrawnLines& lines : scene.lines) lines.width = look.line_width;
-    if (!boundary_mesh) return;
-    DrawnSurface& drawn = scene.surfaces.emplace_back();
-    drawn.mesh = &*boundary_mesh;
-    drawn.color = {0.62F, 0.66F, 0.70F, 1};
-    drawn.opacity = look.boundary_opacity;
+    for (DrawnLines& lines : scene.lines) lines.width = look.line_width * (lines.lift > 0 ? 0.6 : 1);
+    scene.surfaces.insert(scene.surfaces.end(), fixed.begin(), fixed.end());
 }
 
 void IsosurfaceScene::Data::clear() {
@@ -249,6 +345,9 @@ void IsosurfaceScene::Data::clear() {
     on_device.clear();
     mesh_colors.clear();
     meshes.clear();
+    extracted.clear();
+    values.clear();
+    boxes.clear();
     shown.clear();
 }
 
@@ -257,14 +356,15 @@ IsosurfaceScene::IsosurfaceScene(IsosurfaceScene&&) noexcept = default;
 IsosurfaceScene& IsosurfaceScene::operator=(IsosurfaceScene&&) noexcept = default;
 IsosurfaceScene::~IsosurfaceScene() = default;
 
-Result<IsosurfaceScene> IsosurfaceScene::create(const Device& device, IsosurfaceOptions options, SceneLook look,
-                                                const Run& run) {
+Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& device, IsosurfaceOptions options,
+                                                SceneLook look, const Run& run) {
     return core::guarded("making a scene", [&]() -> Result<IsosurfaceScene> {
         auto data = std::make_unique<Data>(Data{device, std::move(look)});
         options.grid.point_fields = options.grid.cell_fields = {};
         if (auto looked = data->look_around(options.grid, run); !looked) return looked.error();
         const IsosurfaceOptions tets{{}, {}, 1, {}, ExtractOn::cpu, options.draw, options.index, options.picture};
-        if (auto started = data->start(std::move(options), run); !started) return started.error();
+        if (!options.field.values.empty())
+            if (auto started = data->start(std::move(options), run); !started) return started.error();
         if (tets.draw)
             if (auto loaded = data->load_tets(tets, run); !loaded) return loaded.error();
         data->scene.bounds = data->bounds;
@@ -272,7 +372,7 @@ Result<IsosurfaceScene> IsosurfaceScene::create(const Device& device, Isosurface
     });
 }
 
-Result<IsosurfaceScene> IsosurfaceScene::create(const Device& device, Surface surface, SceneLook look) {
+Result<IsosurfaceScene> IsosurfaceScene::create(const std::optional<Device>& device, Surface surface, SceneLook look) {
     return core::guarded("making a scene", [&]() -> Result<IsosurfaceScene> {
         auto data = std::make_unique<Data>(Data{device, std::move(look), std::move(surface)});
         data->scene.bounds = data->bounds = bounds_of(*data->surface);
@@ -285,9 +385,10 @@ Result<void> IsosurfaceScene::show(std::span<const double> isovalues, const Run&
         Data& data = *data_;
         data.clear();
         const core::Stopwatch extracting;
-        const Result<void> done = data.surface ? data.add_mesh(*data.surface)
-                                  : data.store ? data.show_tets(isovalues)
-                                               : data.show_extracted(isovalues, run);
+        const Result<void> done = data.surface   ? data.add_surface(*data.surface)
+                                  : data.store   ? data.show_tets(isovalues)
+                                  : data.contour ? data.show_extracted(isovalues, run)
+                                                 : Result<void>();
         if (!done) return done;
         for (std::size_t i = 0; i < isovalues.size() && i < data.shown.size(); ++i)
             data.shown[i].isovalue = isovalues[i];
@@ -303,8 +404,21 @@ void IsosurfaceScene::fit(Camera& camera, double aspect, Fit fit) const {
         else camera.fit(all, aspect);
     };
     if (data_->surface && !data_->look.outline) fit_to(*data_->surface);
-    else if (data_->boundary && !data_->look.outline) fit_to(*data_->boundary);
+    else if (data_->boundary && !data_->look.outline && !data_->look.clips.empty()) {
+        Box left = bounds_of(*data_->boundary);
+        for (const Surface& slice : data_->slices) left.add(bounds_of(slice));
+        fit_to(left.empty() ? data_->bounds : left);
+    } else if (data_->boundary && !data_->look.outline) fit_to(*data_->boundary);
     else fit_to(data_->bounds);
+}
+
+void IsosurfaceScene::fit_surfaces(Camera& camera, double aspect) const {
+    const Data& data = *data_;
+    if (data.extracted.size() == 1 && data.slices.empty()) return camera.fit(data.extracted.front(), aspect);
+    Box box;
+    for (const Box& one : data.boxes) box.add(one);
+    for (const Surface& slice : data.slices) box.add(bounds_of(slice));
+    camera.fit(box.empty() ? data.bounds : box, aspect);
 }
 
 const Scene& IsosurfaceScene::scene() const noexcept { return data_->scene; }

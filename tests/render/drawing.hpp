@@ -1,14 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Small scenes, drawn on the software device under the eyes of the validation layer.
+// Small scenes, drawn on the software device under the eyes of the validation layer, and each beside the CPU.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <isotet/compare_pictures.hpp>
+#include <isotet/draw.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/render.hpp>
@@ -62,16 +65,43 @@ protected:
 
     DrawnSurface& add(const Surface& surface, const Color& color, double opacity = 1) {
         meshes_.push_back(std::make_unique<DeviceMesh>(DeviceMesh::upload(*device_, surface).value()));
+        surfaces_.push_back(surface);
         return scene_.surfaces.emplace_back(
             DrawnSurface{.mesh = meshes_.back().get(), .color = color, .opacity = opacity});
     }
     void color_by(DrawnSurface& drawn, const std::vector<float>& values, const ColorScale& scale,
                   Association association = Association::point) {
+        values_.push_back({Array::own(values), association, scale});
         colors_.push_back(std::make_unique<DeviceColors>(
-            DeviceColors::of_mesh(*device_, Array::borrow(std::span(values)), association, scale).value()));
+            DeviceColors::of_mesh(*device_, values_.back().values, association, scale).value()));
         drawn.colors = colors_.back().get();
     }
-    Picture draw() { return renderer_->draw(scene_, options_).value(); }
+
+    /// The picture of the device; that of the CPU is beside it at most 1 of 255, but for pixels at edges, of which small
+    /// pictures have many.
+    Picture draw() {
+        Picture picture = renderer_->draw(scene_, options_).value();
+        const std::optional<Scene> in_memory = scene_in_memory();
+        if (!in_memory) return picture;
+        const Picture on_cpu = isotet::draw(*in_memory, options_).value();
+        const double few = 0.005 + 2.0 / static_cast<double>(picture.pixels.size());
+        EXPECT_LE(isotet::difference(picture, on_cpu, 1).value(), few);
+        return picture;
+    }
+    /// The scene without what is on the device only; nothing where there is such.
+    std::optional<Scene> scene_in_memory() const {
+        Scene scene = scene_;
+        for (DrawnSurface& drawn : scene.surfaces) {
+            for (std::size_t i = 0; i < meshes_.size(); ++i)
+                if (drawn.mesh == meshes_[i].get()) drawn.triangles = &surfaces_[i];
+            for (std::size_t i = 0; i < colors_.size(); ++i)
+                if (drawn.colors == colors_[i].get()) drawn.values = &values_[i];
+            if (!drawn.triangles || !drawn.colors != !drawn.values) return {};
+            drawn.mesh = nullptr;
+            drawn.colors = nullptr;
+        }
+        return scene;
+    }
     static Pixel centre(const Picture& picture) { return picture.at(picture.width / 2, picture.height / 2); }
 
     std::optional<Device> device_;
@@ -80,6 +110,8 @@ protected:
     PictureOptions options_;
     std::vector<std::unique_ptr<DeviceMesh>> meshes_;
     std::vector<std::unique_ptr<DeviceColors>> colors_;
+    std::deque<Surface> surfaces_; ///< of the meshes
+    std::deque<SurfaceColors> values_;
 };
 
 /// A colour as a pixel has it.

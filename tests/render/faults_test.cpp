@@ -18,7 +18,7 @@ class DrawingFaults : public testing::Test {
 protected:
     void SetUp() override {
         const Grid grid = made_grid("kuhn", 3, {"gyroid"});
-        packed_ = pack(grid, point_field(grid)).value();
+        packed_ = pack(grid, point_field(grid), {.split_cells = true}).value();
         for (std::uint32_t tet = 0; tet < packed_.report().tets; ++tet) list_.push_back(tet);
         right_ = work_through(none_).value();
         ASSERT_TRUE(std::ranges::any_of(right_.pixels, [&](const Pixel& pixel) { return pixel != right_.at(0, 0); }))

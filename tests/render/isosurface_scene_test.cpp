@@ -22,7 +22,10 @@ protected:
     SceneLook colored() const {
         const Grid grid = options().grid;
         SceneLook look;
-        look.colors = ColorField{"sphere", find_field(grid, "sphere").value().values, Association::point, {.upper = 1.7}};
+        look.shade_by = ShadeBy::gradient; // the device has no other smooth normals
+        look.opacity = 0.5;                // which hides another is told by boxes, which the device does not give
+        look.colors =
+            ColorField{"sphere", find_field(grid, "sphere").value().values, Association::point, {.upper = 1.7}};
         return look;
     }
     Picture picture_of(IsosurfaceScene& scene) {

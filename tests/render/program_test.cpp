@@ -5,6 +5,9 @@
 #include <fstream>
 #include <iterator>
 
+#include <isotet/compare_pictures.hpp>
+#include <isotet/picture_file.hpp>
+
 #include "cli/program.hpp"
 #include "cli/small_grid.hpp"
 
@@ -108,8 +111,8 @@ TEST_F(Render, PacksForManySurfacesOnlyAndDrawsTheSamePicture) {
         more.insert(more.begin(), {"--plain"});
         return json_of(command("make:kuhn:8:sphere,gyroid", "{frame}.png", std::move(more)))["method"];
     };
-    EXPECT_EQ(method({"-f", "gyroid", "--sweep", "-0.5,0.5,3"}), "direct");
-    EXPECT_EQ(method({"-f", "gyroid", "--sweep", "-0.5,0.5,4"}), "clusters");
+    EXPECT_EQ(method({"-f", "gyroid", "--normals", "gradient", "--sweep", "-0.5,0.5,3"}), "direct");
+    EXPECT_EQ(method({"-f", "gyroid", "--normals", "gradient", "--sweep", "-0.5,0.5,4"}), "clusters");
     const std::vector<std::string> more{"-f", "gyroid", "-i", "0.2", "--color-by", "sphere"};
     ASSERT_EQ(isotet(command("make:kuhn:8:sphere,gyroid", "direct.png", more)).status, 0);
     auto clusters = command("make:kuhn:8:sphere,gyroid", "clusters.png", more);
@@ -120,10 +123,10 @@ TEST_F(Render, PacksForManySurfacesOnlyAndDrawsTheSamePicture) {
 }
 
 TEST_F(Render, TakesThePictureAsASecondName) {
-    EXPECT_EQ(isotet({"render", "make:kuhn:4:sphere", path("a.png"), "-i", "0.5", "--size", "64x48", "--device",
-                      "software"})
-                  .status,
-              0);
+    EXPECT_EQ(
+        isotet({"render", "make:kuhn:4:sphere", path("a.png"), "-i", "0.5", "--size", "64x48", "--device", "software"})
+            .status,
+        0);
     EXPECT_TRUE(std::filesystem::exists(path("a.png")));
     const RunResult wrong =
         isotet({"render", "make:kuhn:4:sphere", path("a-{frme}.png"), "-i", "0.5", "--device", "software"});
@@ -252,7 +255,7 @@ TEST_F(Render, IsNothingThatBenchCouldMeasureWithoutMemory) {
 }
 
 TEST_F(Render, RefusesWhatCannotBe) {
-    RunResult run = isotet({"render", "make:kuhn:4:sphere", "--device", "none"});
+    RunResult run = isotet({"render", "make:kuhn:4:sphere", "--device", "none", "--engine", "vulkan"});
     EXPECT_EQ(run.status, 2);
     EXPECT_TRUE(is_one_error(run, "only a device can draw"));
     run = isotet(command("make:kuhn:4:sphere", "a.gif"));
@@ -268,12 +271,33 @@ TEST_F(Render, RefusesWhatCannotBe) {
     EXPECT_EQ(run.status, 3);
 }
 
-TEST_F(Render, SaysWhyNothingCanBeDrawn) {
+TEST_F(Render, NeedsADriverOnlyForADevice) {
     RunOptions without;
     without.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
-    const RunResult run = isotet({"render", "make:kuhn:4:sphere", "-i", "0.5", "-o", path("a.png")}, without);
+    std::vector<std::string> words{"render", "make:kuhn:4:sphere", "-i", "0.5", "-o", path("a.png")};
+    const RunResult drawn = isotet(words, without);
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    words.insert(words.end(), {"--engine", "vulkan"});
+    const RunResult run = isotet(words, without);
     EXPECT_EQ(run.status, 4);
     EXPECT_TRUE(is_one_error(run, "nothing can be drawn: "));
+}
+
+TEST_F(Render, DrawsOnTheCpuWhatADeviceDraws) {
+    const auto drawn = [&](const char* out, std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", "make:kuhn:12:sphere,gyroid", "-o", path(out), "-f", "gyroid", "-i",
+                                   "0.2,-0.3", "--color-by", "sphere", "--outline", "--size", "400x300"});
+        return more;
+    };
+    ASSERT_EQ(isotet(drawn("device.png", {"--device", "software"})).status, 0);
+    std::vector<std::string> words = drawn("cpu.png", {});
+    EXPECT_TRUE(json_of(words)["device"].is_null());
+    const Picture cpu = read_picture(path("cpu.png")).value(), device = read_picture(path("device.png")).value();
+    EXPECT_LE(difference(cpu, device, 1).value(), 0.001);
+    const std::string bytes = content(path("cpu.png"));
+    words.insert(words.end(), {"--threads", "1"});
+    ASSERT_EQ(isotet(words).status, 0);
+    EXPECT_TRUE(content(path("cpu.png")) == bytes) << "on any number of threads";
 }
 
 TEST_F(Render, SweepsThroughIsovaluesIntoNumberedFiles) {
@@ -283,9 +307,9 @@ TEST_F(Render, SweepsThroughIsovaluesIntoNumberedFiles) {
     EXPECT_FALSE(std::filesystem::exists(path("s0.png")) || std::filesystem::exists(path("s1.png")));
     EXPECT_NE(content(path("s01.png")), content(path("s11.png")));
     // Each is the picture that its isovalue gives alone.
-    report = json_of(command("make:kuhn:6:sphere", "one.png", {"-i", "0.5", "--plain"}));
-    EXPECT_TRUE(content(path("s06.png")) == content(path("one.png")));
-    EXPECT_EQ(report["pictures"], 1);
+    report = json_of(command("make:kuhn:6:sphere", "t{frame}.png", {"--sweep", "0.4,0.6,3", "--plain"}));
+    EXPECT_TRUE(content(path("s06.png")) == content(path("t2.png"))) << "in the middle of the range: of one colour";
+    EXPECT_EQ(report["pictures"], 3);
 }
 
 TEST_F(Render, OrbitsIntoOneAnimatedFile) {
@@ -310,7 +334,8 @@ TEST_F(Render, RefusesFramesThatFitNoFile) {
         error("a.png", {"--orbit", "4"}).find("but 4 pictures need one that ends in .webp, or that holds {frame}"),
         std::string::npos);
     EXPECT_NE(error("a{frame}.webp", {"--orbit", "4"}).find("4 pictures need"), std::string::npos);
-    EXPECT_NE(error("a{frame}.png", {}).find("only pictures of --sweep and --orbit have numbers"), std::string::npos);
+    EXPECT_NE(error("a{frame}.png", {}).find("only pictures of --sweep, --orbit and --all-steps have numbers"),
+              std::string::npos);
     EXPECT_NE(error("a.webp", {}).find("it must end in .png"), std::string::npos);
     EXPECT_NE(error("a.webp", {"--sweep", "0,1"}).find("--sweep takes three numbers, not 2"), std::string::npos);
     EXPECT_NE(error("a.webp", {"--sweep", "0,1,1.5"}).find("--sweep ends with 1.5"), std::string::npos);

@@ -21,7 +21,7 @@ protected:
         options_.camera.fit(scene_.bounds, 1);
         options_.samples = 1;
         grid_ = made_grid("kuhn", 12, {"gyroid"});
-        packed_ = pack(grid_, point_field(grid_), {.gradients = true}).value();
+        packed_ = pack(grid_, point_field(grid_), {.split_cells = true, .gradients = true}).value();
     }
 
     /// With less memory for buffers.
@@ -109,7 +109,7 @@ TEST_F(TetPictures, SeveralSurfacesAndMeshesShareAPicture) {
 /// Three pages, of which the device has room for all, for the first, for none.
 TEST_F(TetPictures, AreTheSameWhereTheDeviceHasNoRoomForAllTets) {
     grid_ = made_grid("kuhn", 29, {"gyroid"});
-    packed_ = pack(grid_, point_field(grid_), {.gradients = true}).value();
+    packed_ = pack(grid_, point_field(grid_), {.split_cells = true, .gradients = true}).value();
     constexpr std::uint64_t page = 65'536 * 64, mega = 1'000'000;
     const std::uint64_t all_bytes = packed_.report().tets * 64;
     ASSERT_GT(all_bytes, 2 * page + mega / 2);

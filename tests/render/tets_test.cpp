@@ -95,7 +95,7 @@ TEST_F(Tets, StoresTakeWhatThePaperSays) {
     EXPECT_EQ(tet_store_bytes(DrawMethod::mesh, 1000, 300, true), 16u * 1000 + 32 * 300 + tables + 8 * 32)
         << "32 groups";
     const Grid grid = made_grid("mixed", 8, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid), {.gradients = true}).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true, .gradients = true}).value();
     const std::uint64_t tets = packed.report().tets, points = packed.report().points;
     for (const DrawMethod method : all_draw_methods)
         for (const bool gradients : {false, true}) {
@@ -142,7 +142,7 @@ TEST_F(Tets, TrianglesOfNastyGridsAgreeWithTheReference) {
                                               .mirrored = 0.3,
                                               .repeated = 0.1,
                                               .wide = seed % 2 == 0});
-        expect_reference_triangles(pack(g.grid, g.field).value(), {0, 1, 0.5});
+        expect_reference_triangles(pack(g.grid, g.field, {.split_cells = true}).value(), {0, 1, 0.5});
     }
 }
 
@@ -152,12 +152,12 @@ TEST_F(Tets, TrianglesAgreeWhereTheProcessorDoesNotReachTheDevice) {
     settings.force_staging = true;
     reopen_with(settings);
     const Grid grid = made_grid("mixed", 6, {"gyroid"});
-    expect_reference_triangles(pack(grid, point_field(grid)).value(), {0.1, -0.4});
+    expect_reference_triangles(pack(grid, point_field(grid), {.split_cells = true}).value(), {0.1, -0.4});
 }
 
 TEST_F(Tets, NoListedTetGivesNothing) {
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     TetStore store = TetStore::upload(*device_, packed, DrawMethod::textures).value();
     const TetSurface none = store.at(0.1, {}).value();
     EXPECT_EQ(none.tets(), 0u);
@@ -166,7 +166,7 @@ TEST_F(Tets, NoListedTetGivesNothing) {
 
 TEST_F(Tets, SurfacesOutliveTheirStore) {
     const Grid grid = made_grid("kuhn", 4, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     std::optional<TetStore> store = TetStore::upload(*device_, packed, DrawMethod::registers).value();
     const TetSurface surface = store->at(0.1).value();
     store.reset();
@@ -184,7 +184,7 @@ TEST_F(Tets, MeshShadersAreAskedOfDevicesThatHaveThemOnly) {
     settings.alter_capabilities = [](vulkan::Capabilities& capabilities) { capabilities.mesh_shaders = false; };
     reopen_with(settings);
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     const auto without = TetStore::upload(*device_, packed, DrawMethod::mesh);
     ASSERT_FALSE(without);
     EXPECT_EQ(without.error().code, ErrorCode::no_device);
@@ -198,7 +198,7 @@ TEST_F(Tets, MeshShadersAreAskedOfDevicesThatHaveThemOnly) {
 
 TEST_F(Tets, WhatCannotBeIsRefused) {
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     const auto error = [&](const PackedGrid& of, DrawMethod method, const TetStoreOptions& options) {
         const auto store = TetStore::upload(*device_, of, method, options);
         return store ? std::string() : store.error().message;

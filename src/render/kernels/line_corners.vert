@@ -25,5 +25,6 @@ void main() {
     const bool left = corner == 0u || corner == 1u || corner == 3u;
     vec4 place = at_end ? b : a;
     place.xy += ((at_end ? along : -along) + (left ? aside : -aside)) * lines.half_width / size * place.w;
+    place.z = max(place.z - lines.lift * place.w, 0.0);
     gl_Position = place;
 }

@@ -79,6 +79,7 @@ struct Lines {
     Address ends;         ///< float x 3 each
     vec3 color;
     float half_width;     ///< samples
+    float lift;           ///< of the depth, towards the eye
 };
 
 /// How a store holds its tets (TetPage::records).

@@ -1,0 +1,30 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What draws the pictures of `isotet render`: the CPU, or the device that was asked for.
+#pragma once
+
+#include <optional>
+
+#include <isotet/render.hpp>
+
+#include "console.hpp"
+#include "options.hpp"
+
+namespace isotet::cli {
+
+class Drawer {
+public:
+    /// The CPU, unless --device, --engine vulkan or a method that draws tets asks for a device.
+    /// Errors   no_device when one is asked for and there is none
+    static Result<Drawer> open(const RenderCommand& command, Console& console);
+
+    const std::optional<Device>& device() const noexcept { return device_; } ///< nothing: the CPU draws
+    DeviceWork work() const { return renderer_ ? renderer_->work() : DeviceWork(); }
+
+    Result<Picture> draw(const Scene& scene, const PictureOptions& options, const Run& run);
+
+private:
+    std::optional<Device> device_;
+    std::optional<Renderer> renderer_;
+};
+
+} // namespace isotet::cli

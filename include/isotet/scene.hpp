@@ -1,0 +1,101 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What is drawn, and how: the same for every renderer.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/camera.hpp>
+#include <isotet/export.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/picture.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+class DeviceMesh;
+class DeviceSurface;
+class DeviceColors;
+class TetSurface;
+
+/// A colour map, from 0 to 1. All but turbo and cool_warm are perceptually uniform.
+enum class ColorMap : std::uint8_t { viridis, cividis, plasma, turbo, cool_warm };
+
+/// "viridis", "cool-warm" and so on, and back.
+ISOTET_API std::string_view name_of(ColorMap map) noexcept;
+ISOTET_API std::optional<ColorMap> parse_color_map(std::string_view name) noexcept;
+
+/// The colour at a place of the map; places outside 0 to 1 have those of its ends.
+ISOTET_API Color color_at(ColorMap map, double place) noexcept;
+
+/// Which value has which colour.
+///
+/// `lower`, `upper`   values at the ends of the map, lower < upper, both finite; on a logarithmic scale lower > 0
+/// `classes`          not empty: the range is as many equal parts, each of one colour; `map` does not count
+/// `no_data`          where a value is NaN. Values beyond the ends have the colours of the ends
+struct ISOTET_API ColorScale {
+    ColorMap map = ColorMap::viridis;
+    double lower = 0, upper = 1;
+    bool logarithmic = false;
+    std::vector<Color> classes = {};
+    Color no_data{0.72F, 0.72F, 0.72F, 1};
+
+    /// The place of a value in the map, not limited to 0 to 1; NaN for what is no number.
+    double place_of(double value) const noexcept;
+};
+
+/// Values that colour a surface in memory.
+///
+/// `values`   a scalar a vertex (Association::point) or a triangle (Association::cell); NaN: no data
+struct SurfaceColors {
+    Array values;
+    Association association = Association::point;
+    ColorScale scale;
+};
+
+/// Something with triangles that is drawn. Exactly one of `triangles`, `mesh`, `surface` and `tets` is set; all are
+/// borrowed. The CPU draws `triangles` only, a device all of them.
+struct DrawnSurface {
+    const Surface* triangles = nullptr;      ///< in memory; a device uploads it for each picture
+    const SurfaceColors* values = nullptr;   ///< of `triangles`; null: `color` everywhere
+    const DeviceMesh* mesh = nullptr;        ///< uploaded (render.hpp)
+    const DeviceSurface* surface = nullptr;  ///< where the Vulkan engine left it (device_grid.hpp)
+    const DeviceColors* colors = nullptr;    ///< of `mesh` and `surface`; null: `color` everywhere. Tets have none
+    Color color{0.70F, 0.75F, 0.80F, 1};     ///< its opacity does not count
+    double opacity = 1;                      ///< of the sheet seen at a right angle; at a slant it is denser. 0: not
+                                             ///< drawn
+    const TetSurface* tets = nullptr;        ///< that give their triangles while they are drawn (draw_tets.hpp)
+};
+
+/// Straight lines of one colour, drawn as opaque.
+struct DrawnLines {
+    std::vector<std::array<std::array<double, 3>, 2>> lines; ///< both ends of each
+    Color color{0.25F, 0.25F, 0.25F, 1};
+    double width = 1; ///< pixels
+    double lift = 0;  ///< nearer by this part of the depth of the picture: edges of a surface are then before it
+};
+
+/// The twelve edges of a box.
+ISOTET_API DrawnLines outline_of(const Box& box);
+
+/// What is drawn; nothing at all is fine, and gives the background.
+///
+/// `bounds`   everything lies within
+struct Scene {
+    std::vector<DrawnSurface> surfaces;
+    std::vector<DrawnLines> lines;
+    Box bounds;
+};
+
+struct PictureOptions {
+    std::uint32_t width = 1200, height = 900; ///< pixels, 1 to 32768 each
+    std::uint32_t samples = 3;                ///< an axis and pixel, 1 to 8: their mean is the pixel
+    Color background{1, 1, 1, 1};
+    Camera camera;
+};
+
+} // namespace isotet

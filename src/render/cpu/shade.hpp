@@ -1,0 +1,17 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The colour of a surface at a place of the picture; what kernels/mesh.glsl computes.
+#pragma once
+
+#include "render/cpu/sheet.hpp"
+
+namespace isotet::render {
+
+struct Shade {
+    Light color{};
+    float opacity = 1;
+};
+
+/// `x`, `y`   in samples, from the upper left corner of the picture; inside the triangle
+Shade shade(const Sheet& sheet, std::uint32_t triangle, double x, double y, const Sight& sight);
+
+} // namespace isotet::render

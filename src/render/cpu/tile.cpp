@@ -1,0 +1,249 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/tile.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <tuple>
+
+#include "render/cpu/clip.hpp"
+
+namespace isotet::render {
+
+namespace {
+
+constexpr float opaque_enough = 0.998F; ///< nothing is seen behind
+
+} // namespace
+
+Tile::Tile(const TileScene& scene)
+    : scene_(scene),
+      count_(scene.screen.samples * scene.screen.samples),
+      all_(first_samples(count_)),
+      right_(count_),
+      down_(count_) {
+    const std::uint32_t s = scene.screen.samples;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        right_[i] = static_cast<float>(i % s) - 0.5F * static_cast<float>(s - 1);
+        down_[i] = static_cast<float>(i / s) - 0.5F * static_cast<float>(s - 1);
+    }
+    opaque_.resize(count_);
+}
+
+void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture) {
+    start(number);
+    for (const BinEntry& entry : entries) add(entry);
+    const auto s = static_cast<std::int64_t>(scene_.screen.samples);
+    for (std::int32_t y = 0; y < frame_.height; ++y) {
+        for (std::int32_t x = 0; x < frame_.width; ++x) {
+            Blend sum = resolve(x, y);
+            sum.add_behind(scene_.background, scene_.background_opacity);
+            std::array<std::uint8_t, 4>& pixel =
+                picture.pixels[static_cast<std::size_t>((frame_.y / s + y) * picture.width + frame_.x / s + x)];
+            pixel = {};
+            if (!(sum.opacity > 0)) continue;
+            for (std::size_t i = 0; i < 3; ++i) pixel[i] = scene_.bytes.of(sum.light[i] / sum.opacity);
+            pixel[3] = static_cast<std::uint8_t>(std::min(sum.opacity, 1.0F) * 255 + 0.5F);
+        }
+    }
+}
+
+void Tile::start(std::size_t number) {
+    const Tiling& tiling = scene_.tiling;
+    const std::uint32_t column = static_cast<std::uint32_t>(number % tiling.columns()) * tiling.side,
+                        row = static_cast<std::uint32_t>(number / tiling.columns()) * tiling.side;
+    frame_ = {std::int64_t{column} * tiling.samples, std::int64_t{row} * tiling.samples,
+              static_cast<std::int32_t>(std::min(tiling.side, tiling.width - column)),
+              static_cast<std::int32_t>(std::min(tiling.side, tiling.height - row)),
+              static_cast<std::int32_t>(tiling.samples)};
+    const std::size_t pixels = static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height);
+    facets_.clear();
+    fragments_.clear();
+    depths_.assign(pixels * count_, INFINITY);
+    owners_.assign(pixels * count_, 0);
+    heads_.assign(pixels, 0);
+    covered_.assign(pixels, 0);
+}
+
+void Tile::add(const BinEntry& entry) {
+    const Sheet& sheet = scene_.sheets[entry.sheet];
+    const FixedPolygon polygon = polygon_of(sheet, entry.triangle, scene_.screen.sight);
+    for (std::size_t i = 2; i < polygon.count; ++i)
+        add_facet(sheet, entry.triangle, polygon.points[0], polygon.points[i - 1], polygon.points[i]);
+}
+
+void Tile::add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoint& a, const FixedPoint& b,
+                     const FixedPoint& c) {
+    const TileCover samples(a, b, c, frame_);
+    const auto number = static_cast<std::uint32_t>(facets_.size());
+    const double middle = 0.5 * (scene_.screen.samples - 1);
+    samples.each_pixel([&](std::int32_t x, std::int32_t y, SampleMask mask) {
+        if (facets_.size() == number) facets_.push_back({&sheet, triangle, DepthPlane(a, b, c, frame_)});
+        const DepthPlane& plane = facets_[number].depth;
+        const auto depth = static_cast<float>(plane.at_first + (x * frame_.samples + middle) * plane.per_x +
+                                              (y * frame_.samples + middle) * plane.per_y);
+        cover(number,
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x), depth,
+              mask);
+    });
+}
+
+/// The samples of a mask that lie in front of what is opaque.
+SampleMask Tile::in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const {
+    const auto per_x = static_cast<float>(plane.per_x), per_y = static_cast<float>(plane.per_y);
+    const float* const nearest = depths_.data() + pixel * count_;
+    SampleMask seen = 0;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        const float at = std::clamp(depth + per_x * right_[i] + per_y * down_[i], plane.lower, plane.upper);
+        seen |= SampleMask{at < nearest[i]} << i;
+    }
+    return seen & mask;
+}
+
+void Tile::cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask) {
+    const Facet& one = facets_[facet];
+    if (covered_[pixel]) mask = in_front(one.depth, pixel, depth, mask);
+    if (mask == 0) return;
+    if (one.sheet->translucent) {
+        fragments_.push_back({facet, heads_[pixel], mask});
+        heads_[pixel] = static_cast<std::uint32_t>(fragments_.size());
+        return;
+    }
+    covered_[pixel] = 1;
+    const auto per_x = static_cast<float>(one.depth.per_x), per_y = static_cast<float>(one.depth.per_y);
+    for (SampleMask left = mask; left; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        depths_[pixel * count_ + i] =
+            std::clamp(depth + per_x * right_[i] + per_y * down_[i], one.depth.lower, one.depth.upper);
+        owners_[pixel * count_ + i] = facet + 1;
+    }
+}
+
+/// At the middle of the samples that are seen, which is inside the facet.
+Shade Tile::shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const {
+    const double half = 0.5 * scene_.screen.samples;
+    double right = 0, down = 0;
+    if (mask != all_) {
+        float sum_right = 0, sum_down = 0;
+        for (SampleMask left = mask; left; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            sum_right += right_[i];
+            sum_down += down_[i];
+        }
+        const auto samples = static_cast<float>(std::popcount(mask));
+        right = sum_right / samples;
+        down = sum_down / samples;
+    }
+    return shade(*facet.sheet, facet.triangle, static_cast<double>(frame_.x + x * frame_.samples) + half + right,
+                 static_cast<double>(frame_.y + y * frame_.samples) + half + down, scene_.screen.sight);
+}
+
+Tile::Blend Tile::resolve(std::int32_t x, std::int32_t y) {
+    const std::size_t pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
+    if (!covered_[pixel] && !heads_[pixel]) return {};
+    take_opaque(x, y);
+    if (!heads_[pixel]) return mean_opaque_;
+    take_layers(x, y);
+    bool whole = true;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        whole = whole && layers_[i].mask == all_;
+        if (i > 0) whole = whole && layers_[i - 1].depth + layers_[i - 1].reach < layers_[i].depth - layers_[i].reach;
+    }
+    return whole ? blend_whole() : blend_samples();
+}
+
+/// The colours of samples without what is translucent, and their mean.
+void Tile::take_opaque(std::int32_t x, std::int32_t y) {
+    const std::size_t pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
+    mean_opaque_ = {};
+    std::ranges::fill(opaque_, Blend{});
+    if (!covered_[pixel]) return;
+    const std::uint32_t* const owners = owners_.data() + pixel * count_;
+    for (SampleMask left = all_; left;) {
+        const std::uint32_t owner = owners[std::countr_zero(left)];
+        SampleMask mask = 0;
+        for (std::uint32_t i = 0; i < count_; ++i) mask |= SampleMask{owners[i] == owner} << i;
+        left &= ~mask;
+        if (owner == 0) continue;
+        const Blend color{shade_of(facets_[owner - 1], x, y, mask).color, 1};
+        for (SampleMask rest = mask; rest; rest &= rest - 1)
+            opaque_[static_cast<std::size_t>(std::countr_zero(rest))] = color;
+        const float part = static_cast<float>(std::popcount(mask)) / static_cast<float>(count_);
+        for (std::size_t i = 0; i < 3; ++i) mean_opaque_.light[i] += part * color.light[i];
+        mean_opaque_.opacity += part;
+    }
+}
+
+/// The fragments of a pixel, by their depth in its middle.
+void Tile::take_layers(std::int32_t x, std::int32_t y) {
+    const std::size_t pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x);
+    layers_.clear();
+    const double middle = 0.5 * (scene_.screen.samples - 1);
+    for (std::uint32_t at = heads_[pixel]; at != 0; at = fragments_[at - 1].next) {
+        const Fragment& fragment = fragments_[at - 1];
+        const Facet& facet = facets_[fragment.facet];
+        const DepthPlane& plane = facet.depth;
+        Layer layer;
+        layer.depth = static_cast<float>(plane.at_first + (x * frame_.samples + middle) * plane.per_x +
+                                         (y * frame_.samples + middle) * plane.per_y);
+        layer.per_x = static_cast<float>(plane.per_x);
+        layer.per_y = static_cast<float>(plane.per_y);
+        layer.lower = plane.lower;
+        layer.upper = plane.upper;
+        layer.reach = (std::abs(layer.per_x) + std::abs(layer.per_y)) * static_cast<float>(middle);
+        layer.mask = fragment.mask;
+        layer.shade = shade_of(facet, x, y, fragment.mask);
+        layers_.push_back(layer);
+    }
+    // Where depths are equal the larger colour is in front, so that the order of drawing shows nowhere.
+    const auto key = [](const Layer& layer) {
+        const Light& color = layer.shade.color;
+        return std::tuple(layer.depth, -color[1], -color[0], -layer.shade.opacity, -color[2], layer.mask);
+    };
+    std::ranges::sort(layers_, [&](const Layer& a, const Layer& b) { return key(a) < key(b); });
+}
+
+/// Where every layer covers the whole pixel, and one is before the other in all of it.
+Tile::Blend Tile::blend_whole() const {
+    Blend sum;
+    for (const Layer& layer : layers_) {
+        sum.add_behind(layer.shade.color, layer.shade.opacity);
+        if (sum.opacity >= opaque_enough) break;
+    }
+    const float rest = 1 - sum.opacity;
+    for (std::size_t i = 0; i < 3; ++i) sum.light[i] += rest * mean_opaque_.light[i];
+    sum.opacity += rest * mean_opaque_.opacity;
+    return sum;
+}
+
+Tile::Blend Tile::blend_samples() {
+    Blend mean;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        order_.clear();
+        for (const Layer& layer : layers_) {
+            if (!(layer.mask >> i & 1)) continue;
+            const float depth =
+                std::clamp(layer.depth + layer.per_x * right_[i] + layer.per_y * down_[i], layer.lower, layer.upper);
+            order_.emplace_back(depth, &layer);
+            for (std::size_t k = order_.size() - 1; k > 0 && order_[k].first < order_[k - 1].first; --k)
+                std::swap(order_[k], order_[k - 1]);
+        }
+        Blend sum;
+        for (const auto& [depth, layer] : order_) {
+            sum.add_behind(layer->shade.color, layer->shade.opacity);
+            if (sum.opacity >= opaque_enough) break;
+        }
+        if (opaque_[i].opacity > 0) sum.add_behind(opaque_[i].light, 1);
+        for (std::size_t k = 0; k < 3; ++k) mean.light[k] += sum.light[k];
+        mean.opacity += sum.opacity;
+    }
+    const float part = 1 / static_cast<float>(count_);
+    for (float& light : mean.light) light *= part;
+    mean.opacity *= part;
+    return mean;
+}
+
+} // namespace isotet::render

@@ -1,0 +1,97 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Drawing one tile of a picture: a depth buffer of samples for what is opaque, lists of fragments for what is not, then
+// the mean of the samples of each pixel.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <isotet/picture.hpp>
+
+#include "render/cpu/bins.hpp"
+#include "render/cpu/encode.hpp"
+#include "render/cpu/raster.hpp"
+#include "render/cpu/shade.hpp"
+
+namespace isotet::render {
+
+/// What all tiles of a picture share.
+struct TileScene {
+    const std::vector<Sheet>& sheets;
+    Screen screen;
+    Tiling tiling;
+    Light background{};
+    float background_opacity = 1;
+    LightBytes bytes;
+};
+
+class Tile {
+public:
+    explicit Tile(const TileScene& scene);
+
+    /// Draws the tile of this number into the picture. `entries`: what is opaque comes before what is translucent.
+    void draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture);
+
+private:
+    /// A triangle, or the piece of one that is in view, which covers samples of the tile.
+    struct Facet {
+        const Sheet* sheet;
+        std::uint32_t triangle;
+        DepthPlane depth;
+    };
+    /// Samples of a pixel that a translucent facet covers.
+    struct Fragment {
+        std::uint32_t facet, next; ///< next: 1 + the fragment, or 0
+        SampleMask mask;
+    };
+    /// A fragment in front of the others, or behind them.
+    struct Layer {
+        float depth, per_x, per_y, lower, upper, reach; ///< at the middle of the pixel; a sample; how far samples differ
+        SampleMask mask;
+        Shade shade;
+    };
+    struct Blend {
+        Light light{}; ///< times opacity
+        float opacity = 0;
+
+        void add_behind(const Light& color, float its_opacity) {
+            const float part = (1 - opacity) * its_opacity;
+            for (std::size_t i = 0; i < 3; ++i) light[i] += part * color[i];
+            opacity += part;
+        }
+    };
+
+    void start(std::size_t number);
+    void add(const BinEntry& entry);
+    void add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoint& a, const FixedPoint& b,
+                   const FixedPoint& c);
+    void cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask);
+    SampleMask in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const;
+    Shade shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
+    Blend resolve(std::int32_t x, std::int32_t y);
+    void take_opaque(std::int32_t x, std::int32_t y);
+    void take_layers(std::int32_t x, std::int32_t y);
+    Blend blend_whole() const;
+    Blend blend_samples();
+
+    const TileScene& scene_;
+    TileFrame frame_;
+    std::uint32_t count_; ///< samples a pixel
+    SampleMask all_;
+    std::vector<float> right_, down_; ///< of each sample, from the middle of its pixel
+    std::vector<Facet> facets_;
+    std::vector<Fragment> fragments_;
+    std::vector<float> depths_;         ///< of the nearest opaque facet a sample
+    std::vector<std::uint32_t> owners_; ///< 1 + that facet, or 0
+    std::vector<std::uint32_t> heads_;  ///< 1 + the last fragment of a pixel, or 0
+    std::vector<std::uint8_t> covered_; ///< whether a pixel has anything opaque
+
+    // Of the pixel that is resolved:
+    std::vector<Layer> layers_;
+    std::vector<std::pair<float, const Layer*>> order_;
+    std::vector<Blend> opaque_; ///< a sample
+    Blend mean_opaque_;
+};
+
+} // namespace isotet::render

@@ -1,0 +1,113 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "scene/colored_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include <isotet/extract_direct.hpp>
+
+#include "core/errors.hpp"
+
+namespace isotet::scene {
+
+namespace {
+
+using Face = std::array<std::uint64_t, 3>;
+
+struct FaceHash {
+    std::size_t operator()(const Face& face) const noexcept {
+        std::uint64_t hash = 0x9E3779B97F4A7C15U;
+        for (const std::uint64_t point : face) hash = (hash ^ point) * 0xBF58476D1CE4E5B9U;
+        return hash ^ hash >> 29;
+    }
+};
+
+/// Of each face of a boundary the lowest cell that has it.
+Result<std::vector<std::uint64_t>> cells_of(const Surface& boundary, const Grid& grid, const Run& run) {
+    const auto ends = boundary.edge_ends.as<std::int64_t>();
+    std::unordered_map<Face, std::size_t, FaceHash> faces(boundary.triangle_count());
+    boundary.triangles.visit([&](auto corners) {
+        for (std::size_t i = 0; i < boundary.triangle_count(); ++i) {
+            Face face{};
+            for (std::size_t k = 0; k < 3; ++k)
+                face[k] = static_cast<std::uint64_t>(ends[2 * static_cast<std::size_t>(corners[3 * i + k])]);
+            std::ranges::sort(face);
+            faces.emplace(face, i);
+        }
+    });
+    const Result<TetList> tets = split(grid, run);
+    if (!tets) return tets.error();
+    std::vector<std::uint64_t> cells(boundary.triangle_count(), UINT64_MAX);
+    for (std::size_t tet = 0; tet < tets->tets.size(); ++tet) {
+        for (std::size_t left_out = 0; left_out < 4; ++left_out) {
+            Face face{};
+            for (std::size_t k = 0, to = 0; k < 4; ++k)
+                if (k != left_out) face[to++] = tets->tets[tet][k];
+            std::ranges::sort(face);
+            const auto found = faces.find(face);
+            if (found != faces.end()) cells[found->second] = std::min(cells[found->second], tets->cells[tet]);
+        }
+    }
+    return cells;
+}
+
+/// The values of some tuples.
+template <class Number>
+Array gathered(const Array& values, std::size_t count, const Number& number) {
+    return values.visit([&]<class Scalar>(std::span<const Scalar> scalars) {
+        std::vector<Scalar> out(count);
+        for (std::size_t i = 0; i < count; ++i) out[i] = scalars[number(i)];
+        return Array::own(std::move(out));
+    });
+}
+
+} // namespace
+
+Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run) {
+    const bool of_points = field.association == Association::point;
+    const std::size_t needed = of_points ? grid.points.tuples() : grid.cells.count();
+    if (field.values.size() != needed)
+        return invalid_argument(fmt::format("{} values shall colour a grid of {} {}", field.values.size(), needed,
+                                            of_points ? "points" : "cells"));
+    if (of_points) {
+        const auto ends = boundary.edge_ends.as<std::int64_t>();
+        boundary.point_fields = {{field.name, gathered(field.values, boundary.vertex_count(), [&](std::size_t i) {
+                                      return static_cast<std::size_t>(ends[2 * i]);
+                                  })}};
+        return {};
+    }
+    const Result<std::vector<std::uint64_t>> cells = cells_of(boundary, grid, run);
+    if (!cells) return cells.error();
+    boundary.cell_fields = {
+        {field.name, gathered(field.values, cells->size(), [&](std::size_t i) { return (*cells)[i]; })}};
+    return {};
+}
+
+Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
+    std::vector<double> heights(grid.points.tuples());
+    grid.points.visit([&](auto scalars) {
+        for (std::size_t i = 0; i < heights.size(); ++i)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                heights[i] += plane.normal[axis] * static_cast<double>(scalars[3 * i + axis]);
+    });
+    DirectOptions options;
+    if (field && field->association == Association::point)
+        options.extract.point_fields = {{field->name, field->values}};
+    if (field && field->association == Association::cell) options.extract.cell_fields = {{field->name, field->values}};
+    const double offset = plane.offset;
+    Result<DirectExtraction> cut = extract_direct(grid, {"height", Array::own(std::move(heights)), false, {}},
+                                                  std::span(&offset, 1), options, run);
+    if (!cut) return cut.error();
+    return std::move(cut->surfaces.front().surface);
+}
+
+SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
+    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
+    return {fields.front().values, field.association, field.scale};
+}
+
+} // namespace isotet::scene

@@ -1,0 +1,124 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet render` on the CPU: what figures need.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <isotet/compare_pictures.hpp>
+#include <isotet/picture_file.hpp>
+
+#include "cli/program.hpp"
+#include "cli/small_grid.hpp"
+
+namespace isotet::test {
+namespace {
+
+class RenderOnCpu : public Program {
+protected:
+    std::vector<std::string> command(const std::string& out, std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", "make:kuhn:8:sphere,gyroid", "-o", path(out), "--size", "160x120"});
+        return more;
+    }
+    Picture picture(const std::string& out, std::vector<std::string> more) {
+        const RunResult run = isotet(command(out, std::move(more)));
+        EXPECT_EQ(run.status, 0) << run.err;
+        return read_picture(path(out)).value();
+    }
+    std::string error(std::vector<std::string> more) {
+        more.push_back("-q");
+        const RunResult run = isotet(command("e.png", std::move(more)));
+        EXPECT_EQ(run.status, 2) << run.err;
+        return run.err;
+    }
+    static double unlike(const Picture& a, const Picture& b) { return difference(a, b, 2).value(); }
+};
+
+TEST_F(RenderOnCpu, LooksByAnglesAxesAndText) {
+    const std::vector<std::string> base{"-i", "0.5", "-f", "sphere", "--plain"};
+    const auto with = [&](const std::string& out, std::vector<std::string> more) {
+        more.insert(more.begin(), base.begin(), base.end());
+        return picture(out, std::move(more));
+    };
+    EXPECT_EQ(unlike(with("a.png", {"--view", "90,0"}), with("b.png", {"--view", "+x"})), 0);
+    EXPECT_GT(unlike(with("a.png", {"--view", "30,20"}), with("b.png", {"--view", "30,60"})), 0.01);
+    EXPECT_GT(unlike(with("a.png", {"--zoom", "2"}), with("b.png", {})), 0.01);
+    EXPECT_GT(unlike(with("a.png", {"--fit", "surface"}), with("b.png", {})), 0.01);
+    EXPECT_GT(unlike(with("a.png", {"--up", "x"}), with("b.png", {})), 0.01);
+    auto words = command("c.png", base);
+    words.insert(words.end(), {"--view", "20,70", "--zoom", "1.5"});
+    const std::string camera = json_of(words)["camera"];
+    EXPECT_EQ(unlike(with("d.png", {"--camera", camera}), read_picture(path("c.png")).value()), 0);
+    EXPECT_NE(error({"--view", "30"}).find("--view got '30'"), std::string::npos);
+    EXPECT_NE(error({"--camera", "here"}).find("--camera got 'here'"), std::string::npos);
+    EXPECT_NE(error({"--zoom", "0"}).find("--zoom got '0'"), std::string::npos);
+}
+
+TEST_F(RenderOnCpu, StretchesAxesButNotColours) {
+    auto words = command("a.png", {"-f", "z", "-i", "0.5", "--color-by", "z", "--scale", "1,1,3"});
+    EXPECT_LE(json_of(words)["color_range"][1], 1.001) << "colours are those of the grid as it is";
+    EXPECT_NE(error({"--scale", "1,1"}).find("--scale got '1,1'"), std::string::npos);
+    EXPECT_NE(error({"--scale", "1,1,-1"}).find("--scale got"), std::string::npos);
+}
+
+TEST_F(RenderOnCpu, ShowsSlicesAndWhatIsNotClipped) {
+    auto words = command("a.png", {"-f", "gyroid", "--slice", "x=0.1", "--clip", "x=0.1", "--edges"});
+    const auto report = json_of(words);
+    EXPECT_GT(report["slice_triangles"], 100);
+    EXPECT_EQ(report["color_by"], "gyroid");
+    EXPECT_TRUE(report["field"].is_null());
+    EXPECT_EQ(report["surfaces"].size(), 0u);
+    const std::vector<std::string> plain{"-f", "sphere", "-i", "0.8", "--plain", "--boundary", "0"};
+    auto clipped = plain;
+    clipped.insert(clipped.end(), {"--clip", "-y=0"});
+    EXPECT_GT(unlike(picture("b.png", plain), picture("c.png", clipped)), 0.05);
+    EXPECT_NE(error({"--clip", "w=1"}).find("--clip got 'w=1'"), std::string::npos);
+    EXPECT_NE(error({"--slice", "0,0,0,1"}).find("--slice got"), std::string::npos);
+}
+
+TEST_F(RenderOnCpu, ColoursTheBoundaryInClassesOrByAScale) {
+    put_content(path("g.msh"), small_grid({{.name = "region", .values = {7, 9}, .on_cells = true}}));
+    RunResult run = isotet({"render", path("g.msh"), "-o", path("g.png"), "--size", "400x300"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("'region', whole numbers, colours the boundary"), std::string::npos) << run.err;
+    const auto report = json_of(command("a.png", {"--boundary-color-by", "gyroid"}));
+    EXPECT_EQ(report["color_by"], "gyroid");
+    EXPECT_TRUE(report["field"].is_null());
+    EXPECT_NE(error({"--boundary-color-by", "gyroid", "--color-by", "sphere"}).find("one colour scale"),
+              std::string::npos);
+}
+
+TEST_F(RenderOnCpu, DrawsAGridWithoutFields) {
+    put_content(path("g.msh"), small_grid({}));
+    const RunResult run = isotet({"render", path("g.msh"), "-o", path("g.png"), "--size", "160x120"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("the boundary of the grid is drawn"), std::string::npos) << run.err;
+}
+
+TEST_F(RenderOnCpu, DrawsEveryTimeStepWithOneCameraAndOneScale) {
+    const std::string file = (source_folder() / "data/exodus/tension_tets_stress_3steps.e").string();
+    const auto report =
+        json_of({"render", file, "-f", "nodal_Cauchy_Stress_1", "--levels", "2", "--color-by", "nodal_Cauchy_Stress_1",
+                 "--all-steps", "-o", path("s{frame}.png"), "--size", "300x200"});
+    EXPECT_EQ(report["pictures"], 3);
+    EXPECT_EQ(report["step"], 2);
+    EXPECT_LT(report["color_range"][0], report["color_range"][1]);
+    EXPECT_TRUE(std::filesystem::exists(path("s1.png")) && std::filesystem::exists(path("s3.png")));
+    const RunResult one = isotet({"render", file, "--all-steps", "-o", path("one.png")});
+    EXPECT_EQ(one.status, 2) << "three pictures need three names";
+    const RunResult film = isotet({"render", file, "-f", "nodal_Cauchy_Stress_1", "--levels", "2", "--all-steps", "-o",
+                                   path("s{frame}.png"), "--size", "60x40"});
+    EXPECT_NE(film.err.find("ffmpeg -framerate 12 -i '"), std::string::npos) << film.err;
+}
+
+TEST_F(RenderOnCpu, ShadesByTheNormalsThatAreAskedFor) {
+    const auto shaded = [&](const char* normals) {
+        return picture(std::string(normals) + ".png",
+                       {"-f", "gyroid", "-i", "0.3", "--plain", "--boundary", "0", "--normals", normals});
+    };
+    const Picture vertex = shaded("vertex"), gradient = shaded("gradient"), face = shaded("face");
+    EXPECT_GT(unlike(vertex, face), 0.1);
+    EXPECT_GT(unlike(vertex, gradient), 0.01);
+}
+
+} // namespace
+} // namespace isotet::test
