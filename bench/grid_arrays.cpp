@@ -26,7 +26,7 @@ Grid load(const std::string& source, const std::string& field, int threads) {
         return make_grid(options, {.threads = threads}).value();
     }
     ReadOptions options;
-    options.reader_program = std::filesystem::read_symlink("/proc/self/exe");
+    options.reader_program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../apps/cli/isotet-reader";
     return read(source, options).value().grid;
 }
 

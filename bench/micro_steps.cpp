@@ -12,7 +12,7 @@
 
 #include "core/cells.hpp"
 #include "core/storage.hpp"
-#include "core/tet_order.hpp"
+#include "core/cell_order.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::bench {
@@ -57,7 +57,8 @@ void sort_tets(benchmark::State& state) {
     const Subject& of = subject(state);
     const auto cells = core::CellReader::open(of.grid).value();
     for (auto _ : state)
-        benchmark::DoNotOptimize(core::sort_tets(of.grid, cells, core::count_tets(cells), false, {}).value());
+        benchmark::DoNotOptimize(
+            core::sort_cells<core::RankedTet>(of.grid, cells, core::count_tets(cells), false, {}).value());
     count_tets(state, of);
 }
 

@@ -18,7 +18,7 @@ std::uint64_t bytes_of_selected(const core::Packed& packed, Real isovalue) {
         const core::ClusterHeader& header = packed.headers[cluster];
         bytes += sizeof(header) + 4 * core::ClusterLinks::words(header) + 4 * sizeof(Real) * header.own_points;
         const std::uint8_t step = core::quantize(isovalue, range);
-        const std::size_t groups = (header.tets + core::group_size - 1) / core::group_size;
+        const std::size_t groups = header.groups();
         for (std::size_t group = header.first_group; group < header.first_group + groups; ++group) {
             const core::GroupRange steps = packed.group_ranges[group];
             bytes += sizeof(steps);
@@ -49,7 +49,7 @@ std::uint64_t extraction_must_move(const PackedGrid& packed, double isovalue, co
 std::uint64_t new_field_must_move(const PackedGrid& packed, std::uint64_t field_bytes) {
     const core::Packed& data = packed.data();
     const std::uint64_t read = field_bytes + data.point_ids.bytes() + data.wide_point_ids.bytes() +
-                               data.headers.bytes() + data.links.bytes() + data.tets.bytes();
+                               data.headers.bytes() + data.links.bytes() + data.cells.bytes();
     const std::uint64_t written =
         std::visit([](const auto& reals) { return reals.values.bytes() + reals.ranges.bytes(); }, data.reals);
     return read + written + data.group_ranges.bytes();

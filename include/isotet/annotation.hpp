@@ -9,7 +9,7 @@
 
 #include <isotet/export.hpp>
 #include <isotet/picture.hpp>
-#include <isotet/render.hpp>
+#include <isotet/scene.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet {
@@ -20,8 +20,20 @@ struct LegendEntry {
     std::string text;
 };
 
+/// The axes of the world as small arrows, and how long a round number is in the picture.
+///
+/// `camera`   of the scene's picture
+/// `bar`      a scale bar: lengths are right in a parallel picture, and in a perspective one at the camera's target
+/// `unit`     of coordinates, written behind the bar's number
+struct Orientation {
+    Camera camera;
+    bool bar = false;
+    std::string unit;
+};
+
 /// What is written beside a picture: at the right a colour scale with ticks at round numbers, or a legend, or both,
-/// under a title; below a caption. Text is UTF-8; a font is part of isotet, with Latin and Greek letters, and what it
+/// under a title, and the axes; below a caption and a scale bar. Without scale and legend the axes stand in the lower left
+/// corner of the scene. Text is UTF-8; a font is part of isotet, with Latin and Greek letters, and what it
 /// lacks is a box.
 struct Annotation {
     std::string title;
@@ -29,8 +41,9 @@ struct Annotation {
     std::string no_data; ///< what the scale's colour for no data means; empty: it is not shown
     std::vector<LegendEntry> legend;
     std::string caption; ///< cut off with an ellipsis where it is too long
+    std::optional<Orientation> orientation;
 
-    bool empty() const noexcept { return !scale && legend.empty() && caption.empty(); }
+    bool empty() const noexcept { return !scale && legend.empty() && caption.empty() && !orientation; }
 };
 
 /// How many letters of a text the font lacks, each of which is drawn as a box. Bytes that are not UTF-8 count, too.

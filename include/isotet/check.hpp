@@ -53,8 +53,9 @@ struct SurfaceReport {
 struct CheckOptions {
     bool closed = false;        ///< blame every edge used unequally often in the two directions
     const Grid* grid = nullptr; ///< blame such edges unless their grid points lie in one boundary face of the valid
-                                ///< tets; needs surface.edge_ends
-    const PointField* field = nullptr; ///< with `grid`: tets with a corner of no data are not valid
+                                ///< cells; needs surface.edge_ends
+    const PointField* field = nullptr; ///< with `grid`: cells with a corner of no data are not valid
+    bool split_cells = false;          ///< with `grid`: the surface was made with PackOptions::split_cells
     bool weld = false;                 ///< weld by exact coordinates first (STL)
     int max_findings = 5;              ///< of each kind
 };
@@ -62,7 +63,7 @@ struct CheckOptions {
 /// Measures a surface and looks for what should not be there. An empty surface is closed and clean.
 ///
 /// Blamed are edges as the options ask (without `closed` and `grid`: none), triangles with two equal corners, and
-/// triangles that repeat an earlier one, except, with `grid`, on a face that two valid tets use from one side. Tets
+/// triangles that repeat an earlier one, except, with `grid`, on a face that two valid cells use from one side. Cells
 /// count as they are stored: each upright, repeated ones once. With `weld` all numbers are those after welding.
 ///
 /// Guarantees   the same report for any number of threads

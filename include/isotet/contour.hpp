@@ -46,6 +46,7 @@ struct ContourOptions {
     Normals normals = Normals::none;
     bool edge_ends = false;
     bool source_cells = false;
+    bool split_cells = false; ///< as PackOptions::split_cells
 };
 
 /// What set() had to do.
@@ -91,11 +92,15 @@ public:
     ~Contour();
 
     /// Another grid, field or time step. What is the same as before is found out: by the memory and owner of arrays,
-    /// else by their contents, and is not packed again.
+    /// else by their contents, and is not packed again. An array that was changed in place needs another owner.
     ///
     /// Cost     at most one pass over the arrays, at the speed of memory, and what the next extract() packs
     /// Errors   as create(); the session is then as before
     Result<ContourUpdate> set(ContourInput input, const Run& run = {});
+
+    /// The same with other options. The grid is packed again where it was packed in another precision, or without the
+    /// gradients or the cells' numbers that the options need.
+    Result<ContourUpdate> set(ContourInput input, const ContourOptions& options, const Run& run = {});
 
     /// Surfaces of isovalues, in their order: all in one pass by the CPU engine, one after another on a device.
     ///

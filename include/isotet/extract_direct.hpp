@@ -15,8 +15,9 @@
 namespace isotet {
 
 struct DirectOptions {
-    ExtractOptions extract;                   ///< whatever it asks for can be had: nothing need have been kept for it
+    ExtractOptions extract = {};              ///< whatever it asks for can be had: nothing need have been kept for it
     Precision precision = Precision::float32; ///< of positions, values and weights
+    bool split_cells = false;                 ///< as PackOptions::split_cells
 };
 
 /// Surfaces from arrays, and what was seen on the way.
@@ -24,8 +25,9 @@ struct DirectExtraction {
     std::vector<Extraction> surfaces; ///< in the order of the isovalues; no clusters are selected
     FieldReport field;
     std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
-    std::uint64_t coarse_tets = 0; ///< active tets (of all isovalues) where rounding to float32 moves a corner by over
-                                   ///< a thousandth of the shortest edge
+    std::uint64_t coarse_tets =
+        0; ///< active tets and other cells (of all isovalues) where rounding to float32 moves a corner by over
+           ///< a thousandth of the shortest edge
 };
 
 /// Extracts surfaces straight from the arrays of a grid; nothing is kept. For one isovalue or a few: many are faster
@@ -35,8 +37,8 @@ struct DirectExtraction {
 /// `isovalues`      in the unit of the field; finite; in any order, with repetitions; none at all: only the report is
 ///                  made
 ///
-/// Guarantees   the vertices and triangles of extract() on the packed grid, except that a repeated tet gives its
-///              triangles again; triangles by the user's cells ascending, the tets of a cell in the order of split();
+/// Guarantees   the vertices and triangles of extract() on the packed grid, except that a repeated cell gives its
+///              triangles again; triangles by the user's cells ascending, tets of a split cell in the order of split();
 ///              vertices by the lower, then the higher point number of their edge, a vertex at a tied point before
 ///              those on edges from it; gradient normals may differ in the last place, being summed in the user's order
 ///              of the tets; the same bytes for any thread count and on every engine
@@ -46,7 +48,7 @@ struct DirectExtraction {
 /// Errors       invalid_argument when an isovalue is not finite or a field does not fit; invalid_data as survey();
 ///              out_of_memory, before memory is taken, with the amount needed and the amount free; cancelled
 /// Threads      safe from many threads on one grid
-/// Method       marching tetrahedra over all tets, welded by sorted edges; docs/inside/direct.md
+/// Method       marching cells over all cells, welded by sorted edges; docs/inside/direct.md
 ISOTET_API Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field,
                                                    std::span<const double> isovalues, const DirectOptions& options = {},
                                                    const Run& run = {});

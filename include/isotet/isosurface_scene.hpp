@@ -2,6 +2,7 @@
 // From isovalues to a Scene that a Renderer draws: a session that extracts, colours, the grid's boundary, a box around.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/draw_tets.hpp>
 #include <isotet/export.hpp>
+#include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/render.hpp>
@@ -29,16 +31,36 @@ struct ColorField {
     Association association = Association::point;
     ColorScale scale;
     bool has_no_data = false; ///< some values are NaN: a legend shows their colour
+    std::vector<std::string> classes = {}; ///< names of scale.classes; `values` are then numbers of classes
+};
+
+/// A plane: normal . p = offset.
+struct Plane {
+    std::array<double, 3> normal{0, 0, 1}; ///< of any length but 0
+    double offset = 0;
+};
+
+/// Where the normals come from that smooth surfaces are shaded by.
+enum class ShadeBy : std::uint8_t {
+    vertices, ///< vertex_normals()
+    gradient, ///< of the field
+    faces     ///< every triangle is flat
 };
 
 /// How a scene looks.
 struct SceneLook {
-    std::optional<ColorField> colors; ///< nothing: each isovalue has its own colour of `map`
+    std::optional<ColorField> colors; ///< of isosurfaces and slices; nothing: each isovalue has its own colour of `map`
+    std::optional<ColorField> boundary_colors; ///< of the grid's boundary
+    std::optional<ValueRange> isovalue_range;  ///< in which isovalues have their colours; nothing: that of those shown
+    ShadeBy shade_by = ShadeBy::vertices;
     ColorMap map = ColorMap::viridis;
-    std::optional<double> opacity;    ///< nothing: 1, and of several isosurfaces 0.35 for all but the smallest
+    std::optional<double> opacity;    ///< nothing: 1, and of several isosurfaces 0.35 for those that hide others
     double boundary_opacity = 0.1;    ///< of the grid's boundary; 0: it is not looked for
     bool outline = false;             ///< the edges of the box around
     double line_width = 1;            ///< pixels
+    bool edges = false;               ///< those of the triangles of boundary and slices
+    std::vector<Plane> clips;         ///< of isosurfaces and boundary only normal . p <= offset is shown
+    std::vector<Plane> slices;        ///< through the grid; not clipped
 };
 
 /// Where surfaces of a grid are extracted.
@@ -51,7 +73,7 @@ enum class ExtractOn : std::uint8_t {
 /// A grid to contour, and how.
 struct IsosurfaceOptions {
     Grid grid; ///< its own fields are not looked at
-    PointField field;
+    PointField field;             ///< without values: nothing is contoured, show() takes no isovalues
     std::uint64_t surfaces = 1;   ///< how many isovalues will be shown, as ContourOptions::surfaces
     std::optional<Method> method; ///< as ContourOptions::method
     ExtractOn where = ExtractOn::best;
@@ -74,14 +96,14 @@ struct ShownSurface {
 struct SceneReport {
     FieldReport field; ///< of a grid, from the first show() on
     double pack_seconds = 0, boundary_seconds = 0, upload_seconds = 0, extract_seconds = 0;
-    std::uint64_t boundary_faces = 0;
+    std::uint64_t boundary_faces = 0, slice_triangles = 0;
     bool on_device = false;                ///< the last surfaces were extracted there
     Method method = Method::direct;        ///< of the last surfaces
     DeviceWork extract_work;               ///< of the last ones on the device
     std::optional<TetStoreReport> store;   ///< with IsosurfaceOptions::draw
 };
 
-/// A scene of isosurfaces of one grid, or of one surface. Moving is cheap; it keeps the device open.
+/// A scene of isosurfaces of one grid, or of one surface. Moving is cheap; it keeps the device open, if it has one.
 ///
 /// Guarantees   the surfaces of Contour; on a device they stay there, and a field colours them where they are
 /// Threads      one call at a time
@@ -89,12 +111,14 @@ class ISOTET_API IsosurfaceScene {
 public:
     /// Finds the boundary, starts the session, and packs and uploads what all isovalues share.
     ///
-    /// Errors   as Contour::create(), Contour::prepare(), boundary_of(), TetStore::upload() and TetIndex::create()
-    static Result<IsosurfaceScene> create(const Device& device, IsosurfaceOptions options, SceneLook look,
-                                          const Run& run = {});
+    /// `device`   that will draw the scene; nothing: surfaces stay in the machine's memory, for draw()
+    /// Errors   as Contour::create(), Contour::prepare(), boundary_of(), TetStore::upload() and TetIndex::create();
+    ///          invalid_argument when options need a device and there is none
+    static Result<IsosurfaceScene> create(const std::optional<Device>& device, IsosurfaceOptions options,
+                                          SceneLook look, const Run& run = {});
 
     /// Of a surface that is there already: show() without isovalues shows it.
-    static Result<IsosurfaceScene> create(const Device& device, Surface surface, SceneLook look);
+    static Result<IsosurfaceScene> create(const std::optional<Device>& device, Surface surface, SceneLook look);
 
     IsosurfaceScene(IsosurfaceScene&&) noexcept;
     IsosurfaceScene& operator=(IsosurfaceScene&&) noexcept;
@@ -109,6 +133,9 @@ public:
     /// distance.
     enum class Fit : std::uint8_t { once, orbit };
     void fit(Camera& camera, double aspect, Fit fit = Fit::once) const;
+
+    /// Points a camera at the isosurfaces and slices that are shown now; at the grid where there are none in memory.
+    void fit_surfaces(Camera& camera, double aspect) const;
 
     const Scene& scene() const noexcept;
     const std::vector<ShownSurface>& surfaces() const noexcept;

@@ -23,13 +23,18 @@ enum class Precision : std::uint8_t { float32, float64 };
 struct PackOptions {
     Precision precision = Precision::float32;
     bool source_cells = false; ///< keep the user's cell number of every packed tet (4 bytes a tet)
+    bool split_cells = false;  ///< store pyramids, wedges and hexahedra as tets: the surface has 2 to 3 times
+                               ///< the triangles
     bool gradients = false;    ///< keep a gradient direction at every point (4 bytes a point), for gradient normals
 };
 
 /// What packing found and what it costs.
 struct PackReport {
-    std::uint64_t points = 0; ///< points that tets use
-    std::uint64_t tets = 0;   ///< stored tets: collapsed and repeated ones dropped
+    std::uint64_t points = 0;                              ///< points that tets use
+    std::uint64_t tets = 0;                                ///< stored tets: collapsed and repeated ones dropped
+    std::uint64_t pyramids = 0, wedges = 0, hexahedra = 0; ///< stored as they are
+    std::uint64_t split_cells = 0; ///< cells with repeated corners, stored as tets beside native cells: the surface may
+                                   ///< be open at their quadrilateral faces
     std::uint64_t clusters = 0;
     std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
     std::uint64_t collapsed_tets = 0, repeated_tets = 0, negative_tets = 0, inverted_tets = 0, flat_tets = 0;

@@ -14,7 +14,7 @@ namespace isotet {
 /// Writes a PNG file, with an alpha channel only where the picture is not opaque. Written beside and renamed, as all
 /// files.
 ///
-/// Guarantees   the same bytes for the same picture (and version of libpng and zlib)
+/// Guarantees   the same bytes for the same picture (and version of libdeflate)
 /// Errors       invalid_argument when the ending is not .png, or the picture has no pixels; file, cannot_write as
 ///              write_surface()
 ISOTET_API Result<std::uint64_t> write_picture(const Picture& picture, const std::string& path);

@@ -42,14 +42,15 @@ public:
     /// Looks at up to `max_cells` cells, spread evenly over their numbers: at all cells of a grid that has no more.
     /// Broken cells are passed over: reading and packing report them.
     ///
+    /// `split_cells`   as PackOptions::split_cells
     /// Cost     a few milliseconds
     /// Errors   invalid_argument when the field does not fit the grid; invalid_data when the arrays of the grid do not
     ///          fit together; out_of_memory
-    static Result<FieldSample> create(const Grid& grid, const PointField& field);
+    static Result<FieldSample> create(const Grid& grid, const PointField& field, bool split_cells = false);
 
     std::uint64_t points() const noexcept { return points_; } ///< of the grid
-    std::uint64_t tets() const noexcept { return tets_; }     ///< of the grid, estimated where cells are not tets;
-    ///< exact where they are
+    /// Of the grid; exact where all cells are tets. Elsewhere as many as take the time and memory that its cells take.
+    std::uint64_t tets() const noexcept { return tets_; }
     double lower() const noexcept { return lower_; } ///< of the values seen; lower > upper: none is finite
     double upper() const noexcept { return upper_; }
 
@@ -59,10 +60,10 @@ public:
 
 private:
     struct Range {
-        double lower, upper;
+        double lower, upper, triangles;
     };
-    std::vector<Range> tets_seen_; ///< with data at all corners and different values
-    double tets_each_ = 0;         ///< of the grid, for each one seen
+    std::vector<Range> cells_seen_; ///< with data at all corners and different values
+    double cells_each_ = 0;         ///< of the grid, for each one looked at
     std::uint64_t points_ = 0, tets_ = 0;
     double lower_ = 0, upper_ = -1;
 };

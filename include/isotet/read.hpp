@@ -21,7 +21,7 @@ struct Format {
     std::string title;                   ///< "VTK XML unstructured grid"
     std::vector<std::string> extensions; ///< ".vtu"; lower case
     bool reads_grid = false, writes_grid = false, reads_surface = false, writes_surface = false;
-    bool needs_vtk = false; ///< read by VTK's reader, in a child process
+    bool needs_vtk = false; ///< read by the program isotet-reader (VTK), in a child process
 };
 ISOTET_API std::vector<Format> formats();
 
@@ -38,20 +38,21 @@ struct FileInfo {
     std::string format;
     std::vector<FieldInfo> fields;
     std::vector<double> times; ///< empty where the file knows no time; ascending as stored
+    std::vector<std::string>
+        files; ///< those that were opened to find this out, or to read: the file and its companions
 };
 
 struct ReadOptions {
     std::string format;                                                ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
-    std::optional<std::size_t> step;          ///< index into FileInfo::times; nothing: the first
-    bool merge_pieces_by_coordinates = false; ///< pieces without global ids: join points with exactly equal
-                                              ///< coordinates
-    bool allow_outside = false;               ///< index files may name files outside their own folder
-    std::string displace;                     ///< a point vector field to add to the coordinates
-    std::string reader_program;               ///< the program that runs VTK's readers ("isotet"); empty: this one
-                                              ///< if it calls run_as_reader(), else the one beside the library or
-                                              ///< this program, in PATH, or where isotet was to be installed
-    std::uint64_t memory_limit = 0;           ///< bytes of address space of a reader process; 0: by free memory
+    std::optional<std::size_t> step;         ///< index into FileInfo::times; nothing: the first
+    bool merge_pieces_by_coordinates = true; ///< pieces without global ids: join points of different pieces with
+                                             ///< exactly equal coordinates, so that surfaces have no seams there
+    bool allow_outside = false;              ///< index files may name files outside their own folder
+    std::string displace;                    ///< a point vector field to add to the coordinates
+    std::string reader_program;              ///< the program isotet-reader; empty: the one beside the library or this
+                                             ///< program, in PATH, or where isotet was to be installed
+    std::uint64_t memory_limit = 0;          ///< bytes of address space of a reader process; 0: by free memory
     std::chrono::seconds time_limit{3600};
 };
 
@@ -75,6 +76,14 @@ ISOTET_API Result<FileInfo> inspect(const std::string& path, const ReadOptions& 
 ///          unknown field, step or format; out_of_memory; system; cancelled
 ISOTET_API Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
+/// How far the system confines isotet-reader, which reads formats through VTK (docs/security.md).
+struct ReaderConfinement {
+    bool files =
+        false; ///< Landlock: it opens nothing but files below the folder of the grid, and those for reading only
+    bool calls = false; ///< seccomp: no network, no other programs, no file made, changed or removed
+};
+ISOTET_API ReaderConfinement reader_confinement();
+
 struct ReadSurfaceOptions {
     std::string format; ///< empty: by content, then by name
 };
@@ -89,9 +98,5 @@ struct SurfaceFile {
 /// vertices: weld it.
 ISOTET_API Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptions& options = {},
                                             const Run& run = {});
-
-/// What a program that serves as reader_program must call first in main(): does the reading and returns the exit status
-/// when it was started as a reader process, nothing otherwise.
-ISOTET_API std::optional<int> run_as_reader(int argc, char** argv);
 
 } // namespace isotet

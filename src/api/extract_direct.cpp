@@ -37,8 +37,10 @@ Result<void> check_fields(const Grid& grid, const PointField& field, const Extra
 
 template <class Real>
 Result<DirectExtraction> extract_as(const ops::DirectInput& input, std::span<const double> isovalues,
-                                    const ExtractOptions& options, bool reference, const Progress& progress) {
+                                    const ExtractOptions& options, bool split_cells, bool reference,
+                                    const Progress& progress) {
     ops::DirectRequest request;
+    request.split_cells = split_cells;
     request.isovalues = isovalues;
     request.ties = options.ties;
     request.ends = options.edge_ends || !options.point_fields.empty();
@@ -79,8 +81,8 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
         if (auto ok = check_fields(grid, field, options.extract); !ok) return ok.error();
         const ops::DirectInput input{grid, *cells, field, options.extract.point_fields};
         return options.precision == Precision::float32
-                   ? extract_as<float>(input, isovalues, options.extract, reference, progress)
-                   : extract_as<double>(input, isovalues, options.extract, reference, progress);
+                   ? extract_as<float>(input, isovalues, options.extract, options.split_cells, reference, progress)
+                   : extract_as<double>(input, isovalues, options.extract, options.split_cells, reference, progress);
     });
 }
 

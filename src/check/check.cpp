@@ -182,7 +182,7 @@ private:
             if (const auto set = grid_points<2>({edge.low, edge.high})) sets.push_back(*set);
         for (const Repeat& repeat : lists_.duplicate_list)
             if (const auto set = grid_points<3>(mesh_.corners(repeat.triangle))) sets.push_back(*set);
-        const auto faces = GridFaces::find(*options_.grid, options_.field, sets, progress_);
+        const auto faces = GridFaces::find(*options_.grid, options_.field, options_.split_cells, sets, progress_);
         if (!faces) return faces.error();
 
         for (const EdgeUse& edge : lists_.unequal_edges) {
@@ -192,7 +192,7 @@ private:
         }
         for (const Repeat& repeat : lists_.duplicate_list) {
             const auto set = grid_points<3>(mesh_.corners(repeat.triangle));
-            if (set && faces->has_two_tets_on_one_side(*set)) continue;
+            if (set && faces->has_two_cells_on_one_side(*set)) continue;
             if (report_.blamed_duplicates++ < most_) find_duplicate(repeat);
         }
         return {};

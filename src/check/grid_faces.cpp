@@ -2,35 +2,58 @@
 #include "check/grid_faces.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
+#include <span>
+#include <tuple>
 
 #include <fmt/core.h>
 #include <tbb/parallel_sort.h>
 
 #include "core/cells.hpp"
+#include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
-#include "core/faces.hpp"
+#include "core/tet_survey.hpp"
 
 namespace isotet::checking {
 
 namespace {
 
+using core::CellKind;
 using core::Tet;
+using core::WholeCell;
 
-/// A tet as stored, and where it comes from.
-struct FoundTet {
-    Tet tet;
-    core::TetId id;
+/// A cell as stored, and where it comes from.
+struct FoundCell {
+    WholeCell cell;
+    std::uint64_t id;
 };
 
-/// The four corners, ascending; a canonical tet has its two lowest in front.
-Tet sorted_corners(const Tet& t) { return {t[0], t[1], std::min(t[2], t[3]), std::max(t[2], t[3])}; }
+std::span<const std::uint64_t> corners_of(const WholeCell& cell) {
+    return {cell.corners.data(), core::corner_count(cell.kind)};
+}
+
+WholeCell whole_tet(const Tet& t) { return {CellKind::tetrahedron, {t[0], t[1], t[2], t[3]}}; }
+
+/// All edges, ascending; behind the last the highest numbers.
+std::array<std::array<std::uint64_t, 2>, 12> sorted_edges(const WholeCell& cell) {
+    std::array<std::array<std::uint64_t, 2>, 12> out;
+    constexpr std::uint64_t highest = std::numeric_limits<std::uint64_t>::max();
+    out.fill({highest, highest});
+    std::size_t count = 0;
+    for (const auto& [k, l] : core::edges_of(cell.kind)) {
+        const std::uint64_t a = cell.corners[k], b = cell.corners[l];
+        out[count++] = {std::min(a, b), std::max(a, b)};
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
 
 /// The points that are asked about, and how many of them a face needs to matter.
 struct Marks {
     std::vector<std::uint8_t> marked;
-    int least = 3;
+    int least = 4;
 
     Marks(std::uint64_t points, const std::vector<PointSet>& sets) : marked(points) {
         for (const PointSet& set : sets) {
@@ -40,8 +63,10 @@ struct Marks {
     }
     template <class Points>
     bool enough(const Points& points) const {
+        // A point may stand there twice.
         int count = 0;
-        for (const std::uint64_t point : points) count += marked[point];
+        for (auto at = points.begin(); at != points.end(); ++at)
+            count += marked[*at] && std::find(points.begin(), at, *at) == at;
         return count >= least;
     }
 };
@@ -54,26 +79,61 @@ std::vector<std::uint8_t> no_data_of(const PointField& field) {
     });
 }
 
-/// The valid tets with enough marked corners, as stored; adds to `counts`.
-std::vector<FoundTet> tets_near(const core::CellReader& cells, const core::Orienter& orienter, const Marks& marks,
-                                const std::vector<std::uint8_t>& no_data, core::Orienter::Counts& counts,
-                                const Progress& progress) {
+/// What is stored of cells, one by one.
+class StoredCells {
+public:
+    StoredCells(const Grid& grid, const core::CellReader& cells, bool split_cells, bool mostly_negative)
+        : cells_(cells), split_(split_cells), points_(grid.points), orienter_(grid.points, mostly_negative) {}
+
+    /// Calls f(stored) for all of a cell for which f.wants(corners as the file has them).
+    template <class Wants, class F>
+    void of(std::size_t cell, const Wants& wants, core::Orienter::Counts& counts, const F& f) const {
+        if (!core::is_contoured(cells_.type(cell))) return;
+        const auto add_tet = [&](const Tet& tet) {
+            if (wants(std::span<const std::uint64_t>(tet)))
+                f(whole_tet(orienter_.stored(cells_.type(cell), cells_.tets(cell), tet, counts)));
+        };
+        if (split_ || cells_.only_tets()) {
+            for (const Tet& tet : cells_.tets(cell)) add_tet(tet);
+            return;
+        }
+        for (WholeCell part : core::native_parts(cells_.whole(cell))) {
+            const auto& v = part.corners;
+            if (part.kind == CellKind::tetrahedron) {
+                add_tet({v[0], v[1], v[2], v[3]});
+            } else if (wants(corners_of(part))) {
+                if (core::turn_of(part, [&](std::size_t k) { return points_[v[k]]; }).is_mirrored())
+                    part.corners = core::mirrored(part.kind, v);
+                f(part);
+            }
+        }
+    }
+
+private:
+    const core::CellReader& cells_;
+    const bool split_;
+    const core::PointReader points_;
+    const core::Orienter orienter_;
+};
+
+/// The valid cells with enough marked corners, as stored; adds to `counts`.
+std::vector<FoundCell> cells_near(const core::CellReader& cells, const StoredCells& stored, const Marks& marks,
+                                  const std::vector<std::uint8_t>& no_data, core::Orienter::Counts& counts,
+                                  const Progress& progress) {
     const auto has_data = [&](std::uint64_t point) { return no_data.empty() || !no_data[point]; };
-    std::vector<FoundTet> found;
+    std::vector<FoundCell> found;
     std::mutex mutex;
     core::parallel_ranges(cells.count(), 1 << 14, [&](std::size_t begin, std::size_t end) {
         if (progress.cancelled()) return;
-        std::vector<FoundTet> near;
+        std::vector<FoundCell> near;
         core::Orienter::Counts seen;
-        for (std::size_t cell = begin; cell < end; ++cell) {
-            const core::CellTets tets = cells.tets(cell);
-            for (unsigned piece = 0; piece < static_cast<unsigned>(tets.count); ++piece) {
-                const Tet& t = tets.tets[piece];
-                if (marks.enough(t) && std::ranges::all_of(t, has_data))
-                    near.push_back(
-                        {orienter.stored(cells.type(cell), tets, piece, seen), core::TetId::make(cell, piece)});
-            }
-        }
+        for (std::size_t cell = begin; cell < end; ++cell)
+            stored.of(
+                cell,
+                [&](std::span<const std::uint64_t> corners) {
+                    return marks.enough(corners) && std::ranges::all_of(corners, has_data);
+                },
+                seen, [&](const WholeCell& part) { near.push_back({part, cell}); });
         const std::lock_guard lock(mutex);
         counts.combine(seen);
         found.insert(found.end(), near.begin(), near.end());
@@ -81,17 +141,36 @@ std::vector<FoundTet> tets_near(const core::CellReader& cells, const core::Orien
     return found;
 }
 
-/// The tets alone; of those with the same four corners the first in the user's order.
-std::vector<Tet> without_repeated(std::vector<FoundTet> found) {
-    tbb::parallel_sort(found.begin(), found.end(), [](const FoundTet& a, const FoundTet& b) {
-        const Tet p = sorted_corners(a.tet), q = sorted_corners(b.tet);
-        return p != q ? p < q : a.id.value < b.id.value;
+/// Of cells with the same edges the first in the user's order.
+void drop_repeated(std::vector<FoundCell>& found) {
+    tbb::parallel_sort(found.begin(), found.end(), [](const FoundCell& a, const FoundCell& b) {
+        return std::tuple(a.cell.kind, sorted_edges(a.cell), a.id) <
+               std::tuple(b.cell.kind, sorted_edges(b.cell), b.id);
     });
-    const auto repeated = std::ranges::unique(found, {}, [](const FoundTet& t) { return sorted_corners(t.tet); });
+    const auto repeated = std::ranges::unique(found, [](const FoundCell& a, const FoundCell& b) {
+        return a.cell.kind == b.cell.kind && sorted_edges(a.cell) == sorted_edges(b.cell);
+    });
     found.erase(repeated.begin(), repeated.end());
-    std::vector<Tet> tets(found.size());
-    std::ranges::transform(found, tets.begin(), &FoundTet::tet);
-    return tets;
+}
+
+/// A face by its corners around, the lowest first, then the lower of the two beside it; a triangle ends with its third
+/// once more.
+struct OrientedFace {
+    std::array<std::uint64_t, 4> around;
+    bool forward; ///< whether the cell has it in this direction, seen from outside
+
+    friend bool operator<(const OrientedFace& a, const OrientedFace& b) { return a.around < b.around; }
+};
+
+OrientedFace oriented(const WholeCell& cell, const core::CellFace& face) {
+    std::array<std::uint64_t, 4> points{};
+    const std::size_t n = face.count;
+    for (std::size_t k = 0; k < n; ++k) points[k] = cell.corners[face.corners[k]];
+    std::rotate(points.begin(), std::min_element(points.begin(), points.begin() + n), points.begin() + n);
+    const bool forward = points[1] < points[n - 1];
+    if (!forward) std::swap(points[1], points[n - 1]);
+    if (n == 3) points[3] = points[2];
+    return {points, forward};
 }
 
 template <class T>
@@ -112,8 +191,8 @@ bool PointSet::add(std::uint64_t point) {
     return true;
 }
 
-Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, const std::vector<PointSet>& sets,
-                                  const Progress& progress) {
+Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, bool split_cells,
+                                  const std::vector<PointSet>& sets, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (field && (field->values.components() != 1 || field->values.tuples() != cells->points()))
@@ -127,39 +206,46 @@ Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, con
     const Marks marks(cells->points(), sets);
     const std::vector<std::uint8_t> no_data = field ? no_data_of(*field) : std::vector<std::uint8_t>{};
     core::Orienter::Counts counts;
-    auto tets = tets_near(*cells, core::Orienter(grid.points, false), marks, no_data, counts, progress);
+    auto near = cells_near(*cells, StoredCells(grid, *cells, split_cells, false), marks, no_data, counts, progress);
     // Only flat tets depend on how most of the grid is oriented.
     if (counts.flat > 0 && core::survey_tets(grid, *cells).mostly_negative())
-        tets = tets_near(*cells, core::Orienter(grid.points, true), marks, no_data, counts, progress);
+        near = cells_near(*cells, StoredCells(grid, *cells, split_cells, true), marks, no_data, counts, progress);
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking against the grid was cancelled"};
 
-    for (const core::StoredFace& face : core::faces_of(without_repeated(std::move(tets)))) {
-        const Face& p = face.points;
-        if (!marks.enough(p)) continue;
-        if (face.forward > 1 || face.backward > 1) faces.doubled_.push_back(p);
-        if (face.forward == face.backward) continue;
-        faces.boundary_.push_back(p);
-        faces.boundary_edges_.insert(faces.boundary_edges_.end(), {{p[0], p[1]}, {p[0], p[2]}, {p[1], p[2]}});
-        faces.boundary_points_.insert(faces.boundary_points_.end(), p.begin(), p.end());
+    drop_repeated(near);
+    std::vector<OrientedFace> all;
+    for (const FoundCell& found : near)
+        for (const core::CellFace& face : core::shape_of(found.cell.kind).faces())
+            all.push_back(oriented(found.cell, face));
+    tbb::parallel_sort(all.begin(), all.end());
+    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+        std::size_t forward = 0;
+        for (end = begin; end < all.size() && all[end].around == all[begin].around; ++end) forward += all[end].forward;
+        const std::size_t backward = end - begin - forward;
+        if (!marks.enough(all[begin].around)) continue;
+        if (forward > 1 || backward > 1) faces.doubled_.add(all[begin].around);
+        if (forward != backward) faces.boundary_.add(all[begin].around);
     }
-    sort_unique(faces.boundary_edges_);
-    sort_unique(faces.boundary_points_);
+    faces.doubled_.sort();
+    faces.boundary_.sort();
     return faces;
 }
 
-bool GridFaces::in_boundary_face(const PointSet& set) const {
-    const std::uint64_t* p = set.begin();
-    switch (set.size()) {
-    case 1: return std::ranges::binary_search(boundary_points_, p[0]);
-    case 2: return std::ranges::binary_search(boundary_edges_, std::array{p[0], p[1]});
-    case 3: return std::ranges::binary_search(boundary_, Face{p[0], p[1], p[2]});
-    default: return false;
+void SetsOfFaces::add(const std::array<std::uint64_t, 4>& around) {
+    std::array<std::uint64_t, 4> points = around;
+    std::sort(points.begin(), points.end());
+    const auto end = std::unique(points.begin(), points.end());
+    const auto n = static_cast<std::size_t>(end - points.begin());
+    for (unsigned chosen = 1; chosen < 1u << n; ++chosen) {
+        PointSet set;
+        for (std::size_t k = 0; k < n; ++k)
+            if (chosen >> k & 1) set.add(points[k]);
+        sets_.push_back(set);
     }
 }
 
-bool GridFaces::has_two_tets_on_one_side(const PointSet& set) const {
-    const std::uint64_t* p = set.begin();
-    return set.size() == 3 && std::ranges::binary_search(doubled_, Face{p[0], p[1], p[2]});
-}
+void SetsOfFaces::sort() { sort_unique(sets_); }
+
+bool SetsOfFaces::hold(const PointSet& set) const { return std::ranges::binary_search(sets_, set); }
 
 } // namespace isotet::checking

@@ -23,7 +23,9 @@ public:
     bool expired() const noexcept { return owner_.expired(); }
     bool is_empty() const noexcept { return tuples_ == 0; }
     bool is(const Array& array) const noexcept {
-        return !expired() && data_ == array.data() && tuples_ == array.tuples() && components_ == array.components() &&
+        const std::weak_ptr<const void> owner = array.owner();
+        const bool same_owner = !owner_.owner_before(owner) && !owner.owner_before(owner_);
+        return same_owner && !expired() && data_ == array.data() && tuples_ == array.tuples() && components_ == array.components() &&
                type_ == array.type();
     }
 

@@ -17,6 +17,7 @@
 #include "core/memory.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
+#include "core/stored_cells.hpp"
 
 namespace isotet {
 
@@ -68,9 +69,9 @@ using PackedFace = Face<std::uint64_t>;
 /// The faces of a cluster that its own tets do not cancel.
 void add_faces(const Packed& packed, std::size_t cluster, std::vector<LocalFace>& local, std::vector<PackedFace>& out) {
     local.clear();
-    for (const StoredTet& tet : packed.cluster_tets(cluster))
-        for (const auto& f : tet_faces)
-            local.push_back(LocalFace::make({tet.corners[f[0]], tet.corners[f[1]], tet.corners[f[2]]}));
+    for_tets(packed, cluster, [&](const std::array<std::uint8_t, 4>& corners, std::size_t) {
+        for (const auto& f : tet_faces) local.push_back(LocalFace::make({corners[f[0]], corners[f[1]], corners[f[2]]}));
+    });
     std::sort(local.begin(), local.end());
     cancel(local);
     std::array<std::uint64_t, max_cluster_points> points{};
@@ -133,6 +134,13 @@ Array positions_of(const Array& all, const std::vector<std::uint64_t>& points) {
     return all.type() == ScalarType::float32 ? gathered(float{}) : gathered(double{});
 }
 
+/// Each point as both ends of an edge: edge_ends of vertices that are points.
+Array both_ends(const std::vector<std::uint64_t>& points) {
+    std::vector<std::int64_t> ends(2 * points.size());
+    parallel_each(ends.size(), 1 << 14, [&](std::size_t i) { ends[i] = static_cast<std::int64_t>(points[i / 2]); });
+    return Array::own(std::move(ends), 2);
+}
+
 /// `Source`   a packed grid, or the points of the user's
 /// `Face`     with three points, ascending, and is_mirrored()
 template <class Source, class Face>
@@ -155,6 +163,7 @@ Surface surface_of(const Source& source, const std::vector<Face>& faces) {
     Surface surface;
     surface.positions = positions_of(source, points);
     surface.triangles = Array::own(std::move(triangles), 3);
+    if constexpr (std::is_same_v<Source, Array>) surface.edge_ends = both_ends(points);
     return surface;
 }
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -27,99 +28,37 @@ namespace {
 
 constexpr std::uint8_t tetrahedron = 10, voxel = 11, hexahedron = 12, wedge = 13, pyramid = 14;
 
-/// True when the diagonal of the quadrilateral a b c d starts in a (or c): when one of these is the lowest.
-bool diagonal_from_first(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
-    return std::min(a, c) <= std::min(b, d);
-}
-
-/// Two tets between the quadrilateral a b c d and a point.
-void add_quad(CellTets& out, std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d, std::uint64_t apex) {
-    if (diagonal_from_first(a, b, c, d)) {
-        out.add(a, b, c, apex);
-        out.add(a, c, d, apex);
-    } else {
-        out.add(a, b, d, apex);
-        out.add(b, c, d, apex);
+constexpr std::optional<CellKind> kind_of(std::uint8_t vtk_type) {
+    switch (vtk_type) {
+    case tetrahedron: return CellKind::tetrahedron;
+    case voxel:
+    case hexahedron: return CellKind::hexahedron;
+    case wedge: return CellKind::wedge;
+    case pyramid: return CellKind::pyramid;
+    default: return std::nullopt;
     }
 }
-
-/// Rotations of a hexahedron that bring corner k to position 0 (Dompierre et al. 1999, table 1).
-constexpr int hexahedron_rotations[8][8] = {
-    {0, 1, 2, 3, 4, 5, 6, 7}, {1, 2, 3, 0, 5, 6, 7, 4}, {2, 3, 0, 1, 6, 7, 4, 5}, {3, 0, 1, 2, 7, 4, 5, 6},
-    {4, 7, 6, 5, 0, 3, 2, 1}, {5, 4, 7, 6, 1, 0, 3, 2}, {6, 5, 4, 7, 2, 1, 0, 3}, {7, 6, 5, 4, 3, 2, 1, 0}};
-
-// The lowest corner sees the three faces that do not touch it; each of their halves makes a tet with it. If no diagonal
-// of these faces ends in the opposite corner 6, that corner is cut off and five tets are enough.
-void split_hexahedron(const std::uint64_t* corners, CellTets& out) {
-    const auto lowest = std::min_element(corners, corners + 8) - corners;
-    std::uint64_t v[8];
-    for (int i = 0; i < 8; ++i) v[i] = corners[hexahedron_rotations[lowest][i]];
-    const bool right = diagonal_from_first(v[1], v[5], v[6], v[2]); // 1-6
-    const bool back = diagonal_from_first(v[3], v[2], v[6], v[7]);  // 3-6
-    const bool top = diagonal_from_first(v[4], v[7], v[6], v[5]);   // 4-6
-    if (!right && !back && !top) {
-        out.add(v[0], v[1], v[2], v[5]);
-        out.add(v[0], v[2], v[3], v[7]);
-        out.add(v[0], v[5], v[7], v[4]);
-        out.add(v[2], v[7], v[5], v[6]);
-        out.add(v[0], v[2], v[7], v[5]);
-        return;
-    }
-    // Faces counter-clockwise seen from corner 0, so that every tet is as upright as the cell.
-    add_quad(out, v[1], v[5], v[6], v[2], v[0]);
-    add_quad(out, v[3], v[2], v[6], v[7], v[0]);
-    add_quad(out, v[4], v[7], v[6], v[5], v[0]);
-}
-
-void split_wedge(const std::uint64_t* corners, CellTets& out) {
-    static constexpr int rotations[6][6] = {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2, 0, 1, 5, 3, 4},
-                                            {3, 5, 4, 0, 2, 1}, {4, 3, 5, 1, 0, 2}, {5, 4, 3, 2, 1, 0}};
-    const auto lowest = std::min_element(corners, corners + 6) - corners;
-    std::uint64_t v[6];
-    for (int i = 0; i < 6; ++i) v[i] = corners[rotations[lowest][i]];
-    out.add(v[3], v[4], v[5], v[0]); // VTK's wedges have their first triangle outward: so these are upright
-    add_quad(out, v[1], v[2], v[5], v[4], v[0]);
-}
-
-void split_pyramid(const std::uint64_t* v, CellTets& out) { add_quad(out, v[0], v[1], v[2], v[3], v[4]); }
 
 } // namespace
 
 int corners_of(std::uint8_t vtk_type) {
-    switch (vtk_type) {
-    case tetrahedron: return 4;
-    case voxel:
-    case hexahedron: return 8;
-    case wedge: return 6;
-    case pyramid: return 5;
-    default: return 0;
-    }
+    const auto kind = kind_of(vtk_type);
+    return kind ? static_cast<int>(corner_count(*kind)) : 0;
 }
 
-bool is_contoured(std::uint8_t vtk_type) { return corners_of(vtk_type) != 0; }
+bool is_contoured(std::uint8_t vtk_type) { return kind_of(vtk_type).has_value(); }
+
+WholeCell CellReader::whole(std::size_t cell) const {
+    WholeCell out{*kind_of(type(cell)), {}};
+    const std::uint64_t start = first(cell);
+    const bool is_voxel = type(cell) == voxel; // 0 1 3 2 4 5 7 6
+    for (std::uint64_t i = 0; i < corner_count(out.kind); ++i)
+        out.corners[i] = corner(start + (is_voxel ? i ^ (i >> 1 & 1) : i));
+    return out;
+}
 
 void CellReader::split(std::size_t cell, CellTets& out) const {
-    const std::uint64_t start = first(cell);
-    std::uint64_t v[8];
-    switch (type(cell)) {
-    case voxel:
-        for (std::uint64_t i = 0; i < 8; ++i) v[i] = corner(start + (i ^ (i >> 1 & 1))); // 0 1 3 2 4 5 7 6
-        split_hexahedron(v, out);
-        break;
-    case hexahedron:
-        for (std::uint64_t i = 0; i < 8; ++i) v[i] = corner(start + i);
-        split_hexahedron(v, out);
-        break;
-    case wedge:
-        for (std::uint64_t i = 0; i < 6; ++i) v[i] = corner(start + i);
-        split_wedge(v, out);
-        break;
-    case pyramid:
-        for (std::uint64_t i = 0; i < 5; ++i) v[i] = corner(start + i);
-        split_pyramid(v, out);
-        break;
-    default: break;
-    }
+    if (is_contoured(type(cell))) out = split_cell(whole(cell));
 }
 
 Result<CellReader> CellReader::open(const Grid& grid) {

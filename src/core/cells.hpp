@@ -10,24 +10,9 @@
 #include <isotet/export.hpp>
 #include <isotet/grid.hpp>
 
+#include "core/split.hpp"
+
 namespace isotet::core {
-
-/// Four point numbers.
-using Tet = std::array<std::uint64_t, 4>;
-
-/// The tets of one cell: at most six. Tets with a repeated corner are left out and counted.
-struct CellTets {
-    std::array<Tet, 6> tets;
-    int count = 0;
-    int collapsed = 0;
-
-    void add(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
-        if (a == b || a == c || a == d || b == c || b == d || c == d) ++collapsed;
-        else tets[static_cast<std::size_t>(count++)] = {a, b, c, d};
-    }
-    const Tet* begin() const { return tets.data(); }
-    const Tet* end() const { return tets.data() + count; }
-};
 
 /// True for the types that are contoured.
 ISOTET_API bool is_contoured(std::uint8_t vtk_type);
@@ -94,6 +79,9 @@ public:
         }
         return out;
     }
+
+    /// A cell of a contoured type as it is, voxels as hexahedra.
+    WholeCell whole(std::size_t cell) const;
 
     /// Calls f(cell, its tets) for the cells [begin, end). What tets() gives, faster where all cells are tetrahedra.
     template <class F>

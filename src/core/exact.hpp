@@ -37,6 +37,11 @@ inline int orientation_sign(const Point& a, const Point& b, const Point& c, cons
 bool is_collinear(const Point& a, const Point& b, const Point& c);
 
 /// Six times the volume of a tet, rounded: positive when it is upright.
+inline double squared_distance(const Point& a, const Point& b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
 inline double six_volumes(const Point& a, const Point& b, const Point& c, const Point& d) {
     const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
     const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];

@@ -9,6 +9,7 @@
 #include "core/set_field.hpp"
 #include "core/parallel.hpp"
 #include "core/storage.hpp"
+#include "core/stored_cells.hpp"
 #include "core/tet_gradient.hpp"
 
 namespace isotet::core {
@@ -74,24 +75,27 @@ private:
         Real values[max_cluster_points], positions[3 * max_cluster_points];
         load_values(packed_, cluster, values);
         load_positions(packed_, cluster, positions);
+        const bool others = packed_.headers[cluster].others() != 0;
         const auto wanted = [&](std::uint8_t corner) {
             return std::size_t{corner} - first < count;
         }; // wraps below first
-        for (const StoredTet& tet : packed_.cluster_tets(cluster)) {
-            const auto& v = tet.corners;
-            if (!wanted(v[0]) && !wanted(v[1]) && !wanted(v[2]) && !wanted(v[3])) continue;
-            if (is_nan(values[v[0]]) || is_nan(values[v[1]]) || is_nan(values[v[2]]) || is_nan(values[v[3]])) continue;
+        for_tets(packed_, cluster, [&](const std::array<std::uint8_t, 4>& v, std::size_t) {
+            if (!wanted(v[0]) && !wanted(v[1]) && !wanted(v[2]) && !wanted(v[3])) return;
+            if (is_nan(values[v[0]]) || is_nan(values[v[1]]) || is_nan(values[v[2]]) || is_nan(values[v[3]])) return;
             std::array<Point, 4> corners;
             std::array<double, 4> corner_values;
             for (std::size_t k = 0; k < 4; ++k) {
                 for (std::size_t axis = 0; axis < 3; ++axis) corners[k][axis] = positions[3 * v[k] + axis];
                 corner_values[k] = values[v[k]];
             }
-            const Point gradient = six_volumes_times_gradient(corners, corner_values);
+            Point gradient = six_volumes_times_gradient(corners, corner_values);
+            // A piece of a twisted cell may be inside out.
+            if (others && six_volumes(corners[0], corners[1], corners[2], corners[3]) < 0)
+                for (double& x : gradient) x = -x;
             for (const std::uint8_t corner : v)
                 if (wanted(corner))
                     for (std::size_t axis = 0; axis < 3; ++axis) sums[corner - first][axis] += gradient[axis];
-        }
+        });
     }
 
     Packed& packed_;

@@ -7,64 +7,11 @@
 #include <limits>
 #include <utility>
 
+#include "core/point_numbers.hpp"
+
 namespace isotet::core {
 
 namespace {
-
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-/// Numbers the points of a block 0, 1, 2, ... in the order in which they are first seen. The tets of a block come by
-/// their lowest rank, so most of its points are within a short stretch of ranks, and have their numbers in a table; a
-/// hash table has those of the others.
-class PointNumbers {
-public:
-    explicit PointNumbers(std::uint32_t lowest) : lowest_(lowest), near_(1 << 16) {
-        std::fill(near_.begin(), near_.end(), none);
-        rehash(1 << 12);
-    }
-
-    std::uint32_t number(std::uint32_t point) {
-        if (const std::uint32_t at = point - lowest_; at < near_.size()) {
-            if (near_[at] == none) near_[at] = add(point);
-            return near_[at];
-        }
-        std::size_t slot = hash(point);
-        for (; slots_[slot].number != none; slot = (slot + 1) & mask_)
-            if (slots_[slot].point == point) return slots_[slot].number;
-        slots_[slot] = {point, add(point)};
-        const std::uint32_t number = slots_[slot].number;
-        if (2 * ++far_ > slots_.size()) rehash(2 * slots_.size());
-        return number;
-    }
-    const std::vector<std::uint32_t>& points() const { return points_; }
-
-private:
-    struct Slot {
-        std::uint32_t point, number;
-    };
-
-    std::uint32_t add(std::uint32_t point) {
-        points_.push_back(point);
-        return static_cast<std::uint32_t>(points_.size() - 1);
-    }
-    std::size_t hash(std::uint32_t point) const { return (point * 0x9e3779b97f4a7c15u >> 32) & mask_; }
-    void rehash(std::size_t size) {
-        const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(size, {0, none}));
-        mask_ = size - 1;
-        for (const Slot& taken : old) {
-            if (taken.number == none) continue;
-            std::size_t slot = hash(taken.point);
-            while (slots_[slot].number != none) slot = (slot + 1) & mask_;
-            slots_[slot] = taken;
-        }
-    }
-
-    std::uint32_t lowest_;
-    Buffer<std::uint32_t> near_; ///< by rank from the lowest on: the number, or none
-    std::vector<Slot> slots_;
-    std::vector<std::uint32_t> points_;
-    std::size_t mask_ = 0, far_ = 0;
-};
 
 /// Points that would complete a tet, and how much each is wanted. Looking for the best one is what growth does most:
 /// the scores stand side by side in 16 bits, in loops without exits that compilers turn into SIMD, eight at a time and
@@ -93,13 +40,13 @@ public:
         return last;
     }
 
-    /// The first of those with the highest score, or none.
+    /// The first of those with the highest score, or no_number.
     std::uint32_t best() const {
         std::int16_t highest = 0;
         const std::size_t n =
             (points_.size() + piece - 1) / piece * piece; // behind the last candidate all scores are 0
         for (std::size_t i = 0; i < n; ++i) highest = std::max(highest, scores_[i]);
-        if (highest == 0) return none;
+        if (highest == 0) return no_number;
         std::size_t begin = 0;
         while (!holds(begin, highest)) begin += piece;
         while (scores_[begin] != highest) ++begin;
@@ -125,7 +72,7 @@ private:
     std::vector<std::int16_t> scores_;
 };
 
-/// Sorts different numbers below tets_per_block.
+/// Sorts different numbers below cells_per_block.
 class TetSorter {
 public:
     void add(std::uint32_t tet) {
@@ -145,8 +92,8 @@ public:
     }
 
 private:
-    std::array<std::uint64_t, tets_per_block / 64> words_{};
-    std::array<std::uint64_t, tets_per_block / 4096> full_words_{}; ///< which words are not 0
+    std::array<std::uint64_t, cells_per_block / 64> words_{};
+    std::array<std::uint64_t, cells_per_block / 4096> full_words_{}; ///< which words are not 0
 };
 
 /// How far a tet is from completion, in one word that a joining corner changes without looking at the others: how many
@@ -167,7 +114,7 @@ public:
 
 private:
     static constexpr std::uint32_t one_inside = 1u << 24, taken_word = ~0u;
-    static_assert(4 * tets_per_block <= one_inside, "all corners may be different points");
+    static_assert(4 * cells_per_block <= one_inside, "all corners may be different points");
 
     explicit TetState(std::uint32_t word) : word_(word) {}
 
@@ -204,7 +151,7 @@ public:
     BlockClusters run() {
         BlockClusters out;
         out.order = Buffer<std::uint32_t>(corners_.size());
-        out.tets = Buffer<StoredTet>(corners_.size());
+        out.words = Buffer<StoredTet>(corners_.size());
         out.points.reserve(corners_.size() / 2);
         for (std::size_t first = 0; first < corners_.size();) {
             grow_one();
@@ -216,15 +163,15 @@ public:
 private:
     struct Vertex {
         std::uint32_t first = 0, listed = 0; ///< its tets: `listed` from tets_of_[first] on
-        std::uint32_t left = 0;         ///< of these, in no cluster; behind by those of taken_ that are not settled
-        std::uint32_t candidate = none; ///< position among the candidates, or none
+        std::uint32_t left = 0; ///< of these, in no cluster; behind by those of taken_ that are not settled
+        std::uint32_t candidate = no_number; ///< position among the candidates, or no_number
     };
 
     void grow_one() {
         start(last_points_);
         while (points_.size() < max_cluster_points && !full_) {
             const std::uint32_t best = candidates_.best();
-            if (best != none) {
+            if (best != no_number) {
                 drop_candidate(vertices_[best]);
                 join(best);
                 continue;
@@ -235,10 +182,10 @@ private:
     }
 
     /// Adds the points of a tet that is left: one beside the given points, else the next along the curve. False when
-    /// there is none, or no room for it.
+    /// there is no_number, or no room for it.
     bool start(const std::vector<std::uint32_t>& points) {
         std::uint32_t seed = beside(points);
-        if (seed == none) {
+        if (seed == no_number) {
             while (next_ < corners_.size() && states_[next_].is_taken()) ++next_;
             if (next_ == corners_.size()) return false;
             seed = static_cast<std::uint32_t>(next_);
@@ -249,7 +196,7 @@ private:
         if (points_.size() + missing > max_cluster_points) return false;
         for (const std::uint32_t v : corners) {
             if (places_[v] != outside || full_) continue;
-            if (vertices_[v].candidate != none) drop_candidate(vertices_[v]);
+            if (vertices_[v].candidate != no_number) drop_candidate(vertices_[v]);
             join(v);
         }
         return true;
@@ -257,11 +204,11 @@ private:
 
     /// A tet of the point with the fewest tets left among `points`; of its tets, the one along the curve first.
     std::uint32_t beside(const std::vector<std::uint32_t>& points) {
-        std::uint32_t best = none;
+        std::uint32_t best = no_number;
         for (const std::uint32_t v : points)
-            if (vertices_[v].left && (best == none || vertices_[v].left < vertices_[best].left)) best = v;
-        if (best == none) return none;
-        std::uint32_t seed = none;
+            if (vertices_[v].left && (best == no_number || vertices_[v].left < vertices_[best].left)) best = v;
+        if (best == no_number) return no_number;
+        std::uint32_t seed = no_number;
         for_tets_left(vertices_[best], [&](std::uint32_t tet) { seed = std::min(seed, tet); });
         return seed;
     }
@@ -306,13 +253,13 @@ private:
     void add_gain(std::uint32_t v) {
         Vertex& vertex = vertices_[v];
         const std::int16_t weight = weight_[std::min<std::size_t>(vertex.left, weight_.size() - 1)];
-        if (vertex.candidate == none) vertex.candidate = candidates_.add(v, weight);
+        if (vertex.candidate == no_number) vertex.candidate = candidates_.add(v, weight);
         else candidates_.raise(vertex.candidate, weight);
     }
     void drop_candidate(Vertex& vertex) {
         const std::uint32_t moved = candidates_.drop(vertex.candidate);
         vertices_[moved].candidate = vertex.candidate;
-        vertex.candidate = none;
+        vertex.candidate = no_number;
     }
 
     /// Brings `left` of the points inside up to date, which is seldom wanted before the cluster is finished.
@@ -343,8 +290,8 @@ private:
                 out.points.push_back(numbers_.points()[v]);
             }
         for (std::size_t i = 0; i < tets.size(); ++i)
-            for (std::size_t k = 0; k < 4; ++k) out.tets[first + i].corners[k] = places_[corners_[tets[i]][k]];
-        out.clusters.push_back({static_cast<std::uint32_t>(tets.size()), place});
+            for (std::size_t k = 0; k < 4; ++k) out.words[first + i].corners[k] = places_[corners_[tets[i]][k]];
+        out.clusters.push_back({{static_cast<std::uint16_t>(tets.size())}, place});
 
         // Forget what only this cluster knew. Tets that were begun but not taken start from nothing again.
         for (const std::uint32_t v : points_) {
@@ -352,7 +299,7 @@ private:
             for_tets_left(vertices_[v], [&](std::uint32_t tet) { states_[tet] = states_[tet].without(v); });
             vertices_[v].left = vertices_[v].listed;
         }
-        for (const std::uint32_t v : candidates_.points()) vertices_[v].candidate = none;
+        for (const std::uint32_t v : candidates_.points()) vertices_[v].candidate = no_number;
         candidates_.clear();
         taken_.clear();
         settled_ = 0;
@@ -396,7 +343,7 @@ private:
     std::size_t next_ = 0;
     bool full_ = false;
 };
-static_assert(tets_per_block <= 65536, "tets of points are numbers of 16 bits");
+static_assert(cells_per_block <= 65536, "tets of points are numbers of 16 bits");
 
 } // namespace
 

@@ -96,7 +96,10 @@ public:
 
     /// The stored form of one of a cell's tets; adds to `counts`.
     Tet stored(std::uint8_t cell_type, const CellTets& cell, unsigned piece, Counts& counts) const {
-        Tet t = cell.tets[piece];
+        return stored(cell_type, cell, cell.tets[piece], counts);
+    }
+    /// Of a tet to which a cell with these tets has collapsed, or of one of them.
+    Tet stored(std::uint8_t cell_type, const CellTets& cell, Tet t, Counts& counts) const {
         const bool whole = is_whole(cell_type);
         const bool mirrored = whole ? mostly_negative_ : six_volumes(points_, cell) < 0;
         if (counts.add(points_.orientation(t), whole, mirrored)) std::swap(t[2], t[3]);

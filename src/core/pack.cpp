@@ -9,9 +9,11 @@
 #include "core/carry_out.hpp"
 #include "core/field_storage.hpp"
 #include "core/memory.hpp"
+#include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
+#include "core/stored_cells.hpp"
 
 namespace isotet {
 
@@ -30,20 +32,22 @@ Result<void> check_field(const PointField& field, std::uint64_t points) {
 
 namespace {
 
-/// At the peak, while clusters are grown: the sorted tets (16 B, some pages half empty) and what is grown so far;
-/// before, as points are sorted, or later, as seams are found, about as much. And what each thread needs for the bucket
-/// and the block at hand.
-std::uint64_t packing_memory(std::uint64_t tets, const Grid& grid, bool origins) {
-    constexpr std::uint64_t a_thread = 500'000, a_block = 3'000'000;
+/// At the peak, while clusters are grown: the sorted cells (16 B a tet, 32 a native cell, some pages half empty) and what
+/// is grown so far; before, as points are sorted, or later, as seams are found, about as much. And what each thread
+/// needs for the bucket and the block at hand.
+template <class Item>
+std::uint64_t packing_memory(std::uint64_t cells, const Grid& grid, bool origins) {
+    constexpr std::uint64_t a_thread = 500'000, a_block = sizeof(Item) == sizeof(RankedTet) ? 3'000'000 : 5'000'000;
     const std::uint64_t a_point = grid.points.type() == ScalarType::float32 ? 38 : 50;
-    return (origins ? 30 : 22) * tets + a_point * grid.points.tuples() +
-           a_thread * static_cast<std::uint64_t>(threads_here()) + a_block * blocks_at_once(tets);
+    const std::uint64_t a_cell = sizeof(Item) == sizeof(RankedTet) ? 22 : 50;
+    return (origins ? a_cell + 8 : a_cell) * cells + a_point * grid.points.tuples() +
+           a_thread * static_cast<std::uint64_t>(threads_here()) + a_block * blocks_at_once(cells);
 }
 
 void measure(Packed& packed) {
     PackReport& report = packed.report;
     report.points = packed.points();
-    report.bytes = packed.headers.bytes() + packed.tets.bytes() + packed.group_ranges.bytes() + packed.links.bytes() +
+    report.bytes = packed.headers.bytes() + packed.cells.bytes() + packed.group_ranges.bytes() + packed.links.bytes() +
                    packed.has_no_data.bytes() + packed.point_ids.bytes() + packed.wide_point_ids.bytes();
     std::visit(
         [&](const auto& reals) {
@@ -70,26 +74,37 @@ void store_points(const Array& points, Packed& packed) {
     else store_positions<double>(points, packed);
 }
 
+/// From counted cells to clusters with their points numbered.
+template <class Item>
+Result<void> gather(const Grid& grid, const CellReader& cells, CellCounts counts, const PackOptions& options,
+                    Draft& draft, const Progress& progress) {
+    const bool origins = options.source_cells || !cells.only_tets();
+    if (auto ok = require_memory("packing the grid", packing_memory<Item>(counts.stored, grid, origins)); !ok)
+        return ok.error();
+    auto order = sort_cells<Item>(grid, cells, std::move(counts), options.source_cells, progress);
+    if (!order) return order.error();
+    if (auto ok = form_clusters(*std::move(order), cells.count(), draft, progress); !ok) return ok.error();
+    number_points(grid.points.tuples(), draft);
+    return {};
+}
+
 Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& field, const PackOptions& options,
                                            const Progress& progress) {
     auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto ok = check_field(field, grid.points.tuples()); !ok) return ok.error();
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
-    TetCounts counts = count_tets(*cells);
-    if (counts.tets == 0) return nothing_to_contour(grid, *cells);
-    const bool origins = options.source_cells || !cells->only_tets();
-    if (auto ok = require_memory("packing the grid", packing_memory(counts.tets, grid, origins)); !ok)
-        return ok.error();
+    const bool native = !cells->only_tets() && !options.split_cells;
+    CellCounts counts = native ? count_native_cells(*cells) : count_tets(*cells);
+    if (counts.stored == 0) return nothing_to_contour(grid, *cells);
 
     const BlockReuse reuse;
-    const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed;
-    auto order = sort_tets(grid, *cells, std::move(counts), options.source_cells, progress);
-    if (!order) return order.error();
+    const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed, split = counts.split;
     Draft draft;
     if (options.precision == Precision::float64) draft.packed.reals = Values<double>{};
-    if (auto ok = form_clusters(*std::move(order), cells->count(), draft, progress); !ok) return ok.error();
-    number_points(grid.points.tuples(), draft);
+    const auto gathered = native ? gather<RankedCell>(grid, *cells, std::move(counts), options, draft, progress)
+                                 : gather<RankedTet>(grid, *cells, std::move(counts), options, draft, progress);
+    if (!gathered) return gathered.error();
     progress("pack", 0.7);
     if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
     draft.locals.release();
@@ -101,6 +116,7 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
     packed->user_cells = cells->count();
     packed->report.cells_left_out = left_out;
     packed->report.collapsed_tets = collapsed;
+    packed->report.split_cells = split;
     store_points(grid.points, *packed);
     if (auto ok = store_field(field, *packed, progress); !ok) return ok.error();
     if (options.gradients) store_gradients(*packed);
@@ -109,7 +125,7 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
     return std::shared_ptr<const Packed>(std::move(packed));
 }
 
-/// True when no stored tet has a negative volume with these coordinates.
+/// True when no stored tet has a negative volume with these coordinates, and no other cell would be stored inside out.
 Result<void> check_moved_points(const Packed& packed, const Array& points) {
     const PointReader reader(points);
     std::atomic<std::uint64_t> outside{0}, turned{0};
@@ -125,6 +141,10 @@ Result<void> check_moved_points(const Packed& packed, const Array& points) {
             const auto& v = tet.corners;
             turned += orientation_sign(positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]) < 0;
         }
+        packed.for_other_cells(c, [&](const StoredCell& cell) {
+            const WholeCell user = user_cell(packed, locals, cell);
+            turned += turn_of(user, [&](std::size_t k) { return positions[cell.corners[k]]; }).is_mirrored();
+        });
     });
     if (outside)
         return Error{ErrorCode::invalid_data,
@@ -134,7 +154,7 @@ Result<void> check_moved_points(const Packed& packed, const Array& points) {
     if (turned)
         return Error{
             ErrorCode::invalid_data,
-            fmt::format("{} tets change their orientation with the new points, and such a grid must be packed again",
+            fmt::format("{} cells change their orientation with the new points, and such a grid must be packed again",
                         turned)};
     return {};
 }

@@ -11,9 +11,9 @@
 #include <isotet/progress.hpp>
 
 #include "core/buffer.hpp"
+#include "core/cell_order.hpp"
 #include "core/packed.hpp"
 #include "core/set_field.hpp"
-#include "core/tet_order.hpp"
 
 namespace isotet::core {
 
@@ -38,17 +38,19 @@ struct Draft {
     std::size_t local_count(std::size_t cluster) const { return first_local[cluster + 1] - first_local[cluster]; }
 };
 
-/// How many blocks of tets are grown at the same time: all threads, but at most a fifth of the blocks, or four of
-/// them, since growing takes some 45 bytes for each tet of a block beside what the tets themselves take.
-std::size_t blocks_at_once(std::uint64_t tets);
+/// How many blocks of cells are grown at the same time: all threads, but at most a fifth of the blocks, or four of
+/// them, since growing takes some 45 bytes for each tet of a block, and 70 for each other cell, beside what the cells
+/// themselves take.
+std::size_t blocks_at_once(std::uint64_t cells);
 
-/// Grows clusters block by block. Fills headers (tets, first_group), tets (corners as positions among the cluster's
+/// Grows clusters block by block. Fills headers (cells, first_group), cells (corners as positions among the cluster's
 /// points), first_local and locals; and cell ids when the origins are there.
-/// `cells`   how many the user's grid has
-Result<void> form_clusters(TetOrder order, std::uint64_t cells, Draft& draft, const Progress& progress);
+/// `user_cells`   how many the user's grid has
+template <class Item>
+Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draft& draft, const Progress& progress);
 
 /// Gives every point its owner and packed number, and every cluster its local order. Fills headers (own and ghost
-/// points, first_point) and point ids; turns locals into PointRefs and corners of tets into local indices.
+/// points, first_point) and point ids; turns locals into PointRefs and corners of cells into local indices.
 void number_points(std::uint64_t user_points, Draft& draft);
 
 /// Finds the edges that several clusters hold. Fills the rest of the headers, and links.

@@ -54,7 +54,7 @@ void number_points(std::uint64_t user_points, Draft& draft) {
     if (wide) packed.wide_point_ids = SharedBuffer<std::uint64_t>(points);
     else packed.point_ids = SharedBuffer<std::uint32_t>(points);
 
-    // Local points in packed order, and the tets' corners with them.
+    // Local points in packed order, and the cells' corners with them.
     parallel_each(draft.clusters(), clusters_per_task, [&](std::size_t c) {
         std::uint64_t ghost[max_cluster_points]; // by PointRef; the lowest byte is the place so far
         std::uint8_t after[max_cluster_points];
@@ -81,10 +81,9 @@ void number_points(std::uint64_t user_points, Draft& draft) {
         }
         for (std::size_t k = 0; k < header.own_points; ++k) // own ones last: no owner is a later cluster
             list[ghost_count + k] = PointRef::make(static_cast<std::uint32_t>(c), static_cast<std::uint8_t>(k)).value;
-        StoredTet* tets = packed.tets.data() + group_size * std::size_t{header.first_group};
-        const std::size_t padded = (header.tets + group_size - 1) / group_size * group_size;
-        for (std::size_t i = 0; i < padded; ++i)
-            for (std::uint8_t& corner : tets[i].corners) corner = after[corner];
+        StoredTet* const words = packed.cells.data() + packed.first_word(c);
+        for (std::size_t i = 0; i < group_size * header.groups(); ++i)
+            for (std::uint8_t& corner : words[i].corners) corner = after[corner];
     });
 }
 

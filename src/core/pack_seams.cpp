@@ -42,6 +42,12 @@ struct EdgeMatrix {
         for (std::size_t k = 1; k < 4; ++k) corners.add(alone[v[k]]);
         for (const std::uint8_t corner : v) rows[corner].add(corners);
     }
+    void add(const StoredCell& cell) {
+        for (const auto& [k, l] : edges_of(cell.kind)) { // which is lower does not matter: of rows the higher part counts
+            rows[cell.corners[k]].add(cell.corners[l]);
+            rows[cell.corners[l]].add(cell.corners[k]);
+        }
+    }
 };
 
 /// One candidate edge of one cluster, on its way to the owner of its lower end.
@@ -219,6 +225,7 @@ private:
             if (k < h.ghost_points || shared_[h.first_point + k - h.ghost_points]) shared.add(k);
         EdgeMatrix matrix;
         for (const StoredTet& tet : packed_.cluster_tets(c)) matrix.add(tet);
+        packed_.for_other_cells(c, [&](const StoredCell& cell) { matrix.add(cell); });
         for (std::size_t a = 0; a < draft_.local_count(c); ++a) {
             if (!shared.holds(a)) continue;
             for (std::size_t word = a / 64; word < words_per_row; ++word) {

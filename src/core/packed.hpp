@@ -3,8 +3,8 @@
 //
 //   cluster c                                 arrays of all clusters, one after another
 //   +-----------------------------+
-//   | headers[c]         32 B     |-- first_point --> positions[3 * p], values[p], point_ids[p]   (own points only)
-//   | ranges[c]           8 B     |-- first_group --> tets[32 * g ...], group_ranges[g]           (g = first_group ...)
+//   | headers[c]         40 B     |-- first_point --> positions[3 * p], values[p], point_ids[p]   (own points only)
+//   | ranges[c]           8 B     |-- first_group --> cells[32 * g ...], group_ranges[g]          (g = first_group ...)
 //   | has_no_data[c]      1 B     |-- first_link  --> links[w ...], 32-bit words:
 //   +-----------------------------+      neighbours      2 words each: cluster | ghost points + 65536 * ghost seams
 //                                        ghost points  1 byte each, grouped by neighbour, padded to a word:
@@ -16,8 +16,10 @@
 //
 // Local indices run ghost points first, then own points, ascending in packed order. A point belongs to the
 // lowest-numbered cluster that holds it (its owner), so every neighbour in the table has a lower number.
-// A stored tet is one 32-bit word, four local indices, first corner lowest; the last group of a cluster is padded with
-// copies of its last tet, which are never looked at.
+// A stored tet is one word, four local indices, its first corner that of the lowest user's number. A pyramid, wedge or
+// hexahedron is two words, eight local indices, behind its last corner copies of its first. A cluster has its tets
+// first, then its pyramids, wedges and hexahedra; each kind begins a group of 32 words, and its last group is padded with
+// copies of its last cell, which are never looked at.
 #pragma once
 
 #include <algorithm>
@@ -34,13 +36,23 @@
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 
+#include "core/cell_kind.hpp"
 #include "core/shared_buffer.hpp"
 
 namespace isotet::core {
 
 constexpr std::size_t max_cluster_points = 128;
 constexpr std::size_t max_cluster_tets = 1024;
-constexpr std::size_t group_size = 32;
+constexpr std::size_t group_size = 32; ///< words
+
+/// Words that a cell of a kind takes.
+constexpr std::size_t words_of(CellKind kind) { return kind == CellKind::tetrahedron ? 1 : 2; }
+constexpr std::size_t cells_per_group(CellKind kind) { return group_size / words_of(kind); }
+
+/// Other cells than tets count as so many of them, for what a cluster may hold and give.
+constexpr std::size_t tets_for_a_cell = 4;
+/// What a cluster with such cells may hold, so that it has no more groups than one of tets.
+constexpr std::size_t max_mixed_cluster_tets = max_cluster_tets - cell_kind_count * group_size;
 
 struct ClusterHeader {
     std::uint64_t first_point;
@@ -48,12 +60,27 @@ struct ClusterHeader {
     std::uint32_t first_group;
     std::uint16_t own_points;
     std::uint16_t ghost_points;
-    std::uint16_t tets;
+    std::array<std::uint16_t, cell_kind_count> cells; ///< of each kind
     std::uint16_t neighbours;
     std::uint16_t own_seams;
     std::uint16_t ghost_seams;
+    std::uint16_t unused;
+
+    std::size_t count(CellKind kind) const { return cells[static_cast<std::size_t>(kind)]; }
+    std::size_t tets() const { return cells[0]; }
+    std::size_t others() const { return std::size_t{cells[1]} + cells[2] + cells[3]; }
+    std::size_t groups(CellKind kind) const {
+        return (count(kind) + cells_per_group(kind) - 1) / cells_per_group(kind);
+    }
+    std::size_t groups() const {
+        std::size_t sum = 0;
+        for (const CellKind kind : cell_kinds) sum += groups(kind);
+        return sum;
+    }
+    /// No tet gives more than two triangles and four vertices, and no other cell more than so many.
+    std::size_t like_tets() const { return tets() + tets_for_a_cell * others(); }
 };
-static_assert(sizeof(ClusterHeader) == 32);
+static_assert(sizeof(ClusterHeader) == 40);
 
 /// Smallest and largest stored value over all points with data; lower > upper when there is none.
 template <class Real>
@@ -90,6 +117,13 @@ struct StoredTet {
 };
 static_assert(sizeof(StoredTet) == 4);
 
+/// A pyramid, wedge or hexahedron of a cluster.
+struct StoredCell {
+    CellKind kind;
+    std::span<const std::uint8_t> corners; ///< local indices; eight may be read
+    std::size_t word;                      ///< its first, counted from the cluster's first
+};
+
 constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 
 /// The four parts of a cluster's links.
@@ -124,13 +158,13 @@ class StorageCache;
 /// Copying shares all arrays. A copy that gets another field or other points gets arrays of its own for them.
 struct Packed {
     SharedBuffer<ClusterHeader> headers;
-    SharedBuffer<StoredTet> tets; ///< 32 a group
+    SharedBuffer<StoredTet> cells; ///< words, 32 a group
     SharedBuffer<GroupRange> group_ranges;
     SharedBuffer<std::uint32_t> links;
     SharedBuffer<std::uint8_t> has_no_data; ///< 1 where the cluster holds a point without data
     SharedBuffer<std::uint32_t> point_ids;  ///< packed point -> user's point; or, from 2^32 user's points on,
     SharedBuffer<std::uint64_t> wide_point_ids;
-    SharedBuffer<std::uint32_t> cell_ids; ///< stored tet (by group and lane) -> user's cell, on request; or
+    SharedBuffer<std::uint32_t> cell_ids; ///< first word of a stored cell -> user's cell, on request; or
     SharedBuffer<std::uint64_t> wide_cell_ids;
     SharedBuffer<std::uint32_t> gradients; ///< octahedral code a point, on request (normal_code.hpp)
     std::variant<Values<float>, Values<double>> reals;
@@ -160,8 +194,12 @@ struct Packed {
         return wide_point_ids.empty() ? point_ids[packed_point] : wide_point_ids[packed_point];
     }
     bool has_cell_ids() const { return !cell_ids.empty() || !wide_cell_ids.empty(); }
-    std::uint64_t user_cell(std::uint64_t stored_tet) const {
-        return wide_cell_ids.empty() ? cell_ids[stored_tet] : wide_cell_ids[stored_tet];
+    std::uint64_t user_cell(std::uint64_t word) const {
+        return wide_cell_ids.empty() ? cell_ids[word] : wide_cell_ids[word];
+    }
+    /// The first word of a cluster's cells.
+    std::uint64_t first_word(std::size_t cluster) const {
+        return group_size * std::uint64_t{headers[cluster].first_group};
     }
 
     ClusterLinks cluster_links(std::size_t cluster) const {
@@ -180,7 +218,20 @@ struct Packed {
     }
     std::span<const StoredTet> cluster_tets(std::size_t cluster) const {
         const ClusterHeader& h = headers[cluster];
-        return {tets.data() + group_size * std::size_t{h.first_group}, h.tets};
+        return {cells.data() + first_word(cluster), h.tets()};
+    }
+    /// Calls f(cell) with every cell of a cluster that is no tet.
+    template <class F>
+    void for_other_cells(std::size_t cluster, const F& f) const {
+        const ClusterHeader& h = headers[cluster];
+        const auto* const corners = reinterpret_cast<const std::uint8_t*>(cells.data() + first_word(cluster));
+        std::size_t word = group_size * h.groups(CellKind::tetrahedron);
+        for (std::size_t k = 1; k < cell_kind_count; ++k) {
+            const CellKind kind = cell_kinds[k];
+            for (std::size_t i = 0; i < h.count(kind); ++i)
+                f(StoredCell{kind, {corners + 4 * (word + 2 * i), corner_count(kind)}, word + 2 * i});
+            word += group_size * h.groups(kind);
+        }
     }
 };
 

@@ -29,11 +29,6 @@ Bounds bounds_of(const PointReader& points, const Packed& packed) {
         });
 }
 
-double squared_distance(const Point& a, const Point& b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
 /// True when rounding moves a point of the cluster by more than a thousandth of its shortest edge.
 template <class Real>
 bool is_coarse(const PointReader& points, const Packed& packed, std::size_t cluster) {
@@ -55,6 +50,11 @@ bool is_coarse(const PointReader& points, const Packed& packed, std::size_t clus
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = a + 1; b < 4; ++b)
                 shortest = std::min(shortest, squared_distance(exact[tet.corners[a]], exact[tet.corners[b]]));
+    packed.for_other_cells(cluster, [&](const StoredCell& cell) {
+        for (const auto& [k, l] : edges_of(cell.kind))
+            if (const auto a = cell.corners[k], b = cell.corners[l]; a != b)
+                shortest = std::min(shortest, squared_distance(exact[a], exact[b]));
+    });
     return moved > 1e-6 * shortest;
 }
 

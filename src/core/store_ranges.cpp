@@ -88,8 +88,8 @@ void store_ranges(Packed& packed, std::size_t cluster, const LocalPoints& points
     PointSteps lower, upper;
     local.steps(lower, upper);
     const ClusterHeader& h = packed.headers[cluster];
-    find_group_ranges(packed.tets.data() + group_size * std::size_t{h.first_group},
-                      (h.tets + group_size - 1) / group_size, lower, upper, packed.group_ranges.data() + h.first_group);
+    find_group_ranges(packed.cells.data() + packed.first_word(cluster), h.groups(), lower, upper,
+                      packed.group_ranges.data() + h.first_group);
 }
 
 } // namespace

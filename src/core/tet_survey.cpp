@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "core/bounds.hpp"
+#include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
 
@@ -99,29 +100,58 @@ TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress&
     return survey;
 }
 
-TetCounts count_tets(const CellReader& cells) {
-    TetCounts counts;
-    counts.used = Buffer<std::uint8_t>(cells.points());
-    clear(counts.used);
-    std::atomic<std::uint64_t> all_tets{0}, all_collapsed{0}, all_left_out{0};
+namespace {
+
+/// `count_range(begin, end, counts, mark)` adds to counts, and calls mark(corner) for the corners of what is stored.
+template <class CountRange>
+CellCounts count_all(const CellReader& cells, const CountRange& count_range) {
+    CellCounts total;
+    total.used = Buffer<std::uint8_t>(cells.points());
+    clear(total.used);
+    std::mutex mutex;
     parallel_ranges(cells.count(), cells_per_chunk, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t tets = 0, collapsed = 0, left_out = 0;
-        cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
-            tets += static_cast<std::uint64_t>(pieces.count);
-            collapsed += static_cast<std::uint64_t>(pieces.collapsed);
-            left_out += !cells.only_tets() && !is_contoured(cells.type(cell));
-            for (const Tet& tet : pieces)
-                for (const std::uint64_t corner : tet)
-                    std::atomic_ref<std::uint8_t>(counts.used[corner]).store(1, std::memory_order_relaxed);
+        CellCounts part;
+        count_range(begin, end, part, [&](std::uint64_t corner) {
+            std::atomic_ref<std::uint8_t>(total.used[corner]).store(1, std::memory_order_relaxed);
         });
-        all_tets += tets;
-        all_collapsed += collapsed;
-        all_left_out += left_out;
+        const std::lock_guard lock(mutex);
+        total.stored += part.stored;
+        total.collapsed += part.collapsed;
+        total.left_out += part.left_out;
+        total.split += part.split;
     });
-    counts.tets = all_tets;
-    counts.collapsed = all_collapsed;
-    counts.left_out = all_left_out;
-    return counts;
+    return total;
+}
+
+} // namespace
+
+CellCounts count_tets(const CellReader& cells) {
+    return count_all(cells, [&](std::size_t begin, std::size_t end, CellCounts& counts, const auto& mark) {
+        cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
+            counts.stored += static_cast<std::uint64_t>(pieces.count);
+            counts.collapsed += static_cast<std::uint64_t>(pieces.collapsed);
+            counts.left_out += !cells.only_tets() && !is_contoured(cells.type(cell));
+            for (const Tet& tet : pieces)
+                for (const std::uint64_t corner : tet) mark(corner);
+        });
+    });
+}
+
+CellCounts count_native_cells(const CellReader& cells) {
+    return count_all(cells, [&](std::size_t begin, std::size_t end, CellCounts& counts, const auto& mark) {
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            if (!is_contoured(cells.type(cell))) {
+                ++counts.left_out;
+                continue;
+            }
+            const NativeParts parts = native_parts(cells.whole(cell));
+            counts.stored += static_cast<std::uint64_t>(parts.count);
+            counts.collapsed += static_cast<std::uint64_t>(parts.collapsed);
+            counts.split += parts.is_split;
+            for (const WholeCell& part : parts)
+                for (std::size_t k = 0; k < corner_count(part.kind); ++k) mark(part.corners[k]);
+        }
+    });
 }
 
 } // namespace isotet::core

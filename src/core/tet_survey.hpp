@@ -41,13 +41,18 @@ struct TetSurvey {
 /// a point. Incomplete when cancelled.
 TetSurvey survey_tets(const Grid& grid, const CellReader& cells, const Progress& progress = {});
 
-/// What one pass over the point numbers of all cells finds out.
-struct TetCounts {
-    std::uint64_t tets = 0, collapsed = 0, left_out = 0;
-    Buffer<std::uint8_t> used; ///< by point: 1 when a tet has it
+/// What one pass over the point numbers of all cells finds out of what will be stored.
+struct CellCounts {
+    std::uint64_t stored = 0; ///< tets, or native cells; repeated ones too
+    std::uint64_t collapsed = 0, left_out = 0;
+    std::uint64_t split = 0;   ///< native cells of which only tets can be stored
+    Buffer<std::uint8_t> used; ///< by point: 1 when something that is stored has it
 };
 
 /// Counts the tets of a checked grid. Parallel. One byte a point.
-TetCounts count_tets(const CellReader& cells);
+CellCounts count_tets(const CellReader& cells);
+
+/// Counts the native cells (native_cells.hpp).
+CellCounts count_native_cells(const CellReader& cells);
 
 } // namespace isotet::core

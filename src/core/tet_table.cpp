@@ -13,8 +13,16 @@ Result<TetTable> make_tet_table(const Packed& packed) {
     if (!packed.single())
         return Error{ErrorCode::invalid_argument,
                      "the grid is packed in double, but tables hold float32: pack it in single precision"};
-    std::uint64_t tets = 0;
-    for (const ClusterHeader& header : packed.headers) tets += header.tets;
+    std::uint64_t tets = 0, others = 0;
+    for (const ClusterHeader& header : packed.headers) {
+        tets += header.tets();
+        others += header.others();
+    }
+    if (others)
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("the grid is packed with {} pyramids, wedges and hexahedra as they are, but tables "
+                                 "hold tets: pack it with split_cells",
+                                 others)};
     constexpr std::uint64_t limit = std::numeric_limits<std::uint32_t>::max();
     if (tets >= limit)
         return Error{ErrorCode::invalid_data,
@@ -25,7 +33,7 @@ Result<TetTable> make_tet_table(const Packed& packed) {
     std::uint32_t next = 0;
     for (std::size_t c = 0; c < packed.clusters(); ++c) {
         table.first_tet[c] = next;
-        next += packed.headers[c].tets;
+        next += static_cast<std::uint32_t>(packed.headers[c].tets());
     }
     table.first_tet[packed.clusters()] = next;
     table.tets = Buffer<std::array<std::uint32_t, 4>>(tets);

@@ -64,7 +64,7 @@ private:
 };
 
 /// Writes a packed grid out into tables: 16 bytes a tet, 16 a point. Parallel.
-/// Errors   invalid_argument for a grid packed in double; invalid_data with 2^32 - 1 tets or more
+/// Errors   invalid_argument for a grid packed in double, or with cells that are no tets; invalid_data with 2^32 - 1 tets or more
 ISOTET_API Result<TetTable> make_tet_table(const Packed& packed);
 
 } // namespace isotet::core

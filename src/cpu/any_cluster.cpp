@@ -73,13 +73,20 @@ private:
         const core::Range<Real> range = packed_.as<Real>().ranges[cluster_];
         if (!(range.lower < isovalue_.value)) return; // nothing below
         const auto tets = packed_.cluster_tets(cluster_);
-        const core::GroupRange* group = packed_.group_ranges.data() + header_.first_group;
+        const core::GroupRange* const groups = packed_.group_ranges.data() + header_.first_group;
         const std::uint8_t step = core::quantize(isovalue_.value, range);
-        for (std::size_t begin = 0; begin < tets.size(); begin += core::group_size, ++group) {
-            if (group->lower > step || step > group->upper) continue;
+        const auto is_hit = [&](std::size_t group) {
+            return groups[group].lower <= step && step <= groups[group].upper;
+        };
+        for (std::size_t begin = 0; begin < tets.size(); begin += core::group_size) {
+            if (!is_hit(begin / core::group_size)) continue;
             for (std::size_t i = begin; i < std::min(begin + core::group_size, tets.size()); ++i)
                 cut_tet(i, tets[i].corners);
         }
+        if (header_.others())
+            packed_.for_other_cells(cluster_, [&](const core::StoredCell& cell) {
+                if (is_hit(cell.word / core::group_size)) cut_cell(cell);
+            });
     }
 
     void cut_tet(std::size_t tet, const std::array<std::uint8_t, 4>& v) {
@@ -93,21 +100,43 @@ private:
         if (index == 0 || index == 15 || (index == tied && std::popcount(tied) < 3)) return;
         const core::TetCase& c = core::case_table[index];
         VertexKey* const keys = s_.keys.data() + 4 * s_.cut.count;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::uint8_t above = v[c.polygon[k].above], below = v[c.polygon[k].below];
-            keys[k] = s_.special[above] == is_tied ? point_key(above)
-                                                   : edge_key({std::min(above, below), std::max(above, below)});
-        }
+        for (std::size_t k = 0; k < 4; ++k) keys[k] = key_of(v[c.polygon[k].above], v[c.polygon[k].below]);
         for (std::size_t k = 0; k < 4; ++k) s_.used.use(keys[k]);
-        for_triangles(keys, c, [&](std::size_t) { ++triangles_; });
-        s_.cut.cases[s_.cut.count] = static_cast<std::uint8_t>(index);
-        s_.cut.places[s_.cut.count++] = static_cast<std::uint16_t>(tet);
+        add_polygon(keys, c.triangles, tet);
+    }
+
+    void cut_cell(const core::StoredCell& cell) {
+        unsigned index = 0;
+        for (std::size_t k = 0; k < cell.corners.size(); ++k) {
+            if (s_.special[cell.corners[k]] == has_no_data) return;
+            index |= unsigned{s_.above[cell.corners[k]]} << k;
+        }
+        for (const core::CellPolygon& polygon : core::polygons_of(cell.kind, index)) {
+            VertexKey* const keys = s_.keys.data() + 4 * s_.cut.count;
+            for (std::size_t k = 0; k < 4; ++k)
+                keys[k] = key_of(cell.corners[polygon.edges[k].above], cell.corners[polygon.edges[k].below]);
+            for_triangles(keys, polygon.triangles, [&](std::size_t t) {
+                for (const std::uint8_t k : core::triangle_corners[t]) s_.used.use(keys[k]);
+            });
+            add_polygon(keys, polygon.triangles, cell.word);
+        }
+    }
+
+    VertexKey key_of(std::uint8_t above, std::uint8_t below) const {
+        return s_.special[above] == is_tied ? point_key(above)
+                                            : edge_key({std::min(above, below), std::max(above, below)});
+    }
+
+    void add_polygon(const VertexKey* keys, std::size_t triangles, std::size_t word) {
+        for_triangles(keys, triangles, [&](std::size_t) { ++triangles_; });
+        s_.cut.triangles[s_.cut.count] = static_cast<std::uint8_t>(triangles);
+        s_.cut.places[s_.cut.count++] = static_cast<std::uint16_t>(word);
     }
 
     /// Calls f(0) and f(1) for the triangles of a polygon whose corners are three different vertices.
     template <class F>
-    static void for_triangles(const VertexKey* keys, const core::TetCase& c, F&& f) {
-        for (std::size_t t = 0; t < c.triangles; ++t) {
+    static void for_triangles(const VertexKey* keys, std::size_t triangles, F&& f) {
+        for (std::size_t t = 0; t < triangles; ++t) {
             const auto& corner = core::triangle_corners[t];
             const VertexKey a = keys[corner[0]], b = keys[corner[1]], d = keys[corner[2]];
             if (a != b && b != d && d != a) f(t);
@@ -175,7 +204,7 @@ private:
     void write_triangles(const Number* numbers, Number* corner, std::uint16_t* tet) const {
         for (std::size_t i = 0; i < s_.cut.count; ++i) {
             const VertexKey* const keys = s_.keys.data() + 4 * i;
-            for_triangles(keys, core::case_table[s_.cut.cases[i]], [&](std::size_t t) {
+            for_triangles(keys, s_.cut.triangles[i], [&](std::size_t t) {
                 for (const std::uint8_t k : core::triangle_corners[t]) *corner++ = numbers[keys[k]];
                 if (tet) *tet++ = s_.cut.places[i];
             });

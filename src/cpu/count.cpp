@@ -51,8 +51,8 @@ private:
         if (ahead.has(1)) {
             const core::ClusterHeader& h = packed.headers[cluster(1)];
             prefetch_bytes(packed.links.data() + h.first_link, 4 * core::ClusterLinks::words(h));
-            prefetch_bytes(packed.tets.data() + core::group_size * std::size_t{h.first_group},
-                           sizeof(core::StoredTet) * h.tets);
+            prefetch_bytes(packed.cells.data() + packed.first_word(cluster(1)),
+                           sizeof(core::StoredTet) * core::group_size * h.groups());
             prefetch_bytes(packed.as<Real>().values.data() + h.first_point, sizeof(Real) * h.own_points);
         }
         if (ahead.has(0)) {

@@ -68,8 +68,9 @@ struct CutScratch {
     alignas(64) std::array<std::uint8_t, points> above{}; ///< 1 or 0
     std::array<std::uint8_t, points> special;             ///< tied or without data; for any_cluster.cpp
     CutTets cut;
-    std::array<VertexKey, 4 * core::max_cluster_tets> keys; ///< of the polygons of active tets, four each
-    KeyTable used;                                          ///< empty between places
+    CutCells cells;
+    std::array<VertexKey, 4 * CutTets::room> keys; ///< of the polygons of active cells, four each
+    KeyTable used;                                 ///< empty between places
     std::array<core::GhostSeam, padded> crossed_seams;
     std::array<std::uint16_t, padded> crossed_places; ///< of these, in the list
     ShortList<VertexKey, padded> listed;

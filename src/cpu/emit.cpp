@@ -230,9 +230,9 @@ private:
     }
 
     void write_sources(const Record<Real>& record, std::size_t cluster, std::int64_t* out) const {
-        const std::uint64_t first_stored = core::group_size * std::uint64_t{packed_.headers[cluster].first_group};
+        const std::uint64_t first_word = packed_.first_word(cluster);
         for (std::size_t t = 0; t < record.triangles; ++t)
-            out[t] = static_cast<std::int64_t>(packed_.user_cell(first_stored + record.tets()[t]));
+            out[t] = static_cast<std::int64_t>(packed_.user_cell(first_word + record.tets()[t]));
     }
 
     const Packed& packed_;

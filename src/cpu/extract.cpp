@@ -23,7 +23,6 @@ public:
         const std::size_t places = selection.size();
         fixed_ = selection.bytes() + masks.bytes() + places * (sizeof(Start) + sizeof(void*)) +
                  threads_ * (count_scratch_bytes<Real>() + emit_scratch_bytes<Real>());
-        // No tet gives more than two triangles and four vertices.
         Total most;
         most.vertices = 4 * selection.tets;
         most.triangles = 2 * selection.tets;

@@ -14,18 +14,48 @@ namespace {
 
 using Scratch = CutScratch<float>;
 
+/// The groups of a cluster, one after another.
+struct Groups {
+    const core::StoredTet* const words; ///< of the cluster
+    const core::GroupRange* const ranges;
+    const std::uint8_t step; ///< the isovalue in steps of the cluster's range
+    std::size_t next = 0;
+
+    /// Calls f(words, cells, first word) for those of the next `count` cells, `size` a group, that may be cut.
+    template <class F>
+    void for_hit(std::size_t count, std::size_t size, const F& f) {
+        for (std::size_t first = 0; first < count; first += size, ++next)
+            if (ranges[next].lower <= step && step <= ranges[next].upper)
+                f(words + core::group_size * next, std::min(size, count - first), core::group_size * next);
+    }
+};
+
+template <class Simd, core::CellKind kind>
+void cut_cells(std::size_t count, Groups& groups, Scratch& s) {
+    if (count == 0) return;
+    s.cells.count = 0;
+    groups.for_hit(count, core::cells_per_group(kind),
+                   [&](const core::StoredTet* words, std::size_t n, std::size_t first) {
+                       Simd::template cut_cells<kind>(s.above.data(), words, n, first, s.cells);
+                   });
+    Simd::template polygons<kind>(s.cells, s.cut, s.keys.data());
+}
+
 template <class Simd>
-void cut_tets(const Packed& packed, std::size_t cluster, float isovalue, Scratch& s) {
+void cut_all(const Packed& packed, std::size_t cluster, float isovalue, Scratch& s) {
+    using core::CellKind;
     const core::ClusterHeader& h = packed.headers[cluster];
-    const core::StoredTet* tets = packed.tets.data() + core::group_size * std::size_t{h.first_group};
-    const core::GroupRange* groups = packed.group_ranges.data() + h.first_group;
-    const std::uint8_t step = core::quantize(isovalue, packed.as<float>().ranges[cluster]);
+    Groups groups{packed.cells.data() + packed.first_word(cluster), packed.group_ranges.data() + h.first_group,
+                  core::quantize(isovalue, packed.as<float>().ranges[cluster])};
     s.cut.count = 0;
-    for (std::size_t first = 0; first < h.tets; first += core::group_size, ++groups)
-        if (groups->lower <= step && step <= groups->upper)
-            Simd::cut(s.above.data(), tets + first, std::min<std::size_t>(core::group_size, h.tets - first), first,
-                      s.cut);
+    groups.for_hit(h.tets(), core::group_size, [&](const core::StoredTet* tets, std::size_t n, std::size_t first) {
+        Simd::cut(s.above.data(), tets, n, first, s.cut);
+    });
     Simd::keys(s.cut, s.keys.data());
+    if (h.others() == 0) return;
+    cut_cells<Simd, CellKind::pyramid>(h.count(CellKind::pyramid), groups, s);
+    cut_cells<Simd, CellKind::wedge>(h.count(CellKind::wedge), groups, s);
+    cut_cells<Simd, CellKind::hexahedron>(h.count(CellKind::hexahedron), groups, s);
 }
 
 /// Own seams into `listed` and the mask, ghost ones into `shared`; what remains are inner edges.
@@ -63,7 +93,7 @@ void write_triangles(const Scratch& s, const Number* numbers, Number* out, std::
             std::memcpy(out, &first, sizeof first);
             std::memcpy(out + 4, &rest, sizeof rest);
         }
-        const std::size_t triangles = core::case_table[s.cut.cases[i]].triangles;
+        const std::size_t triangles = s.cut.triangles[i];
         out += 3 * triangles;
         if (tet) {
             tet[0] = tet[1] = s.cut.places[i];
@@ -80,10 +110,10 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     const core::StoredIsovalue<float>& isovalue = cutting.wanted.isovalues[cutting.selection.isovalues[place]];
     if (Simd::classify(s.values.data(), std::size_t{h.ghost_points} + h.own_points, isovalue, s.above.data()))
         return nullptr;
-    cut_tets<Simd>(cutting.packed, cluster, isovalue.value, s);
+    cut_all<Simd>(cutting.packed, cluster, isovalue.value, s);
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.used.use(s.keys[i]);
     std::size_t triangles = 0;
-    for (std::size_t i = 0; i < s.cut.count; ++i) triangles += core::case_table[s.cut.cases[i]].triangles;
+    for (std::size_t i = 0; i < s.cut.count; ++i) triangles += s.cut.triangles[i];
 
     s.listed.clear();
     s.shared.clear();

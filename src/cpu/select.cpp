@@ -52,7 +52,7 @@ Result<Selection> select(const Packed& packed, std::span<const core::StoredIsova
         for_selected(packed, isovalues, task, [&](std::size_t c, std::size_t first, std::size_t end) {
             sums.places += end - first;
             sums.words += (end - first) * words_of(c);
-            sums.tets += (end - first) * packed.headers[c].tets;
+            sums.tets += (end - first) * packed.headers[c].like_tets();
         });
         before[task + 1] = sums;
     });

@@ -118,16 +118,53 @@ struct Avx2 {
                std::uint64_t{static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(high, 7)))} << 32;
     }
 
-    ISOTET_AVX2 static void keys(const CutTets& cut, VertexKey* out) {
+    ISOTET_AVX2 static void keys(CutTets& cut, VertexKey* out) {
         for (std::size_t i = 0; i < cut.count; ++i, out += 4) {
-            const __m128i v = _mm_cvtsi32_si128(static_cast<int>(cut.corners[i]));
-            const __m128i ends = _mm_shuffle_epi8(
-                v, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(polygon_bytes[cut.cases[i]].data())));
-            const __m128i others = _mm_srli_epi64(ends, 32);
-            const __m128i lower = _mm_cvtepu8_epi16(_mm_min_epu8(ends, others)),
-                          higher = _mm_cvtepu8_epi16(_mm_max_epu8(ends, others));
-            _mm_storel_epi64(reinterpret_cast<__m128i*>(out), _mm_or_si128(_mm_slli_epi16(lower, 7), higher));
+            cut.triangles[i] = core::case_table[cut.cases[i]].triangles;
+            write_keys(_mm_cvtsi32_si128(static_cast<int>(cut.corners[i])), polygon_bytes[cut.cases[i]].data(), out);
         }
+    }
+
+    template <core::CellKind kind>
+    ISOTET_AVX2 static void cut_cells(const std::uint8_t* above, const core::StoredTet* words, std::size_t n,
+                                      std::size_t first, CutCells& out) {
+        constexpr unsigned all = (1u << core::corner_count(kind)) - 1;
+        const __m256i table = table_of(above);
+        for (std::size_t i = 0; i < n; i += 4) {
+            const __m256i corners = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words + 2 * i)); // padded
+            auto cases =
+                static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(look_up(table, corners), 7)));
+            for (std::size_t k = i; k < std::min(i + 4, n); ++k, cases >>= 8) {
+                const unsigned index = cases & all;
+                std::memcpy(&out.corners[out.count], words + 2 * k, 8);
+                out.cases[out.count] = static_cast<std::uint8_t>(index);
+                out.places[out.count] = static_cast<std::uint16_t>(first + 2 * k);
+                out.count += index - 1 < all - 1;
+            }
+        }
+    }
+
+    template <core::CellKind kind>
+    ISOTET_AVX2 static void polygons(const CutCells& cells, CutTets& out, VertexKey* keys) {
+        constexpr auto& cases = core::cases_of<kind>().cases;
+        std::size_t count = out.count;
+        for (std::size_t i = 0; i < cells.count; ++i) {
+            const core::CellCase c = cases[cells.cases[i]];
+            const __m128i v = _mm_cvtsi64_si128(static_cast<long long>(cells.corners[i]));
+            // Nearly all have one or two: both are written, and as many counted as there are.
+            for (std::size_t k = 0; k < 2; ++k) {
+                write_keys(v, polygon_shuffles<kind>[c.first + k].data(), keys + 4 * (count + k));
+                out.triangles[count + k] = polygon_triangles<kind>[c.first + k];
+                out.places[count + k] = cells.places[i];
+            }
+            for (std::size_t k = 2; k < c.polygons; ++k) {
+                write_keys(v, polygon_shuffles<kind>[c.first + k].data(), keys + 4 * (count + k));
+                out.triangles[count + k] = polygon_triangles<kind>[c.first + k];
+                out.places[count + k] = cells.places[i];
+            }
+            count += c.polygons;
+        }
+        out.count = count;
     }
 
     ISOTET_AVX2 static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above, const float* values,
@@ -174,6 +211,14 @@ struct Avx2 {
     }
 
 private:
+    /// The keys of four edges, by a shuffle of a cell's corners that gives the corners above, then those below.
+    ISOTET_AVX2 static void write_keys(__m128i corners, const std::uint8_t* shuffle, VertexKey* out) {
+        const __m128i ends = _mm_shuffle_epi8(corners, _mm_loadl_epi64(reinterpret_cast<const __m128i*>(shuffle)));
+        const __m128i others = _mm_srli_epi64(ends, 32);
+        const __m128i lower = _mm_cvtepu8_epi16(_mm_min_epu8(ends, others)),
+                      higher = _mm_cvtepu8_epi16(_mm_max_epu8(ends, others));
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(out), _mm_or_si128(_mm_slli_epi16(lower, 7), higher));
+    }
     /// For each case, the corners above of the four edges, then the corners below: a shuffle.
     static constexpr auto polygon_bytes = [] {
         std::array<std::array<std::uint8_t, 8>, 16> bytes{};

@@ -126,7 +126,38 @@ struct Avx512 {
         return static_cast<std::size_t>(out - begin);
     }
 
-    ISOTET_AVX512 static void keys(const CutTets& cut, VertexKey* out) { Avx2::keys(cut, out); }
+    ISOTET_AVX512 static void keys(CutTets& cut, VertexKey* out) { Avx2::keys(cut, out); }
+
+    template <core::CellKind kind>
+    ISOTET_AVX512 static void cut_cells(const std::uint8_t* above, const core::StoredTet* words, std::size_t n,
+                                        std::size_t first, CutCells& out) {
+        constexpr char all = static_cast<char>((1u << core::corner_count(kind)) - 1);
+        const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
+        const __m128i lanes = _mm_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14);
+        for (std::size_t i = 0; i < n; i += 8) {
+            const __m512i corners = _mm512_loadu_si512(words + 2 * i); // groups are padded
+            const __m512i sides = _mm512_permutex2var_epi8(low, corners, high);
+            // A bit for each of eight times eight corners: the cases.
+            const auto bits = static_cast<long long>(_mm512_test_epi8_mask(sides, sides));
+            const __m128i cases = _mm_and_si128(_mm_cvtsi64_si128(bits), _mm_set1_epi8(all));
+            const __mmask16 there = n - i >= 8 ? 0xff : static_cast<__mmask16>((1u << (n - i)) - 1);
+            const __mmask16 is_cut = _mm_mask_cmplt_epu8_mask(there, _mm_sub_epi8(cases, _mm_set1_epi8(1)),
+                                                              _mm_set1_epi8(static_cast<char>(all - 1)));
+            const auto cut_lanes = static_cast<__mmask8>(is_cut);
+            _mm512_storeu_si512(out.corners.data() + out.count, _mm512_maskz_compress_epi64(cut_lanes, corners));
+            _mm_storel_epi64(reinterpret_cast<__m128i*>(out.cases.data() + out.count),
+                             _mm_maskz_compress_epi8(is_cut, cases));
+            const __m128i place = _mm_add_epi16(lanes, _mm_set1_epi16(static_cast<short>(first + 2 * i)));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(out.places.data() + out.count),
+                             _mm_maskz_compress_epi16(cut_lanes, place));
+            out.count += static_cast<std::size_t>(_mm_popcnt_u32(is_cut));
+        }
+    }
+
+    template <core::CellKind kind>
+    ISOTET_AVX512 static void polygons(const CutCells& cells, CutTets& out, VertexKey* keys) {
+        Avx2::polygons<kind>(cells, out, keys);
+    }
 
     ISOTET_AVX512 static void cross(const VertexKey* edges, std::size_t n, const std::uint8_t* above,
                                     const float* values, const core::StoredIsovalue<float>& isovalue, EndPair* ends,

@@ -12,6 +12,7 @@
 #include "core/arithmetic.hpp"
 #include "core/bits.hpp"
 #include "core/case_table.hpp"
+#include "core/cell_cases.hpp"
 #include "core/local_values.hpp"
 #include "core/packed.hpp"
 #include "core/storage.hpp"
@@ -19,13 +20,49 @@
 
 namespace isotet::cpu {
 
-/// A tet that gives triangles.
+/// Tets that give triangles; and, behind them, polygons of other cells, of which only the last two parts are known.
 struct CutTets {
-    std::array<std::uint32_t, core::max_cluster_tets + 16> corners; ///< its four local indices
-    std::array<std::uint8_t, core::max_cluster_tets + 16> cases;
-    std::array<std::uint16_t, core::max_cluster_tets + 16> places; ///< in the cluster
+    static constexpr std::size_t room = core::max_cluster_tets + 16;
+
+    std::array<std::uint32_t, room> corners; ///< its four local indices
+    std::array<std::uint8_t, room> cases;
+    std::array<std::uint8_t, room> triangles; ///< 1 or 2
+    std::array<std::uint16_t, room> places;   ///< its first word in the cluster
     std::size_t count = 0;
 };
+
+/// Cells of one other kind that give triangles.
+struct CutCells {
+    static constexpr std::size_t room = core::max_cluster_tets / core::tets_for_a_cell + 16;
+
+    std::array<std::uint64_t, room> corners; ///< its eight local indices
+    std::array<std::uint8_t, room> cases;
+    std::array<std::uint16_t, room> places; ///< its first word in the cluster
+    std::size_t count = 0;
+};
+
+/// The polygons of a kind as shuffles of a cell's corners: the corners above of the four edges, then the corners below.
+/// One more than there are may be read.
+template <core::CellKind kind>
+inline constexpr auto polygon_shuffles = [] {
+    constexpr auto& cases = core::cases_of<kind>();
+    std::array<std::array<std::uint8_t, 8>, cases.polygon_count + 1> bytes{};
+    for (std::size_t i = 0; i < cases.polygon_count; ++i)
+        for (std::size_t k = 0; k < 4; ++k) {
+            bytes[i][k] = cases.all[i].edges[k].above;
+            bytes[i][k + 4] = cases.all[i].edges[k].below;
+        }
+    return bytes;
+}();
+
+/// The triangles of each polygon, 1 or 2.
+template <core::CellKind kind>
+inline constexpr auto polygon_triangles = [] {
+    constexpr auto& cases = core::cases_of<kind>();
+    std::array<std::uint8_t, cases.polygon_count + 1> counts{};
+    for (std::size_t i = 0; i < cases.polygon_count; ++i) counts[i] = cases.all[i].triangles;
+    return counts;
+}();
 
 /// Edges of the polygons of active tets: lower local index * 128 + higher, four a tet.
 using VertexKey = std::uint16_t;
@@ -74,6 +111,42 @@ struct Portable {
             out.cases[out.count] = static_cast<std::uint8_t>(index);
             out.places[out.count] = static_cast<std::uint16_t>(first + i);
             out.count += index - 1 < 14;
+        }
+    }
+
+    /// Appends the cut ones of `n` cells of a kind (n <= 16), the first of which stands at the word `first` of its
+    /// cluster. May write up to 8 more.
+    template <core::CellKind kind>
+    static void cut_cells(const std::uint8_t* above, const core::StoredTet* words, std::size_t n, std::size_t first,
+                          CutCells& out) {
+        constexpr unsigned all = (1u << core::corner_count(kind)) - 1;
+        for (std::size_t i = 0; i < n; ++i) {
+            std::uint8_t v[8];
+            std::memcpy(v, words + 2 * i, sizeof v);
+            unsigned index = 0;
+            for (std::size_t k = 0; k < core::corner_count(kind); ++k) index |= unsigned{above[v[k]]} << k;
+            std::memcpy(&out.corners[out.count], v, sizeof v);
+            out.cases[out.count] = static_cast<std::uint8_t>(index);
+            out.places[out.count] = static_cast<std::uint16_t>(first + 2 * i);
+            out.count += index - 1 < all - 1;
+        }
+    }
+
+    /// Appends the polygons of cut cells. `keys` has four for each polygon. May write one more.
+    template <core::CellKind kind>
+    static void polygons(const CutCells& cells, CutTets& out, VertexKey* keys) {
+        for (std::size_t i = 0; i < cells.count; ++i) {
+            std::uint8_t v[8];
+            std::memcpy(v, &cells.corners[i], sizeof v);
+            for (const core::CellPolygon& polygon : core::cases_of<kind>().polygons(cells.cases[i])) {
+                VertexKey* const to = keys + 4 * out.count;
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const unsigned a = v[polygon.edges[k].above], b = v[polygon.edges[k].below];
+                    to[k] = static_cast<VertexKey>(std::min(a, b) * table_size + std::max(a, b));
+                }
+                out.triangles[out.count] = polygon.triangles;
+                out.places[out.count++] = cells.places[i];
+            }
         }
     }
 
@@ -144,9 +217,10 @@ struct Portable {
         return bits;
     }
 
-    /// The four edges around each active tet.
-    static void keys(const CutTets& cut, VertexKey* out) {
+    /// The four edges around each active tet, and its triangles.
+    static void keys(CutTets& cut, VertexKey* out) {
         for (std::size_t i = 0; i < cut.count; ++i) {
+            cut.triangles[i] = core::case_table[cut.cases[i]].triangles;
             std::uint8_t v[4];
             std::memcpy(v, &cut.corners[i], 4);
             for (const core::ActiveEdge e : core::case_table[cut.cases[i]].polygon) {

@@ -36,7 +36,7 @@ struct Selection {
     core::Buffer<std::uint32_t> isovalues;  ///< N: numbers of isovalues
     core::Buffer<std::uint64_t> first_word; ///< N + 1: where the masks of a place begin
     core::Buffer<std::uint32_t> base;       ///< C: only set for clusters with a place
-    std::uint64_t tets = 0;                 ///< of the clusters of all places
+    std::uint64_t tets = 0;                 ///< of the clusters of all places; ClusterHeader::like_tets()
 
     std::size_t size() const { return clusters.size(); }
     /// The place of a cluster and an isovalue that has one: those of a cluster stand side by side.
@@ -97,12 +97,12 @@ enum class Keep { records, nothing };
 /// What counting hands to scan and emit.
 template <class Real>
 struct Counted {
-    core::Buffer<Start> starts;                ///< N; of vertices those on inner edges
-    core::Buffer<const Record<Real>*> records; ///< N
-    std::vector<std::uint64_t> tied_points;    ///< of each isovalue
+    core::Buffer<Start> starts;                      ///< N; of vertices those on inner edges
+    core::Buffer<const Record<Real>*> records;       ///< N
+    std::vector<std::uint64_t> tied_points;          ///< of each isovalue
     std::vector<std::shared_ptr<const void>> memory; ///< keeps the records
-    std::size_t bytes = 0;                     ///< of all that
-    std::size_t record_bytes = 0;              ///< of records, kept or not
+    std::size_t bytes = 0;                           ///< of all that
+    std::size_t record_bytes = 0;                    ///< of records, kept or not
 };
 
 /// What there is of each isovalue in the end.

@@ -1,12 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Direct extraction, the contract that every engine meets: from the user's arrays and isovalues to the bytes of surfaces.
 //
-// Tets: those of the cells (CellReader::tets), oriented and in canonical order as packing stores them
-// (orientation.hpp), but repeated ones stay. Values, coordinates and isovalues: stored by the same rules (storage.hpp),
-// over the points that tets use. Which tets give triangles, and which vertices there are: as in extraction.hpp.
-// Triangles: cells ascending, the tets of a cell in their order, then the case table. Vertices: by (lower, higher)
+// Cells: native ones (native_cells.hpp), or the tets of all cells (CellReader::tets), turned as packing stores them
+// (orientation.hpp, bucket_sorter.cpp), but repeated ones stay. Values, coordinates and isovalues: stored by the same rules (storage.hpp),
+// over the points that these use. Which of them give triangles, and which vertices there are: as in extraction.hpp.
+// Triangles: cells ascending, the parts of a cell in their order, then the case tables. Vertices: by (lower, higher)
 // user's number of the two ends, which at a tied point (Ties::merge) are the same.
-// Gradient normals: at each end the sum over its valid tets, in the order of triangles, of six volumes times gradient
+// Gradient normals: at each end the sum over its valid tets, by cell, of six volumes times gradient
 // (tet_gradient.hpp) in double, as a code (normal_code.hpp); between the ends core::vertex_normal().
 #pragma once
 
@@ -37,7 +37,8 @@ struct DirectInput {
 struct DirectRequest {
     std::span<const double> isovalues; ///< as the user gave them
     Ties ties = Ties::merge;
-    bool ends = false; ///< edge ends and weights
+    bool split_cells = false; ///< all cells as tets
+    bool ends = false;        ///< edge ends and weights
     bool normals = false;
     bool source_cells = false;
 };
@@ -47,8 +48,9 @@ struct DirectSurface {
     double isovalue_stored = 0;   ///< in the unit of the field
     std::uint64_t false_ties = 0; ///< as in ExtractReport
     bool near_tie = false;
-    std::uint64_t coarse_tets = 0; ///< tets with triangles where rounding moves a corner by over a thousandth of the
-                                   ///< shortest edge
+    std::uint64_t coarse_tets =
+        0; ///< tets and other cells with triangles where rounding moves a corner by over a thousandth of the
+           ///< shortest edge
 };
 
 struct DirectResult {
@@ -57,9 +59,9 @@ struct DirectResult {
     std::vector<core::Storage> carried;
     std::uint64_t cells_left_out = 0;
     std::vector<DirectSurface> surfaces; ///< one an isovalue
-    std::uint64_t transient_bytes = 0;  ///< beyond the surfaces, at the peak
-    std::uint64_t predicted_bytes = 0;  ///< of the largest surface, itself included, as known when its cells had been
-                                        ///< looked at
+    std::uint64_t transient_bytes = 0;   ///< beyond the surfaces, at the peak
+    std::uint64_t predicted_bytes = 0;   ///< of the largest surface, itself included, as known when its cells had been
+                                         ///< looked at
 };
 
 } // namespace isotet::ops

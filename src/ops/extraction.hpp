@@ -3,13 +3,15 @@
 // each the same as if it were the only one.
 //
 // Vertices: clusters ascending; within the owner first tied own points (Ties::merge), then own seam edges in stored
-// order, then inner edges by (lower, higher local index). Triangles: clusters ascending, stored tets ascending, then
-// the case table. A tet counts when no corner is without data; with B corners below, T tied and A strictly above it
-// gives triangles
-//   Ties::merge   when B > 0 and (A > 0 or T = 3)
-//   Ties::keep    when B > 0 and A + T > 0
-// A vertex is there when a tet that counts has its tied corner, or its edge from below to strictly above (Ties::keep:
-// to above or tied).
+// order, then inner edges by (lower, higher local index). Triangles: clusters ascending, stored cells ascending (tets,
+// pyramids, wedges, hexahedra), then the case tables (case_table.hpp, cell_cases.hpp), a tied corner as one above. A cell
+// counts when no corner is without data.
+//   Ties::keep    all triangles
+//   Ties::merge   vertices on edges to a tied corner are that corner; triangles with two equal corners fall away. A tet
+//                 with B corners below, T tied and A strictly above has some when B > 0 and (A > 0 or T = 3)
+// A vertex is there when a triangle has it. That is so for every edge from below to strictly above of a cell that counts:
+// no two faces of a cell share more than an edge, so no polygon passes twice through one tied corner with only one vertex
+// between.
 #pragma once
 
 #include <cstddef>
@@ -36,9 +38,9 @@ template <class Real>
 struct Request {
     std::vector<core::StoredIsovalue<Real>> isovalues; ///< in any order; one surface each
     Ties ties = Ties::merge;
-    bool ends = false;          ///< edge ends and weights
-    bool normals = false;       ///< gradient normals (packed.gradients is there)
-    bool source_cells = false;  ///< packed cell ids are there
+    bool ends = false;         ///< edge ends and weights
+    bool normals = false;      ///< gradient normals (packed.gradients is there)
+    bool source_cells = false; ///< packed cell ids are there
     /// For engines that interpolate point fields themselves; of others the caller asks for ends.
     std::vector<CarriedField> fields;
     /// Bytes that the caller will add to each vertex and triangle: engines reckon with them when they predict memory.
@@ -47,12 +49,12 @@ struct Request {
 
 /// The surface of one isovalue; V vertices, F triangles. Parts that were not asked for are empty.
 struct RawSurface {
-    Array positions;    ///< Real x 3, V
-    Array triangles;    ///< uint32 or uint64 x 3, F
-    Array normals;      ///< float32 x 3, V; zero where the face normal stands in
-    Array ends;         ///< int64 x 2, V: user's points, the one below first
-    Array weights;      ///< Real, V
-    Array source_cells; ///< int64, F: user's cells
+    Array positions;           ///< Real x 3, V
+    Array triangles;           ///< uint32 or uint64 x 3, F
+    Array normals;             ///< float32 x 3, V; zero where the face normal stands in
+    Array ends;                ///< int64 x 2, V: user's points, the one below first
+    Array weights;             ///< Real, V
+    Array source_cells;        ///< int64, F: user's cells
     std::vector<Array> fields; ///< Real x components, V
     std::uint64_t selected_clusters = 0;
     std::uint64_t tied_points = 0; ///< points whose stored value equals the isovalue, in tets that count or not

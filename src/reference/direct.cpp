@@ -9,10 +9,11 @@
 #include <utility>
 
 #include "core/arithmetic.hpp"
-#include "core/case_table.hpp"
+#include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/storage.hpp"
 #include "core/tet_gradient.hpp"
+#include "reference/triangles.hpp"
 
 namespace isotet::reference {
 
@@ -27,13 +28,54 @@ struct UserTet {
     std::size_t cell;
 };
 
-std::vector<UserTet> all_tets(const Grid& grid, const core::CellReader& cells) {
-    const PointReader points(grid.points);
+/// A tet or another cell in its stored form.
+struct UserCell {
+    core::CellKind kind;
+    std::vector<std::uint64_t> corners;
+    std::size_t cell;
+};
+
+bool mostly_negative(const PointReader& points, const core::CellReader& cells) {
     std::int64_t balance = 0;
     for (std::size_t cell = 0; cell < cells.count(); ++cell)
         if (cells.type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron))
             for (const core::Tet& tet : cells.tets(cell)) balance += points.orientation(tet);
-    const core::Orienter orienter(grid.points, balance < 0);
+    return balance < 0;
+}
+
+std::vector<UserCell> native_cells(const Grid& grid, const core::CellReader& cells) {
+    const PointReader points(grid.points);
+    const core::Orienter orienter(grid.points, mostly_negative(points, cells));
+    core::Orienter::Counts counts;
+    std::vector<UserCell> out;
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        if (!core::is_contoured(cells.type(cell))) continue;
+        for (core::WholeCell part : core::native_parts(cells.whole(cell))) {
+            if (part.kind == core::CellKind::tetrahedron) {
+                const core::Tet tet{part.corners[0], part.corners[1], part.corners[2], part.corners[3]};
+                const core::Tet stored = orienter.stored(cells.type(cell), cells.tets(cell), tet, counts);
+                out.push_back({part.kind, {stored.begin(), stored.end()}, cell});
+                continue;
+            }
+            if (core::turn_of(part, [&](std::size_t k) { return points[part.corners[k]]; }).is_mirrored())
+                part.corners = core::mirrored(part.kind, part.corners);
+            out.push_back(
+                {part.kind, {part.corners.begin(), part.corners.begin() + core::corner_count(part.kind)}, cell});
+        }
+    }
+    return out;
+}
+
+std::vector<UserCell> as_cells(const std::vector<UserTet>& tets) {
+    std::vector<UserCell> out;
+    for (const UserTet& tet : tets)
+        out.push_back({core::CellKind::tetrahedron, {tet.corners.begin(), tet.corners.end()}, tet.cell});
+    return out;
+}
+
+std::vector<UserTet> all_tets(const Grid& grid, const core::CellReader& cells) {
+    const PointReader points(grid.points);
+    const core::Orienter orienter(grid.points, mostly_negative(points, cells));
     std::vector<UserTet> tets;
     core::Orienter::Counts counts;
     for (std::size_t cell = 0; cell < cells.count(); ++cell) {
@@ -99,9 +141,12 @@ std::array<double, 3> origin_of(const PointReader& points, const std::set<std::u
 template <class Real>
 class StoredGrid {
 public:
-    StoredGrid(const ops::DirectInput& input, std::vector<UserTet> tets, ops::DirectResult& result)
-        : tets_(std::move(tets)), field_(input.field.values), points_(input.grid.points) {
-        for (const UserTet& tet : tets_) used_.insert(tet.corners.begin(), tet.corners.end());
+    StoredGrid(const ops::DirectInput& input, bool split_cells, ops::DirectResult& result)
+        : tets_(all_tets(input.grid, input.cells)),
+          cells_(split_cells ? as_cells(tets_) : native_cells(input.grid, input.cells)),
+          field_(input.field.values),
+          points_(input.grid.points) {
+        for (const UserCell& cell : cells_) used_.insert(cell.corners.begin(), cell.corners.end());
         const Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
         const Looked looked = look_at(field_, used_, precision);
         storage_ = looked.storage;
@@ -123,8 +168,8 @@ private:
     /// The user's points of an edge, lower first; twice the same for a tied point.
     using Edge = std::pair<std::uint64_t, std::uint64_t>;
 
-    bool is_valid(const UserTet& tet) const {
-        return std::none_of(tet.corners.begin(), tet.corners.end(),
+    bool is_valid(const auto& cell) const {
+        return std::none_of(cell.corners.begin(), cell.corners.end(),
                             [&](std::uint64_t p) { return core::is_nan(values_.at(p)); });
     }
     core::Vector<Real> position(std::uint64_t point) const {
@@ -134,11 +179,12 @@ private:
             stored[axis] = core::store_coordinate<Real>(p[axis], origin_[axis]);
         return stored;
     }
-    bool is_coarse(const UserTet& tet) const;
+    bool is_coarse(const UserCell& cell) const;
     void report_ties(double isovalue, const core::StoredIsovalue<Real>& stored, ops::DirectSurface& surface) const;
     std::map<std::uint64_t, std::uint32_t> gradients() const;
 
     std::vector<UserTet> tets_;
+    std::vector<UserCell> cells_; ///< of which surfaces are made
     Array field_;
     PointReader points_;
     std::set<std::uint64_t> used_;
@@ -149,21 +195,18 @@ private:
 };
 
 template <class Real>
-bool StoredGrid<Real>::is_coarse(const UserTet& tet) const {
+bool StoredGrid<Real>::is_coarse(const UserCell& cell) const {
     if (!rounds_) return false;
-    const auto squared_distance = [](const Point& a, const Point& b) {
-        const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-        return x * x + y * y + z * z;
-    };
     double moved = 0, shortest = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < 4; ++a) {
+    for (const std::uint64_t corner : cell.corners) {
         Point back;
-        const core::Vector<Real> stored = position(tet.corners[a]);
+        const core::Vector<Real> stored = position(corner);
         for (std::size_t axis = 0; axis < 3; ++axis) back[axis] = stored[axis] + origin_[axis];
-        moved = std::max(moved, squared_distance(points_[tet.corners[a]], back));
-        for (std::size_t b = a + 1; b < 4; ++b)
-            shortest = std::min(shortest, squared_distance(points_[tet.corners[a]], points_[tet.corners[b]]));
+        moved = std::max(moved, core::squared_distance(points_[corner], back));
     }
+    for (const auto& [k, l] : core::edges_of(cell.kind))
+        if (const std::uint64_t a = cell.corners[k], b = cell.corners[l]; a != b)
+            shortest = std::min(shortest, core::squared_distance(points_[a], points_[b]));
     return moved > 1e-6 * shortest;
 }
 
@@ -217,27 +260,29 @@ ops::DirectSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Di
     std::vector<std::array<Edge, 3>> triangles;
     std::vector<std::int64_t> source_cells;
     std::map<Edge, std::uint64_t> numbers;
-    for (const UserTet& tet : tets_) {
-        if (!is_valid(tet)) continue;
+    for (const UserCell& cell : cells_) {
+        if (!is_valid(cell)) continue;
         unsigned index = 0;
-        for (std::size_t k = 0; k < 4; ++k) index |= unsigned{value(tet.corners[k]) >= isovalue.value} << k;
-        const core::TetCase& c = core::case_table[index];
+        for (std::size_t k = 0; k < cell.corners.size(); ++k)
+            index |= unsigned{value(cell.corners[k]) >= isovalue.value} << k;
         const std::size_t before = triangles.size();
-        for (std::size_t t = 0; t < c.triangles; ++t) {
+        for (const auto& edges : triangles_of(cell.kind, index)) {
             std::array<Edge, 3> triangle;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const core::ActiveEdge edge = c.polygon[core::triangle_corners[t][k]];
-                triangle[k] = edge_of(tet.corners[edge.above], tet.corners[edge.below]);
-            }
+            for (std::size_t k = 0; k < 3; ++k)
+                triangle[k] = edge_of(cell.corners[edges[k].above], cell.corners[edges[k].below]);
             if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
             triangles.push_back(triangle);
             for (const Edge& edge : triangle) numbers[edge] = 0;
-            if (request.source_cells) source_cells.push_back(static_cast<std::int64_t>(tet.cell));
+            if (request.source_cells) source_cells.push_back(static_cast<std::int64_t>(cell.cell));
         }
-        surface.coarse_tets += triangles.size() > before && is_coarse(tet);
+        surface.coarse_tets += triangles.size() > before && is_coarse(cell);
     }
 
     const auto codes = request.normals ? gradients() : std::map<std::uint64_t, std::uint32_t>{};
+    const auto code_of = [&](std::uint64_t point) {
+        const auto found = codes.find(point); // a corner of a collapsed cell may have no tet
+        return found == codes.end() ? core::encode_normal(Point{}) : found->second;
+    };
     std::vector<Real> positions, weights;
     std::vector<float> normals;
     std::vector<std::int64_t> ends;
@@ -256,7 +301,7 @@ ops::DirectSurface StoredGrid<Real>::extract(double user_isovalue, const ops::Di
             weights.push_back(t);
         }
         if (request.normals)
-            for (const Real x : core::vertex_normal(codes.at(below), codes.at(above), t))
+            for (const Real x : core::vertex_normal(code_of(below), code_of(above), t))
                 normals.push_back(static_cast<float>(x));
     }
 
@@ -285,12 +330,11 @@ template <class Real>
 Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
                                          const Progress& progress) {
     if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
-    std::vector<UserTet> tets = all_tets(input.grid, input.cells);
-    if (tets.empty()) return core::nothing_to_contour(input.grid, input.cells);
+    if (all_tets(input.grid, input.cells).empty()) return core::nothing_to_contour(input.grid, input.cells);
     ops::DirectResult result;
     for (std::size_t cell = 0; cell < input.cells.count(); ++cell)
         result.cells_left_out += !core::is_contoured(input.cells.type(cell));
-    StoredGrid<Real> stored(input, std::move(tets), result);
+    StoredGrid<Real> stored(input, request.split_cells, result);
     for (const double isovalue : request.isovalues) {
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
         result.surfaces.push_back(stored.extract(isovalue, request));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/arithmetic.hpp"
-#include "core/case_table.hpp"
+#include "reference/triangles.hpp"
 
 namespace isotet::reference {
 
@@ -18,27 +18,34 @@ namespace {
 
 using core::Packed;
 
-/// A stored tet with packed point numbers.
-struct ReferenceTet {
-    std::array<std::uint64_t, 4> points;
+/// A stored cell with packed point numbers.
+struct ReferenceCell {
+    core::CellKind kind;
+    std::vector<std::uint64_t> points;
     std::uint32_t cluster;
-    std::uint64_t stored; ///< its place among the stored tets
+    std::uint64_t word; ///< its first
 };
 
 using Edge = std::pair<std::uint64_t, std::uint64_t>; ///< packed points, lower first
 
-std::vector<ReferenceTet> all_tets(const Packed& packed) {
-    std::vector<ReferenceTet> tets;
+std::vector<ReferenceCell> all_cells(const Packed& packed) {
+    std::vector<ReferenceCell> cells;
     for (std::uint32_t c = 0; c < packed.clusters(); ++c) {
         std::uint64_t locals[core::max_cluster_points];
         core::local_points(packed, c, locals);
-        std::uint64_t stored = core::group_size * std::uint64_t{packed.headers[c].first_group};
+        std::uint64_t word = packed.first_word(c);
         for (const core::StoredTet& tet : packed.cluster_tets(c)) {
             const auto& v = tet.corners;
-            tets.push_back({{locals[v[0]], locals[v[1]], locals[v[2]], locals[v[3]]}, c, stored++});
+            cells.push_back(
+                {core::CellKind::tetrahedron, {locals[v[0]], locals[v[1]], locals[v[2]], locals[v[3]]}, c, word++});
         }
+        packed.for_other_cells(c, [&](const core::StoredCell& cell) {
+            ReferenceCell& out =
+                cells.emplace_back(cell.kind, std::vector<std::uint64_t>{}, c, packed.first_word(c) + cell.word);
+            for (const std::uint8_t corner : cell.corners) out.points.push_back(locals[corner]);
+        });
     }
-    return tets;
+    return cells;
 }
 
 Edge edge_of(std::uint64_t a, std::uint64_t b) { return {std::min(a, b), std::max(a, b)}; }
@@ -67,17 +74,18 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
     const auto value = [&](std::uint64_t p) { return reals.values[p]; };
     const auto is_above = [&](std::uint64_t p) { return value(p) >= isovalue.value; };
     const auto is_tied = [&](std::uint64_t p) { return value(p) == isovalue.tied; };
-    const std::vector<ReferenceTet> tets = all_tets(packed);
+    const std::vector<ReferenceCell> cells = all_cells(packed);
 
     std::map<Edge, Holders> edge_holders;
     std::map<std::uint64_t, std::uint32_t> point_owner;
-    for (const ReferenceTet& tet : tets)
-        for (std::size_t a = 0; a < 4; ++a) {
-            const auto [owner, is_new] = point_owner.try_emplace(tet.points[a], tet.cluster);
-            if (!is_new) owner->second = std::min(owner->second, tet.cluster);
-            for (std::size_t b = a + 1; b < 4; ++b)
-                edge_holders[edge_of(tet.points[a], tet.points[b])].add(tet.cluster);
+    for (const ReferenceCell& cell : cells) {
+        for (const std::uint64_t point : cell.points) {
+            const auto [owner, is_new] = point_owner.try_emplace(point, cell.cluster);
+            if (!is_new) owner->second = std::min(owner->second, cell.cluster);
         }
+        for (const auto& [a, b] : core::edges_of(cell.kind))
+            edge_holders[edge_of(cell.points[a], cell.points[b])].add(cell.cluster);
+    }
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
 
     // The vertex on the edge between a point above (or tied) and one below.
@@ -91,25 +99,22 @@ Result<ops::RawSurface> extract_one(const Packed& packed, const ops::Request<Rea
     std::vector<std::array<Place, 3>> triangles;
     std::vector<std::int64_t> source_cells;
     std::set<Place> places;
-    for (const ReferenceTet& tet : tets) {
+    for (const ReferenceCell& cell : cells) {
         unsigned index = 0;
         bool valid = true;
-        for (std::size_t k = 0; k < 4; ++k) {
-            valid &= !core::is_nan(value(tet.points[k]));
-            index |= unsigned{is_above(tet.points[k])} << k;
+        for (std::size_t k = 0; k < cell.points.size(); ++k) {
+            valid &= !core::is_nan(value(cell.points[k]));
+            index |= unsigned{is_above(cell.points[k])} << k;
         }
         if (!valid) continue;
-        const core::TetCase& c = core::case_table[index];
-        for (std::size_t t = 0; t < c.triangles; ++t) {
+        for (const auto& edges : triangles_of(cell.kind, index)) {
             std::array<Place, 3> triangle;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const core::ActiveEdge edge = c.polygon[core::triangle_corners[t][k]];
-                triangle[k] = place_of(tet.points[edge.above], tet.points[edge.below]);
-            }
+            for (std::size_t k = 0; k < 3; ++k)
+                triangle[k] = place_of(cell.points[edges[k].above], cell.points[edges[k].below]);
             if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
             triangles.push_back(triangle);
             places.insert(triangle.begin(), triangle.end());
-            if (request.source_cells) source_cells.push_back(static_cast<std::int64_t>(packed.user_cell(tet.stored)));
+            if (request.source_cells) source_cells.push_back(static_cast<std::int64_t>(packed.user_cell(cell.word)));
         }
     }
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};

@@ -48,12 +48,13 @@ struct CellsMark {
     }
 };
 
-struct PointsMark {
+/// Points or values as they were when they were stored.
+struct ArrayMark {
     core::ArrayIdentity identity;
     session::Fingerprint print;
 
-    explicit PointsMark(const Array& points) : identity(points), print(session::fingerprint(points)) {}
-    bool is(const Array& points) const { return identity.is(points) || print == session::fingerprint(points); }
+    explicit ArrayMark(const Array& array) : identity(array), print(session::fingerprint(array)) {}
+    bool is(const Array& array) const { return identity.is(array) || print == session::fingerprint(array); }
 };
 
 Result<void> check(const ContourOptions& options) {
@@ -75,6 +76,14 @@ ExtractOptions extract_options(const ContourOptions& options, const ContourInput
     return extract;
 }
 
+/// Whether surfaces as `options` ask for can be had without packing again.
+bool has_what_is_needed(const PackedGrid& packed, const ContourOptions& options, const ContourInput& input) {
+    const bool needs_cells = options.source_cells || !input.cell_fields.empty();
+    const bool needs_gradients = options.normals == Normals::gradient;
+    return packed.precision() == options.precision && (!needs_cells || packed.report().source_bytes > 0) &&
+           (!needs_gradients || packed.report().gradient_bytes > 0);
+}
+
 } // namespace
 
 struct Contour::Data {
@@ -87,8 +96,7 @@ struct Contour::Data {
     std::optional<PackedGrid> packed; ///< of the input, but for what `behind` says
     ContourUpdate behind = ContourUpdate::grid;
     std::optional<CellsMark> cells;
-    std::optional<PointsMark> points;
-    std::optional<core::ArrayIdentity> field;
+    std::optional<ArrayMark> points, field;
     std::unique_ptr<EngineGrid> grid; ///< of an engine that keeps one
     std::optional<FieldReport> range; ///< found by a look at the grid
     double update_seconds = 0;
@@ -109,8 +117,9 @@ namespace {
 
 Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
                                        std::span<const double> isovalues, const Run& run) {
-    Result<DirectExtraction> direct = options.engine->extract_direct(
-        input.grid, input.field, isovalues, {extract_options(options, input), options.precision}, run);
+    Result<DirectExtraction> direct =
+        options.engine->extract_direct(input.grid, input.field, isovalues,
+                                       {extract_options(options, input), options.precision, options.split_cells}, run);
     if (!direct) return std::move(direct).error();
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
@@ -155,6 +164,7 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
     PackOptions pack_options;
     pack_options.precision = options.precision;
     pack_options.source_cells = options.source_cells || !input.cell_fields.empty();
+    pack_options.split_cells = options.split_cells;
     pack_options.gradients = options.normals == Normals::gradient;
     Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run);
     if (!made) return made.error();
@@ -213,7 +223,7 @@ Result<void> Contour::Data::bring_up_to_date(const Run& run) {
         if (auto ok = change_field(run); !ok) return ok;
     }
     behind = ContourUpdate::nothing;
-    field.emplace(input.field.values);
+    core::with_threads(run.threads, [&] { field.emplace(input.field.values); });
     input.grid = {};
     if (auto ok = create_grid(run); !ok) return ok;
     update_seconds += seconds_since(start);
@@ -257,7 +267,7 @@ Result<void> Contour::Data::extract_from_grid(std::span<const double> isovalues,
 Result<Contour> Contour::create(ContourInput input, const ContourOptions& options) {
     return core::guarded("starting to contour", [&]() -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
-        Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
+        Result<FieldSample> sample = FieldSample::create(input.grid, input.field, options.split_cells);
         if (!sample) return sample.error();
         auto data = std::make_unique<Data>();
         data->input = std::move(input);
@@ -273,15 +283,22 @@ Contour& Contour::operator=(Contour&&) noexcept = default;
 Contour::~Contour() = default;
 
 Result<ContourUpdate> Contour::set(ContourInput input, const Run& run) {
+    if (!data_) return moved_from("the session");
+    std::unique_lock lock(data_->mutex);
+    const ContourOptions options = data_->options;
+    lock.unlock();
+    return set(std::move(input), options, run);
+}
+
+Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& options, const Run& run) {
     return core::guarded("setting another grid", [&]() -> Result<ContourUpdate> {
         if (!data_) return moved_from("the session");
-        Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
-        if (!sample) return sample.error();
+        if (auto ok = check(options); !ok) return ok.error();
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         ContourUpdate update = ContourUpdate::grid;
-        const bool needs_cells = data.options.source_cells || !input.cell_fields.empty();
-        const bool usable = data.packed && (!needs_cells || data.packed->report().source_bytes > 0) &&
+        const bool usable = data.packed && data.options.split_cells == options.split_cells &&
+                            has_what_is_needed(*data.packed, options, input) &&
                             data.packed->user_point_count() == input.grid.points.tuples();
         if (usable && data.behind != ContourUpdate::grid) {
             core::with_threads(run.threads, [&] {
@@ -294,10 +311,17 @@ Result<ContourUpdate> Contour::set(ContourInput input, const Run& run) {
             });
         }
         if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "setting another grid was cancelled"};
+        if (update != ContourUpdate::nothing) {
+            Result<FieldSample> sample = FieldSample::create(input.grid, input.field, options.split_cells);
+            if (!sample) return sample.error();
+            data.sample = *std::move(sample);
+            data.range.reset();
+        }
+        if (data.options.engine != options.engine) data.grid.reset();
+        data.options = options;
         data.behind = update;
         data.input = std::move(input);
-        data.sample = *std::move(sample);
-        data.range.reset();
+        if (update == ContourUpdate::nothing && options.method != Method::direct) data.input.grid = {};
         return update;
     });
 }

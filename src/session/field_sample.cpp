@@ -1,7 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -14,9 +16,12 @@ namespace isotet {
 
 namespace {
 
-/// Triangles for each active tet: one where one corner is cut off, two where two are on each side. Of smooth fields on
-/// regular grids, on perturbed ones and on those of data/, about 1.3.
-constexpr double triangles_per_active_tet = 1.3;
+/// Triangles for each active cell. Tets give one where one corner is cut off, two where two are on each side. Of smooth
+/// fields on regular grids, on perturbed ones and on those of data/.
+constexpr std::array<double, core::cell_kind_count> triangles_per_active_cell{1.3, 1.6, 1.8, 2.1};
+
+/// What packing and extraction take for a cell, in tets.
+constexpr std::array<double, core::cell_kind_count> tets_like_a_cell{1, 2, 2.5, 3};
 
 /// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does
 /// not replace: it keeps a look at a few cells within the arrays.
@@ -31,7 +36,7 @@ bool is_within(const core::CellReader& cells, std::size_t cell) {
 
 } // namespace
 
-Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& field) {
+Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& field, bool split_cells) {
     return core::guarded("looking at the field", [&]() -> Result<FieldSample> {
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
@@ -45,7 +50,7 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
         sample.points_ = cells->points();
         sample.lower_ = std::numeric_limits<double>::infinity();
         sample.upper_ = -sample.lower_;
-        std::uint64_t tets = 0;
+        double tets = 0;
         for (std::uint64_t i = 0; i < looked_at; ++i) {
             // Regular grids repeat themselves from row to row: places between even steps are drawn (Weyl's sequence).
             const double place = (static_cast<double>(i) + std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0)) /
@@ -53,33 +58,41 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
             const auto drawn = static_cast<std::uint64_t>(place * static_cast<double>(count));
             const std::uint64_t cell = looked_at == count ? i : std::min(drawn, count - 1);
             if (!is_within(*cells, cell)) continue;
-            for (const core::Tet& tet : cells->tets(cell)) {
-                ++tets;
-                Range range{field.values.at(tet[0]), field.values.at(tet[0])};
+            const auto look = [&](core::CellKind kind, std::span<const std::uint64_t> corners) {
+                tets += tets_like_a_cell[static_cast<std::size_t>(kind)];
+                const double first = field.values.at(corners[0]);
+                Range range{first, first, triangles_per_active_cell[static_cast<std::size_t>(kind)]};
                 bool data = true;
-                for (const std::uint64_t point : tet) {
+                for (const std::uint64_t point : corners) {
                     const double value = field.values.at(point);
                     data &= std::isfinite(value);
                     range.lower = std::min(range.lower, value);
                     range.upper = std::max(range.upper, value);
                 }
-                if (!data) continue;
+                if (!data) return;
                 sample.lower_ = std::min(sample.lower_, range.lower);
                 sample.upper_ = std::max(sample.upper_, range.upper);
-                if (range.lower < range.upper) sample.tets_seen_.push_back(range);
+                if (range.lower < range.upper) sample.cells_seen_.push_back(range);
+            };
+            if (split_cells || cells->only_tets()) {
+                for (const core::Tet& tet : cells->tets(cell)) look(core::CellKind::tetrahedron, tet);
+            } else {
+                const core::WholeCell whole = cells->whole(cell);
+                look(whole.kind, {whole.corners.data(), core::corner_count(whole.kind)});
             }
         }
-        sample.tets_each_ = looked_at == 0 ? 0 : static_cast<double>(count) / static_cast<double>(looked_at);
-        sample.tets_ = static_cast<std::uint64_t>(sample.tets_each_ * static_cast<double>(tets));
+        sample.cells_each_ = looked_at == 0 ? 0 : static_cast<double>(count) / static_cast<double>(looked_at);
+        sample.tets_ = static_cast<std::uint64_t>(sample.cells_each_ * tets);
         if (cells->only_tets()) sample.tets_ = count;
         return sample;
     });
 }
 
 double FieldSample::triangles(double isovalue) const noexcept {
-    const auto active = std::ranges::count_if(
-        tets_seen_, [&](const Range& range) { return range.lower < isovalue && isovalue <= range.upper; });
-    return triangles_per_active_tet * tets_each_ * static_cast<double>(active);
+    double triangles = 0;
+    for (const Range& range : cells_seen_)
+        if (range.lower < isovalue && isovalue <= range.upper) triangles += range.triangles;
+    return cells_each_ * triangles;
 }
 
 } // namespace isotet

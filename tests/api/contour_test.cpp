@@ -122,6 +122,23 @@ TEST(Contour, SeesThatBorrowedMemoryWasFilledAnew) {
     EXPECT_EQ(bytes_of(contour.extract(0.5).value().surfaces[0].surface), packed_bytes(grid, 1, 0.5));
 }
 
+TEST(Contour, SeesThatSharedMemoryWasChangedInPlace) {
+    Grid grid = kuhn();
+    const auto memory = std::make_shared<std::vector<float>>(grid.points.tuples(), 1.f);
+    const auto values = [&] { // an owner of its own each time
+        const std::shared_ptr<const void> owner(memory->data(), [memory](const void*) {});
+        return Array(ScalarType::float32, memory->data(), memory->size(), 1, owner);
+    };
+    const auto input = [&] { return ContourInput{grid, {"values", values(), false, {}}, {}, {}}; };
+    Contour contour = Contour::create(input(), {.method = Method::clusters}).value();
+    EXPECT_EQ(contour.extract(0.5).value().surfaces[0].surface.triangle_count(), 0u);
+    EXPECT_EQ(contour.set(input()).value(), ContourUpdate::nothing) << "the same values";
+    const auto sphere = grid.point_fields[1].values.as<float>();
+    std::copy(sphere.begin(), sphere.end(), memory->begin());
+    EXPECT_EQ(contour.set(input()).value(), ContourUpdate::field);
+    EXPECT_EQ(bytes_of(contour.extract(0.5).value().surfaces[0].surface), packed_bytes(grid, 1, 0.5));
+}
+
 TEST(Contour, PacksAgainWhereATetTurnsOver) {
     const Grid grid = kuhn(3);
     Contour contour = Contour::create(input_of(grid), {.method = Method::clusters}).value();
@@ -172,6 +189,31 @@ TEST(Contour, PacksAgainForCellFieldsThatNobodyAskedForBefore) {
     input.cell_fields = {{"zero", Array::own(std::vector<float>(grid.cells.count()))}};
     EXPECT_EQ(contour.set(input).value(), ContourUpdate::grid);
     EXPECT_EQ(contour.extract(0.2).value().surfaces[0].surface.cell_fields.size(), 1u);
+}
+
+TEST(Contour, TakesOtherOptionsWithTheSameGrid) {
+    const Grid grid = kuhn();
+    ContourOptions options{.method = Method::clusters};
+    Contour contour = Contour::create(input_of(grid), options).value();
+    contour.prepare().value();
+    options.normals = Normals::face;
+    options.edge_ends = true;
+    EXPECT_EQ(contour.set(input_of(grid), options).value(), ContourUpdate::nothing) << "nothing more to pack";
+    const Surface faces = contour.extract(0.2).value().surfaces[0].surface;
+    EXPECT_EQ(faces.normals.tuples(), faces.triangle_count());
+    EXPECT_EQ(faces.edge_ends.tuples(), faces.vertex_count());
+    options.normals = Normals::gradient;
+    EXPECT_EQ(contour.set(input_of(grid), options).value(), ContourUpdate::grid) << "packed without gradients";
+    const Surface smooth = contour.extract(0.2).value().surfaces[0].surface;
+    EXPECT_EQ(smooth.normals.tuples(), smooth.vertex_count());
+    EXPECT_EQ(contour.set(input_of(grid), {.method = Method::clusters}).value(), ContourUpdate::nothing);
+    EXPECT_EQ(bytes_of(contour.extract(0.2).value().surfaces[0].surface), packed_bytes(grid, 0, 0.2));
+    EXPECT_EQ(contour.set(input_of(grid), {.precision = Precision::float64}).value(), ContourUpdate::grid);
+    contour.prepare().value();
+    EXPECT_EQ(contour.packed()->precision(), Precision::float64);
+    options.engine = nullptr;
+    EXPECT_EQ(contour.set(input_of(grid), options).error().code, ErrorCode::invalid_argument);
+    EXPECT_TRUE(contour.extract(0.2)) << "as it was";
 }
 
 TEST(Contour, PredictsBeforeItExtracts) {

@@ -26,18 +26,24 @@ FieldOnGrid made(const std::string& shape, std::uint64_t side, const std::string
 TEST(FieldSample, PredictsTheTrianglesOfALargeSurface) {
     for (const char* shape : {"kuhn", "shuffled", "hex", "wedge", "mixed"}) {
         const FieldOnGrid on = made(shape, 24, "gyroid");
-        const FieldSample sample = FieldSample::create(on.grid, on.field).value();
-        EXPECT_EQ(sample.points(), on.grid.points.tuples());
         const auto tets = static_cast<double>(survey(on.grid, {.faces = false}).value().tets);
-        EXPECT_NEAR(static_cast<double>(sample.tets()), tets, 0.05 * tets) << shape;
-        for (const double isovalue : {-0.8, 0.1}) {
-            const DirectExtraction once = extract_direct(on.grid, on.field, std::span(&isovalue, 1)).value();
-            const auto triangles = static_cast<double>(once.surfaces.front().surface.triangle_count());
-            EXPECT_NEAR(sample.triangles(isovalue), triangles, 0.2 * triangles) << shape << " at " << isovalue;
+        for (const bool split_cells : {false, true}) {
+            const FieldSample sample = FieldSample::create(on.grid, on.field, split_cells).value();
+            EXPECT_EQ(sample.points(), on.grid.points.tuples());
+            EXPECT_LE(static_cast<double>(sample.tets()), 1.05 * tets) << shape;
+            if (split_cells) {
+                EXPECT_GE(static_cast<double>(sample.tets()), 0.95 * tets) << shape;
+            }
+            for (const double isovalue : {-0.8, 0.1}) {
+                const DirectExtraction once =
+                    extract_direct(on.grid, on.field, std::span(&isovalue, 1), {.split_cells = split_cells}).value();
+                const auto triangles = static_cast<double>(once.surfaces.front().surface.triangle_count());
+                EXPECT_NEAR(sample.triangles(isovalue), triangles, 0.2 * triangles) << shape << " at " << isovalue;
+            }
+            EXPECT_EQ(sample.triangles(100), 0);
+            EXPECT_LT(sample.lower(), -1);
+            EXPECT_GT(sample.upper(), 1);
         }
-        EXPECT_EQ(sample.triangles(100), 0);
-        EXPECT_LT(sample.lower(), -1);
-        EXPECT_GT(sample.upper(), 1);
     }
 }
 

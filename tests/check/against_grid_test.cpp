@@ -46,8 +46,9 @@ Surface triangle_on(const Ends& ends, int copies = 1) {
     return surface;
 }
 
-SurfaceReport against(const Grid& grid, const Surface& surface, const PointField* field = nullptr) {
-    return check(surface, {.grid = &grid, .field = field}).value();
+SurfaceReport against(const Grid& grid, const Surface& surface, const PointField* field = nullptr,
+                      bool split_cells = false) {
+    return check(surface, {.grid = &grid, .field = field, .split_cells = split_cells}).value();
 }
 
 // The triangle that cuts point 3 off the tet 0 1 2 3: its three edges lie in the faces 0 1 3, 1 2 3 and 0 2 3.
@@ -133,10 +134,15 @@ TEST(CheckAgainstGrid, SplitsOtherCellsAsExtractionDoes) {
         Array::own(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1}, 3);
     grid.cells.connectivity = Array::own(std::vector<std::int32_t>{0, 1, 2, 3, 4, 5, 6, 7});
     grid.cells.uniform_type = CellType::hexahedron;
-    EXPECT_EQ(against(grid, triangle_on({{0, 0}, {2, 2}, {1, 1}})).blamed_edges, 0u);
-    EXPECT_EQ(against(grid, triangle_on({{2, 2}, {6, 6}, {1, 1}})).blamed_edges, 0u);
-    EXPECT_EQ(against(grid, triangle_on({{2, 2}, {5, 5}, {1, 1}})).blamed_edges, 1u);
-    EXPECT_EQ(against(grid, triangle_on({{0, 0}, {6, 6}, {1, 1}})).blamed_edges, 1u);
+    const auto blamed = [&](std::int64_t a, std::int64_t b, bool split_cells) {
+        return against(grid, triangle_on({{a, a}, {b, b}, {1, 1}}), nullptr, split_cells).blamed_edges;
+    };
+    EXPECT_EQ(blamed(0, 2, true), 0u);
+    EXPECT_EQ(blamed(2, 6, true), 0u);
+    EXPECT_EQ(blamed(2, 5, true), 1u);
+    EXPECT_EQ(blamed(0, 6, true), 1u);
+    EXPECT_EQ(blamed(2, 5, false), 0u); // a face as a whole
+    EXPECT_EQ(blamed(0, 6, false), 1u);
 }
 
 TEST(CheckAgainstGrid, NamesAnEdgeEndThatTheGridDoesNotHave) {

@@ -20,7 +20,7 @@ inline std::string bytes_of(const PackedGrid& grid) {
     const core::Packed& packed = grid.data();
     std::string out;
     append_bytes(out, packed.headers);
-    append_bytes(out, packed.tets);
+    append_bytes(out, packed.cells);
     append_bytes(out, packed.group_ranges);
     append_bytes(out, packed.links);
     append_bytes(out, packed.has_no_data);

@@ -88,7 +88,8 @@ void extract_and_check(const Grid& grid, const PointField& field, const PackedGr
     expect(surface && reference);
     expect(test::bytes_of(surface->surface) == test::bytes_of(reference->surface));
     const auto report = check(surface->surface, {.grid = &grid, .field = &field});
-    expect(report && report->sound);
+    // Whole cells that lie in each other may give the same triangle.
+    expect(report && report->blamed_edges == 0 && (ties == Ties::keep || report->equal_corner_triangles == 0));
 }
 
 /// From the arrays alone: both engines give the same bytes, as many vertices as the packed grid, and the same refusal.
@@ -132,7 +133,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         expect(packed.error().code == ErrorCode::invalid_data && !packed.error().message.empty());
         return 0;
     }
-    expect(packed->report().tets == report->tets - report->repeated_tets);
+    const auto split_up = pack(grid, field, {.precision = precision, .split_cells = true}, {.threads = 1});
+    expect(split_up && split_up->report().tets == report->tets - report->repeated_tets);
     if (!std::isfinite(isovalue)) return 0;
     for (const Ties ties : {Ties::merge, Ties::keep}) extract_and_check(grid, field, *packed, isovalue, ties);
     return 0;

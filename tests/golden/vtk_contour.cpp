@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
+#include <vector>
 
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
@@ -17,6 +19,8 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
+
+#include "core/cells.hpp"
 
 namespace isotet::test {
 
@@ -52,9 +56,45 @@ double area_of(vtkPolyData* surface) {
     return area;
 }
 
+/// Types and corners of the cells, as VTK wants them.
+class VtkCells {
+public:
+    explicit VtkCells(const Array& field) : field_(field) {}
+
+    void add(int type, std::span<const std::uint64_t> corners) {
+        std::vector<std::uint64_t> sorted(corners.begin(), corners.end());
+        std::sort(sorted.begin(), sorted.end());
+        const bool is_valid =
+            std::none_of(corners.begin(), corners.end(), [&](std::uint64_t p) { return std::isnan(field_.at(p)); });
+        if (!is_valid || !seen_.insert(sorted).second) return;
+        std::vector<vtkIdType> ids(corners.begin(), corners.end());
+        cells_->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+        types_.push_back(type);
+    }
+    bool empty() const { return types_.empty(); }
+    void give_to(vtkUnstructuredGrid* grid) { grid->SetCells(types_.data(), cells_); }
+
+private:
+    const Array& field_;
+    std::set<std::vector<std::uint64_t>> seen_;
+    std::vector<int> types_;
+    vtkNew<vtkCellArray> cells_;
+};
+
+void add_cells(const Grid& grid, VtkCells& out) {
+    const core::CellReader cells = core::CellReader::open(grid).value();
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        if (!core::is_contoured(cells.type(cell))) continue;
+        std::vector<std::uint64_t> corners;
+        for (int k = 0; k < core::corners_of(cells.type(cell)); ++k)
+            corners.push_back(cells.corner(cells.first(cell) + static_cast<std::uint64_t>(k)));
+        out.add(cells.type(cell), corners);
+    }
+}
+
 } // namespace
 
-VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue) {
+VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue, bool split_cells) {
     vtkNew<vtkUnstructuredGrid> input;
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
@@ -65,21 +105,12 @@ VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue) {
     if (field.type() == ScalarType::float32) set_scalars<vtkFloatArray>(input, field);
     else set_scalars<vtkDoubleArray>(input, field);
 
-    const TetList list = split(grid).value();
-    vtkNew<vtkCellArray> cells;
-    std::set<std::array<std::uint64_t, 4>> seen;
-    for (const auto& tet : list.tets) {
-        auto sorted = tet;
-        std::sort(sorted.begin(), sorted.end());
-        const bool is_valid =
-            std::none_of(tet.begin(), tet.end(), [&](std::uint64_t p) { return std::isnan(field.at(p)); });
-        if (!is_valid || !seen.insert(sorted).second) continue;
-        const vtkIdType corners[4] = {static_cast<vtkIdType>(tet[0]), static_cast<vtkIdType>(tet[1]),
-                                      static_cast<vtkIdType>(tet[2]), static_cast<vtkIdType>(tet[3])};
-        cells->InsertNextCell(4, corners);
-    }
-    if (seen.empty()) return {};
-    input->SetCells(VTK_TETRA, cells);
+    VtkCells cells(field);
+    if (split_cells)
+        for (const auto& tet : split(grid).value().tets) cells.add(VTK_TETRA, tet);
+    else add_cells(grid, cells);
+    if (cells.empty()) return {};
+    cells.give_to(input);
 
     vtkNew<vtkContour3DLinearGrid> contour;
     contour->SetInputData(input);

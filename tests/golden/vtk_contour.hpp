@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The rival: what VTK's vtkContour3DLinearGrid, merging points, makes of the valid tets of a grid.
+// The rival: what VTK's vtkContour3DLinearGrid, merging points, makes of the valid cells of a grid.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@ struct VtkSurface {
     double area = 0;
 };
 
-/// Gives VTK the tets that isotet makes of the grid, and only they: repeated ones once, none with a corner of NaN.
-VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue);
+/// Gives VTK the cells that isotet contours, or the tets into which it splits them, and only they: repeated ones once,
+/// none with a corner of NaN.
+VtkSurface vtk_contour(const Grid& grid, const Array& field, double isovalue, bool split_cells);
 
 } // namespace isotet::test

@@ -24,8 +24,8 @@ struct Compared {
 };
 
 void expect_equal_to_vtk(const Grid& grid, const PackedGrid& packed, const PointField& field, double isovalue,
-                         Compared& compared) {
-    const VtkSurface vtk = vtk_contour(grid, field.values, isovalue);
+                         bool split_cells, Compared& compared) {
+    const VtkSurface vtk = vtk_contour(grid, field.values, isovalue, split_cells);
     for (const Ties ties : {Ties::keep, Ties::merge}) {
         ExtractOptions options;
         options.ties = ties;
@@ -38,7 +38,9 @@ void expect_equal_to_vtk(const Grid& grid, const PackedGrid& packed, const Point
         EXPECT_EQ(out.surface.triangle_count(), vtk.triangles)
             << field.name << " = " << isovalue << ", ties " << int(ties);
         if (!std::isfinite(vtk.area)) continue; // VTK interpolates to infinity
-        EXPECT_NEAR(area(out.surface), vtk.area, 1e-5 * vtk.area) << field.name << " = " << isovalue;
+        // Polygons of other cells than tets are not plane, and VTK cuts them along other diagonals.
+        const double near = packed.report().pyramids + packed.report().wedges + packed.report().hexahedra ? 0.05 : 1e-5;
+        EXPECT_NEAR(area(out.surface), vtk.area, near * vtk.area) << field.name << " = " << isovalue;
     }
 }
 
@@ -69,9 +71,11 @@ TEST_P(RealGrid, HasTheCountsAndAreasOfVtk) {
     Compared compared;
     for (const std::string& name : fields_to_contour(grid)) {
         const PointField field = find_field(grid, name).value();
-        const PackedGrid packed = pack(grid, field).value();
-        for (const double isovalue : isovalues_of(packed, field))
-            expect_equal_to_vtk(grid, packed, field, isovalue, compared);
+        for (const bool split_cells : {false, true}) {
+            const PackedGrid packed = pack(grid, field, {.split_cells = split_cells}).value();
+            for (const double isovalue : isovalues_of(packed, field))
+                expect_equal_to_vtk(grid, packed, field, isovalue, split_cells, compared);
+        }
     }
     EXPECT_GT(compared.kept, 0);
     EXPECT_GT(compared.merged, 0);
@@ -99,7 +103,7 @@ void expect_random_grid_equal_to_vtk(std::uint32_t seed, const NastyOptions& nas
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const NastyGrid g = nasty_grid(seed, nasty);
     const PackedGrid packed = pack(g.grid, g.field).value();
-    for (const double isovalue : isovalues) expect_equal_to_vtk(g.grid, packed, g.field, isovalue, compared);
+    for (const double isovalue : isovalues) expect_equal_to_vtk(g.grid, packed, g.field, isovalue, false, compared);
 }
 
 TEST(RandomGrids, HaveTheCountsAndAreasOfVtk) {
@@ -116,16 +120,18 @@ TEST(RandomGrids, HaveTheCountsAndAreasOfVtk) {
     EXPECT_GT(compared.merged, 30);
 }
 
-TEST(MadeGrids, HaveTheCountsAndAreasOfVtkAfterSplitting) {
+TEST(MadeGrids, HaveTheCountsAndAreasOfVtk) {
     Compared compared;
     for (const char* shape : {"hex", "wedge", "pyramid", "mixed", "layer"})
         for (std::size_t place = 0; place < 2; ++place) {
             const Grid grid = made_grid(shape, 9, {"gyroid", "integer"});
-            const PackedGrid packed = pack(grid, point_field(grid, place)).value();
-            for (const double isovalue : {0.3, 1.0, 2.0})
-                expect_equal_to_vtk(grid, packed, point_field(grid, place), isovalue, compared);
+            for (const bool split_cells : {false, true}) {
+                const PackedGrid packed = pack(grid, point_field(grid, place), {.split_cells = split_cells}).value();
+                for (const double isovalue : {0.3, 1.0, 2.0})
+                    expect_equal_to_vtk(grid, packed, point_field(grid, place), isovalue, split_cells, compared);
+            }
         }
-    EXPECT_GT(compared.merged, 10);
+    EXPECT_GT(compared.merged, 20);
 }
 
 TEST(CloseValues, HaveTheCountsAndAreasOfVtk) {
@@ -136,7 +142,7 @@ TEST(CloseValues, HaveTheCountsAndAreasOfVtk) {
         const PointField field = close.field(grid);
         const PackedGrid packed = pack(grid, field).value();
         for (int step = 0; step < close.steps; ++step)
-            expect_equal_to_vtk(grid, packed, field, close.isovalue(step, 0.3), compared);
+            expect_equal_to_vtk(grid, packed, field, close.isovalue(step, 0.3), false, compared);
     }
     EXPECT_EQ(compared.merged, 12);
 }

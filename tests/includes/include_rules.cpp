@@ -33,11 +33,13 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/device/", {"device/", "api/", "vulkan/", "ops/", "core/"}},
         {"src/session/", {"session/", "core/"}},
         {"src/scene/", {"scene/", "core/"}},
-        {"src/io/own/", {"io/", "core/"}},
+        {"src/io/own/", {"io/own/", "io/reader.hpp", "core/"}},
+        {"src/io/process/", {"io/own/", "io/process/", "io/reader.hpp", "core/"}},
         {"src/io/vtk/", {"io/", "core/"}},
-        {"src/io/", {"io/", "core/"}},
+        {"src/io/", {"io/own/", "io/formats.hpp", "io/reader.hpp", "core/"}},
         {"apps/cli/", {}}, // its own headers have no folder
         {"examples/", {}},
+        {"python/", {}}, // its own headers have no folder
     };
     return rules;
 }
@@ -53,7 +55,7 @@ const std::vector<LibraryRule>& library_rules() {
     static const std::vector<LibraryRule> rules = {
         {"VTK", {"vtk"}, {"src/io/vtk/", "bench/", "tests/"}},
         {"pugixml", {"pugixml"}, {"src/io/", "tests/"}},
-        {"HDF5", {"hdf5", "H5"}, {"src/io/", "tests/"}},
+        {"HDF5", {"hdf5", "H5"}, {"src/io/vtk/", "tests/"}},
         {"oneTBB", {"tbb/", "oneapi/"}, {"src/", "bench/", "tests/"}},
         {"Vulkan", {"vulkan/vulkan"}, {"src/vulkan/", "tests/"}},
         {"FreeType", {"ft2build", "freetype"}, {"src/render/"}},
@@ -66,6 +68,7 @@ const std::vector<LibraryRule>& library_rules() {
         {"liblz4", {"lz4"}, {"src/io/own/"}},
         {"liblzma", {"lzma"}, {"src/io/own/"}},
         {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
+        {"nanobind", {"nanobind/"}, {"python/"}},
     };
     return rules;
 }

@@ -30,10 +30,11 @@ link() {
 link isotet -ltbb -lfmt -lpthread
 link isotet_vulkan -lisotet -lfmt -ldl
 link isotet_render -lisotet_vulkan -lisotet -lfmt -lfreetype
-rm "$lib"/libisotet.a "$lib"/libisotet_vulkan.a "$lib"/libisotet_render.a
+link isotet_io -lisotet -lfmt -lpng -lwebpmux -lwebp -ldeflate -llz4 -llzma -lpugixml -ldl
+rm "$lib"/libisotet_io.a "$lib"/libisotet.a "$lib"/libisotet_vulkan.a "$lib"/libisotet_render.a
 
-read -ra flags < <(pkg-config --cflags --libs isotet-render)
-for component in isotet vulkan render; do
+read -ra flags < <(pkg-config --cflags --libs isotet-render isotet-io)
+for component in isotet vulkan render io; do
     "$cxx" "$consumer/$component.cpp" "${flags[@]}" -Wl,-rpath,"$lib" -o "$folder/$component"
     "$folder/$component"
 done

@@ -144,7 +144,7 @@ TEST(SetPoints, RefusesPointsThatTurnATetAndChangesNothing) {
         packed.with_points(moved<float>(grid.points, [](auto p) { return std::array{-p[0], p[1], p[2]}; }));
     ASSERT_FALSE(mirrored);
     EXPECT_EQ(mirrored.error().code, ErrorCode::invalid_data);
-    EXPECT_NE(mirrored.error().message.find("750 tets change their orientation"), std::string::npos)
+    EXPECT_NE(mirrored.error().message.find("750 cells change their orientation"), std::string::npos)
         << mirrored.error().message;
     const auto infinite =
         packed.with_points(moved<double>(grid.points, [](auto p) { return std::array{p[0], p[1] / 0.0, p[2]}; }));

@@ -18,7 +18,7 @@ template <class Real>
 void expect_equal_to_weld(const Grid& grid, const PointField& field, const std::vector<double>& isovalues,
                           const std::string& which) {
     PackOptions pack_options;
-    pack_options.source_cells = true;
+    pack_options.source_cells = pack_options.split_cells = true;
     pack_options.precision = std::is_same_v<Real, float> ? Precision::float32 : Precision::float64;
     const PackedGrid packed = pack(grid, field, pack_options).value();
     for (const double isovalue : isovalues)

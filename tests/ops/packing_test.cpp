@@ -11,6 +11,7 @@
 #include <isotet/pack.hpp>
 
 #include "core/growth.hpp"
+#include "core/stored_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/packed.hpp"
 #include "core/storage.hpp"
@@ -41,16 +42,16 @@ void expect_clusters(const std::vector<Tet>& tets) {
         ASSERT_EQ(sorted[i], i) << "a tet is missing or twice in the clusters";
     std::size_t tet = 0, point = 0;
     for (const auto& cluster : block.clusters) {
-        ASSERT_GT(cluster.tets, 0u);
+        ASSERT_GT(cluster.cells[0], 0u);
         ASSERT_LE(cluster.points, core::max_cluster_points);
-        ASSERT_LE(cluster.tets, core::max_cluster_tets);
+        ASSERT_LE(cluster.cells[0], core::max_cluster_tets);
         std::set<std::uint64_t> listed(block.points.begin() + static_cast<std::ptrdiff_t>(point),
                                        block.points.begin() + static_cast<std::ptrdiff_t>(point + cluster.points));
         ASSERT_EQ(listed.size(), cluster.points);
         std::set<std::uint64_t> used;
-        for (std::size_t end = tet + cluster.tets; tet < end; ++tet)
+        for (std::size_t end = tet + cluster.cells[0]; tet < end; ++tet)
             for (std::size_t k = 0; k < 4; ++k) {
-                const std::uint8_t corner = block.tets[tet].corners[k];
+                const std::uint8_t corner = block.words[tet].corners[k];
                 ASSERT_LT(corner, cluster.points);
                 ASSERT_EQ(block.points[point + corner], tets[block.order[tet]][k]);
                 used.insert(tets[block.order[tet]][k]);
@@ -95,15 +96,16 @@ TEST(Growth, PutsEveryTetOfAFanIntoOneCluster) {
 }
 
 /// Everything that packed.hpp says of the arrays, found again from the tets alone.
-void expect_packed_arrays(const Grid& grid, const PointField& field) {
+void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_cells = false) {
     PackOptions options;
     options.source_cells = true;
+    options.split_cells = split_cells;
     const PackedGrid packed_grid = pack(grid, field, options).value();
     const core::Packed& packed = packed_grid.data();
     std::map<std::uint64_t, std::set<std::size_t>> point_holders; // by packed point
     std::map<std::pair<std::uint64_t, std::uint64_t>, std::set<std::size_t>> edge_holders;
     std::vector<std::vector<std::uint64_t>> locals(packed.clusters());
-    std::multiset<std::pair<std::array<std::uint64_t, 4>, std::int64_t>> stored;
+    std::multiset<std::pair<std::vector<std::uint64_t>, std::int64_t>> stored;
     std::uint64_t next_point = 0;
     for (std::size_t c = 0; c < packed.clusters(); ++c) {
         const core::ClusterHeader& h = packed.headers[c];
@@ -126,15 +128,44 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
                     if (const std::uint64_t q = locals[c].at(tets[i].corners[b]); p < q) edge_holders[{p, q}].insert(c);
             }
             ASSERT_EQ(core::canonical(user), user);
-            stored.emplace(
-                user, static_cast<std::int64_t>(packed.user_cell(core::group_size * std::uint64_t{h.first_group} + i)));
+            stored.emplace(std::vector<std::uint64_t>(user.begin(), user.end()),
+                           static_cast<std::int64_t>(packed.user_cell(packed.first_word(c) + i)));
         }
+        packed.for_other_cells(c, [&](const core::StoredCell& cell) {
+            for (const std::uint8_t corner : cell.corners) point_holders[locals[c].at(corner)].insert(c);
+            for (const core::CellFace& face : core::shape_of(cell.kind).faces())
+                for (std::size_t k = 0; k < face.count; ++k) {
+                    const std::uint64_t p = locals[c].at(cell.corners[face.corners[k]]),
+                                        q = locals[c].at(cell.corners[face.corners[(k + 1) % face.count]]);
+                    edge_holders[{std::min(p, q), std::max(p, q)}].insert(c);
+                }
+            const core::WholeCell user = core::user_cell(packed, locals[c].data(), cell);
+            stored.emplace(std::vector<std::uint64_t>(user.corners.begin(), user.corners.begin() + cell.corners.size()),
+                           static_cast<std::int64_t>(packed.user_cell(packed.first_word(c) + cell.word)));
+        });
     }
     ASSERT_EQ(next_point, packed.points());
     ASSERT_EQ(point_holders.size(), packed.points());
 
     decltype(stored) expected;
-    for (const UprightTet& tet : upright_tets(grid)) expected.emplace(core::canonical(tet.corners), tet.cell);
+    const auto cells = core::CellReader::open(grid).value();
+    if (cells.only_tets() || split_cells) {
+        for (const UprightTet& tet : upright_tets(grid)) {
+            const Tet corners = core::canonical(tet.corners);
+            expected.emplace(std::vector<std::uint64_t>(corners.begin(), corners.end()), tet.cell);
+        }
+    } else { // made grids: upright, each once, tets as the file has them aside
+        for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+            const core::WholeCell whole = cells.whole(cell);
+            Tet tet{whole.corners[0], whole.corners[1], whole.corners[2], whole.corners[3]};
+            tet = core::canonical(tet);
+            const auto end = whole.corners.begin() + static_cast<std::ptrdiff_t>(core::corner_count(whole.kind));
+            expected.emplace(whole.kind == core::CellKind::tetrahedron
+                                 ? std::vector<std::uint64_t>(tet.begin(), tet.end())
+                                 : std::vector<std::uint64_t>(whole.corners.begin(), end),
+                             static_cast<std::int64_t>(cell));
+        }
+    }
     ASSERT_EQ(stored, expected);
 
     const auto owner_of = [&](std::uint64_t point) { return *point_holders.at(point).begin(); };
@@ -189,6 +220,15 @@ void expect_packed_arrays(const Grid& grid, const PointField& field) {
                 ASSERT_TRUE(group.lower <= step && step <= group.upper);
             }
         }
+        packed.for_other_cells(c, [&](const core::StoredCell& cell) {
+            const core::GroupRange group = packed.group_ranges[h.first_group + cell.word / core::group_size];
+            for (const std::uint8_t corner : cell.corners) {
+                const float value = reals.values[locals[c][corner]];
+                if (core::is_nan(value)) continue;
+                const std::uint8_t step = core::quantize(value, reals.ranges[c]);
+                ASSERT_TRUE(group.lower <= step && step <= group.upper);
+            }
+        });
     }
 }
 
@@ -203,10 +243,12 @@ TEST(PackedArrays, SayWhatTheTetsSay) {
                                               .repeated = 0.1});
         expect_packed_arrays(g.grid, g.field);
     }
-    for (const char* shape : {"kuhn", "layer", "mixed"}) {
+    for (const char* shape : {"kuhn", "layer", "mixed", "hex", "wedge", "pyramid"}) {
         const Grid grid = made_grid(shape, 7, {"gyroid"});
         expect_packed_arrays(grid, point_field(grid));
     }
+    const Grid mixed = made_grid("mixed", 7, {"gyroid"});
+    expect_packed_arrays(mixed, point_field(mixed), true);
 }
 
 TEST(RepeatedTets, AreFoundAmongManyOfOnePoint) {
@@ -236,8 +278,7 @@ TEST(RepeatedTets, AreFoundAmongManyOfOnePoint) {
     std::set<std::uint64_t> kept, expected;
     const core::Packed& data = packed.data();
     for (std::size_t c = 0; c < data.clusters(); ++c)
-        for (std::size_t i = 0; i < data.headers[c].tets; ++i)
-            kept.insert(data.user_cell(core::group_size * std::size_t{data.headers[c].first_group} + i));
+        for (std::size_t i = 0; i < data.headers[c].tets(); ++i) kept.insert(data.user_cell(data.first_word(c) + i));
     for (const auto& [corners, cell] : first) expected.insert(cell);
     EXPECT_EQ(kept, expected);
 }

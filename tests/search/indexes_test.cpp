@@ -30,7 +30,7 @@ bool is_exact(SearchIndex index) {
 
 /// Builds every index on a field, and asks it for the isovalues one after another.
 void expect_all_cut_tets_found(const Grid& grid, const PointField& field, const std::vector<double>& isovalues) {
-    const PackedGrid packed = pack(grid, field).value();
+    const PackedGrid packed = pack(grid, field, {.split_cells = true}).value();
     for (const SearchIndex index : all_search_indexes) {
         SCOPED_TRACE(std::string(name_of(index)));
         TetIndex tets = TetIndex::create(packed, index).value();
@@ -103,7 +103,7 @@ TEST(SearchIndexes, FindNothingInAConstantFieldOrOneWithoutData) {
 
 TEST(SearchIndexes, FindTheTetsThatExtractionTakesTrianglesFrom) {
     const Grid grid = made_grid("perturbed", 8, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     ExtractOptions options;
     options.ties = Ties::keep; // one or two triangles of every active tet
     const std::uint64_t triangles = extract(packed, 0.25, options).value().surface.triangle_count();
@@ -118,7 +118,7 @@ TEST(SearchIndexes, FindTheTetsThatExtractionTakesTrianglesFrom) {
 
 TEST(SearchIndexes, AreTheSameForAnyNumberOfThreads) {
     const Grid grid = made_grid("shuffled", 24, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     for (const SearchIndex index : all_search_indexes) {
         TetIndex one = TetIndex::create(packed, index, {.threads = 1}).value(),
                  four = TetIndex::create(packed, index, {.threads = 4}).value();
@@ -130,7 +130,7 @@ TEST(SearchIndexes, AreTheSameForAnyNumberOfThreads) {
 
 TEST(SearchIndexes, OutliveThePackedGrid) {
     const Grid grid = made_grid("kuhn", 5, {"gyroid"});
-    std::optional<PackedGrid> packed = pack(grid, point_field(grid)).value();
+    std::optional<PackedGrid> packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     for (const SearchIndex index : all_search_indexes) {
         TetIndex tets = TetIndex::create(*packed, index).value();
         const std::vector<std::uint32_t> before = numbers(tets.find(0.1));
@@ -141,7 +141,7 @@ TEST(SearchIndexes, OutliveThePackedGrid) {
 
 TEST(SearchIndexes, RefuseWhatTheyCannotDo) {
     const Grid grid = made_grid("kuhn", 3, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     TetIndex tets = TetIndex::create(packed, SearchIndex::octree).value();
     EXPECT_EQ(tets.find(std::nan("")).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(tets.find(INFINITY).error().message, "the isovalue is inf, but must be finite");

@@ -23,12 +23,20 @@ using core::TetTable;
 using search::FaceNeighbours;
 
 TetTable table_of(const Grid& grid, const PointField& field) {
-    return core::make_tet_table(pack(grid, field).value().data()).value();
+    return core::make_tet_table(pack(grid, field, {.split_cells = true}).value().data()).value();
+}
+
+TEST(TetTables, HoldTetsOnly) {
+    const Grid grid = made_grid("mixed", 5, {"gyroid"});
+    const auto table = core::make_tet_table(pack(grid, point_field(grid)).value().data());
+    ASSERT_FALSE(table);
+    EXPECT_EQ(table.error().code, ErrorCode::invalid_argument);
+    EXPECT_NE(table.error().message.find("pack it with split_cells"), std::string::npos);
 }
 
 TEST(TetTables, HoldSixteenBytesATetAndAPoint) {
     const Grid grid = made_grid("mixed", 5, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     const TetTable table = core::make_tet_table(packed.data()).value();
     EXPECT_EQ(table.bytes(), 16 * (packed.report().tets + packed.report().points));
     EXPECT_EQ(table.clusters(), packed.report().clusters);
@@ -77,7 +85,7 @@ TEST(SeedSets, AreSmallOnSmoothFieldsAndNeverEmptyWhereSomethingIsCut) {
 
 TEST(TetIndexReports, TellTheBytesThatTheHeadersPromise) {
     const Grid grid = made_grid("shuffled", 20, {"gyroid"});
-    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const PackedGrid packed = pack(grid, point_field(grid), {.split_cells = true}).value();
     const auto bytes = [&](SearchIndex index) {
         const TetIndexReport report = TetIndex::create(packed, index).value().report();
         return static_cast<double>(report.index_bytes) / static_cast<double>(report.tets);

@@ -13,4 +13,7 @@ std::filesystem::path source_folder();
 /// Path of the program isotet; empty when it is not built.
 std::string program_path();
 
+/// Path of the program isotet-reader; empty when it is not built.
+std::string reader_path();
+
 } // namespace isotet::test

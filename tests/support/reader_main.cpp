@@ -1,11 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The main function of tests that read through VTK: also the reader process that they start.
+// The main function of tests that read through VTK: isotet-reader is found in PATH.
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
 #include <gtest/gtest.h>
 
-#include <isotet/read.hpp>
+#include "support/places.hpp"
 
 int main(int argc, char** argv) {
-    if (const auto status = isotet::run_as_reader(argc, argv)) return *status;
+    const char* const path = std::getenv("PATH");
+    const std::string folder = std::filesystem::path(isotet::test::reader_path()).parent_path().string();
+    ::setenv("PATH", (folder + ":" + (path ? path : "")).c_str(), 1);
     testing::InitGoogleTest(&argc, argv);
     return RUN_ALL_TESTS();
 }

@@ -163,18 +163,28 @@ private:
         if (any & side::unsound) return false;
         const bool both_sides = (any & side::above) != all, watched = any & side::watched;
         if (!both_sides && !watched) return true;
-        for (const core::Tet& tet : cells_.tets(cell)) {
-            const unsigned above = [&] {
-                unsigned sum = 0;
-                for (const std::uint64_t point : tet) sum += context_.sides[point] & side::above;
-                return sum;
-            }();
+        const auto add_tet = [&](const auto& tet) {
+            unsigned above = 0;
+            for (std::size_t k = 0; k < 4; ++k) above += context_.sides[tet[k]] & side::above;
             if (watched)
-                for (const std::uint64_t point : tet) context_.sides.saw(point);
+                for (std::size_t k = 0; k < 4; ++k) context_.sides.saw(tet[k]);
             if (above % 4 != 0)
-                cutter_.add({static_cast<Point>(tet[0]), static_cast<Point>(tet[1]), static_cast<Point>(tet[2]),
-                             static_cast<Point>(tet[3])},
-                            place);
+                cutter_.add_tet({static_cast<Point>(tet[0]), static_cast<Point>(tet[1]), static_cast<Point>(tet[2]),
+                                 static_cast<Point>(tet[3])},
+                                place);
+        };
+        if (context_.split_cells || cells_.only_tets()) {
+            for (const core::Tet& tet : cells_.tets(cell)) add_tet(tet);
+            return true;
+        }
+        for (const core::WholeCell& part : core::native_parts(cells_.whole(cell))) {
+            if (part.kind == core::CellKind::tetrahedron) {
+                add_tet(part.corners);
+                continue;
+            }
+            if (watched)
+                for (std::size_t k = 0; k < core::corner_count(part.kind); ++k) context_.sides.saw(part.corners[k]);
+            if (both_sides) cutter_.add_cell(part, place);
         }
         return true;
     }
@@ -221,10 +231,15 @@ CutCells<Point> cut_cells(CutContext& context, const Progress& progress) {
 template CutCells<std::uint32_t> cut_cells<std::uint32_t>(CutContext&, const Progress&);
 template CutCells<std::uint64_t> cut_cells<std::uint64_t>(CutContext&, const Progress&);
 
-void see_used_points(const CellReader& cells, Sides& sides) {
+void see_used_points(const CellReader& cells, bool split_cells, Sides& sides) {
     core::parallel_each(cells.count(), cells_per_chunk, [&](std::size_t cell) {
-        for (const core::Tet& tet : cells.tets(cell))
-            for (const std::uint64_t point : tet) sides.saw(point);
+        if (split_cells || cells.only_tets()) {
+            for (const core::Tet& tet : cells.tets(cell))
+                for (const std::uint64_t point : tet) sides.saw(point);
+        } else if (core::is_contoured(cells.type(cell))) {
+            for (const core::WholeCell& part : core::native_parts(cells.whole(cell)))
+                for (std::size_t k = 0; k < core::corner_count(part.kind); ++k) sides.saw(part.corners[k]);
+        }
     });
 }
 

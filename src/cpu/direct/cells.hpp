@@ -34,8 +34,8 @@ struct CutCells {
 template <class Point>
 CutCells<Point> cut_cells(CutContext& context, const Progress& progress);
 
-/// Calls sides.saw() for every point that a tet uses; the cells have been checked.
-void see_used_points(const core::CellReader& cells, Sides& sides);
+/// Calls sides.saw() for every point that a tet or native cell uses; the cells have been checked.
+void see_used_points(const core::CellReader& cells, bool split_cells, Sides& sides);
 
 /// Tets that have corners on both sides, for which there may have to be memory.
 std::uint64_t count_cut_tets(const core::CellReader& cells, const Sides& sides);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/case_table.hpp"
+#include "cpu/direct/cut_cells.hpp"
 #include "cpu/direct/orient.hpp"
 #include "cpu/level.hpp"
 
@@ -84,11 +85,6 @@ void sort_and_sign_best(std::array<std::array<Point, batch>, 4>& sorted, std::ar
     }
 }
 
-double squared_distance(const core::Point& a, const core::Point& b) {
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
 } // namespace
 
 template <class Point>
@@ -113,6 +109,7 @@ void Cutter<Point>::begin(Chunk<Point>& chunk, std::uint64_t first_cell) {
 template <class Point>
 void Cutter<Point>::end() {
     if (pending_) cut();
+    if (pending_cells_) cut_cells();
     chunk_->edges = edges_;
     counts_.edges += edges_;
     counts_.triangles += chunk_->triangles;
@@ -245,8 +242,8 @@ bool Cutter<Point>::is_coarse(std::size_t tet) const {
         core::Point stored;
         for (std::size_t axis = 0; axis < 3; ++axis)
             stored[axis] = core::store_coordinate<float>(exact[a][axis], context_.origin[axis]) + context_.origin[axis];
-        moved = std::max(moved, squared_distance(exact[a], stored));
-        for (std::size_t b = 0; b < a; ++b) shortest = std::min(shortest, squared_distance(exact[a], exact[b]));
+        moved = std::max(moved, core::squared_distance(exact[a], stored));
+        for (std::size_t b = 0; b < a; ++b) shortest = std::min(shortest, core::squared_distance(exact[a], exact[b]));
     }
     return moved > 1e-6 * shortest;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "cpu/direct/arena.hpp"
 #include "cpu/direct/points.hpp"
@@ -32,11 +33,12 @@ struct ActiveEdge {
 /// long ago to be remembered, is found again.
 template <class Point>
 struct Piece {
-    std::uint32_t tets = 0, edges = 0;
-    const std::array<std::uint32_t, 4>* polygons = nullptr; ///< of each tet; its triangles are 0 1 2 and, if two, 0 2 3
-    const std::uint8_t* triangles = nullptr;                ///< 1 or 2
-    const std::uint32_t* cells = nullptr;                   ///< within the chunk; null when nobody asks
-    const ActiveEdge<Point>* found = nullptr;               ///< in the order of their numbers
+    std::uint32_t polygon_count = 0, edges = 0;
+    const std::array<std::uint32_t, 4>* polygons =
+        nullptr; ///< of each tet, or of other cells; its triangles are 0 1 2 and, if two, 0 2 3
+    const std::uint8_t* triangles = nullptr;  ///< 1 or 2
+    const std::uint32_t* cells = nullptr;     ///< within the chunk; null when nobody asks
+    const ActiveEdge<Point>* found = nullptr; ///< in the order of their numbers
 };
 
 /// The pieces of some consecutive cells.
@@ -70,6 +72,7 @@ struct CutContext {
     bool rounds_coordinates = false;
     std::array<double, 3> origin{};
     bool keep_cells = false;
+    bool split_cells = false;
     std::atomic<bool> broken{false};   ///< a cell breaks a rule
     std::atomic<bool> saw_flat{false}; ///< a flat tetrahedron was cut, for which `mostly_negative` matters
     Budget budget{};
@@ -101,6 +104,19 @@ public:
     }
     void end();
 
+    /// A native cell with corners on both sides that is no tet.
+    void add_cell(const core::WholeCell& cell, std::uint32_t place) {
+        if (pending_) cut();
+        cell_batch_[pending_cells_] = cell;
+        cells_[pending_cells_] = place;
+        if (++pending_cells_ == cell_batch_.size()) cut_cells();
+    }
+    /// As add(), where there are such cells, too: what comes first is cut first.
+    void add_tet(const std::array<Point, 4>& corners, std::uint32_t cell) {
+        if (pending_cells_) cut_cells();
+        add(corners, cell);
+    }
+
 private:
     static constexpr std::size_t batch = 256;
     static constexpr unsigned memory_bits = 11;
@@ -112,9 +128,11 @@ private:
     };
 
     void cut();
+    void cut_cells();
     unsigned unusual_polygon(std::size_t tet, std::array<ActiveEdge<Point>, 4>& polygon);
     bool is_mirrored_flat(std::size_t tet);
     bool is_coarse(std::size_t tet) const;
+    bool is_coarse(const core::WholeCell& cell) const;
 
     CutContext& context_;
     std::size_t number_;
@@ -135,6 +153,10 @@ private:
                                                                  ///< ascending
     alignas(64) std::array<std::uint8_t, batch> codes_;
     std::array<std::uint32_t, batch> cells_;
+
+    // The batch of other cells; while there are any, there are no tets.
+    std::size_t pending_cells_ = 0;
+    std::array<core::WholeCell, 64> cell_batch_;
 };
 
 } // namespace isotet::cpu::direct

@@ -106,6 +106,7 @@ private:
         context.rounds_coordinates = survey_.rounds_coordinates;
         context.origin = survey_.origin;
         context.keep_cells = request_.source_cells;
+        context.split_cells = request_.split_cells;
         auto cut = try_to_cut<Point>(context, part_of(progress, 0, 0.5));
         if (!cut) return cut.error();
         if (!is_as_assumed(context)) return std::optional<ops::DirectSurface>{};
@@ -207,7 +208,7 @@ private:
     /// The survey of just the points that tets use.
     void survey_used_points() {
         std::fill(sides_.flags().begin(), sides_.flags().end(), side::watched);
-        see_used_points(input_.cells, sides_);
+        see_used_points(input_.cells, request_.split_cells, sides_);
         survey_ = survey_points<Real>(input_, &sides_);
         settled_ = true;
     }

@@ -67,7 +67,7 @@ void emit_triangles(const CutCells<Point>& cut, const Index* numbers, Index* tri
         Index* out = triangles + 3 * chunk.triangles;
         std::int64_t* cell = source_cells ? source_cells + chunk.triangles : nullptr;
         for (const Piece<Point>& piece : chunk.pieces)
-            for (std::uint32_t i = 0; i < piece.tets; ++i) {
+            for (std::uint32_t i = 0; i < piece.polygon_count; ++i) {
                 const auto& polygon = piece.polygons[i];
                 const Index a = of_chunk[polygon[0]], b = of_chunk[polygon[1]], d = of_chunk[polygon[2]];
                 *out++ = a, *out++ = b, *out++ = d;

@@ -35,9 +35,10 @@ Result<void> check(const core::Packed& packed) {
     if (packed.points() >= limit_32)
         return invalid_argument(fmt::format("the packed grid has {} points, but the vulkan engine can number {}",
                                             packed.points(), limit_32 - 1));
-    if (packed.tets.size() >= limit_32)
-        return invalid_argument(fmt::format("the packed grid has room for {} tets, but the vulkan engine can number {}",
-                                            packed.tets.size(), limit_32 - 1));
+    if (packed.cells.size() >= limit_32)
+        return invalid_argument(
+            fmt::format("the packed grid has {} words of cells, but the vulkan engine can number {}",
+                        packed.cells.size(), limit_32 - 1));
     return {};
 }
 

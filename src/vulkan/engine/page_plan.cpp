@@ -13,9 +13,7 @@ using core::ClusterHeader;
 using core::ClusterLinks;
 using core::Packed;
 
-std::uint32_t groups_of(const ClusterHeader& h) {
-    return static_cast<std::uint32_t>((h.tets + core::group_size - 1) / core::group_size);
-}
+std::uint32_t groups_of(const ClusterHeader& h) { return static_cast<std::uint32_t>(h.groups()); }
 
 std::uint64_t own_bytes(const Packed& packed, const ClusterHeader& h) {
     const std::uint64_t words = h.own_points * (packed.gradients.empty() ? 4u : 5u) + groups_of(h) * core::group_size +
@@ -87,7 +85,7 @@ void place_arrays(const Packed& packed, PlannedPage& page) {
     place(page.layout.positions, 3 * page.points());
     place(page.layout.gradients, packed.gradients.empty() ? 0 : page.points());
     place(page.layout.halo, static_cast<std::uint32_t>(page.halo.size()));
-    place(page.layout.tets, static_cast<std::uint32_t>(core::group_size) * page.groups);
+    place(page.layout.cells, static_cast<std::uint32_t>(core::group_size) * page.groups);
     place(page.layout.group_ranges, (page.groups + 1) / 2);
     place(page.layout.links, page.link_words + page.neighbours);
     page.words = words;
@@ -162,7 +160,8 @@ void place_clusters(const Packed& packed, const PlannedPage& page, std::uint32_t
         out[i].first_group = h.first_group - page.layout.first_group;
         out[i].first_link = link;
         out[i].points = h.own_points | std::uint32_t{h.ghost_points} << 16;
-        out[i].tets = h.tets | std::uint32_t{h.neighbours} << 16;
+        out[i].tets = static_cast<std::uint32_t>(h.tets()) | std::uint32_t{h.neighbours} << 16;
+        out[i].others = h.cells[1] | std::uint32_t{h.cells[2]} << 10 | std::uint32_t{h.cells[3]} << 20;
         out[i].seams = h.own_seams | std::uint32_t{h.ghost_seams} << 16;
         link += static_cast<std::uint32_t>(ClusterLinks::words(h)) + h.neighbours;
     }
@@ -174,7 +173,7 @@ void fill_page(const Packed& packed, const PlannedPage& page, const layout::Clus
     fill_points(words_of(packed.as<float>().positions), 3, page, out + at.positions);
     if (!packed.gradients.empty()) fill_points(packed.gradients.data(), 1, page, out + at.gradients);
     std::copy(page.halo.begin(), page.halo.end(), out + at.halo);
-    std::memcpy(out + at.tets, packed.tets.data() + core::group_size * std::size_t{at.first_group},
+    std::memcpy(out + at.cells, packed.cells.data() + core::group_size * std::size_t{at.first_group},
                 sizeof(core::StoredTet) * core::group_size * page.groups);
     std::memcpy(out + at.group_ranges, packed.group_ranges.data() + at.first_group,
                 sizeof(core::GroupRange) * page.groups);

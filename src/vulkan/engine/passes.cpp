@@ -28,7 +28,8 @@ constexpr std::uint64_t arguments_in(std::size_t list) { return list + offsetof(
 } // namespace
 
 Result<const Kernel*> Passes::emit_kernel(Context& context, std::uint32_t edge_room) const {
-    const std::uint32_t constants[] = {edge_room, parts_.ends, parts_.normals == Normals::gradient, parts_.sources};
+    const std::uint32_t constants[] = {edge_room, parts_.ends, parts_.normals == Normals::gradient, parts_.sources,
+                                       resident_.sizes().with_others};
     return context.kernels().get(engine::emit, constants);
 }
 
@@ -40,7 +41,8 @@ Result<Passes> Passes::make(Context& context, const Resident& resident, const Su
         else if (done) done = std::move(made).error();
     };
     keep(passes.select_, context.kernels().get(engine::select));
-    keep(passes.count_, context.kernels().get(engine::count));
+    const std::uint32_t count_constants[] = {resident.sizes().with_others};
+    keep(passes.count_, context.kernels().get(engine::count, count_constants));
     keep(passes.scan_, context.kernels().get(engine::scan));
     keep(passes.emit_few_, passes.emit_kernel(context, layout::few_edges));
     if (parts.normals == Normals::face) keep(passes.face_normals_, context.kernels().get(engine::face_normals));
@@ -84,8 +86,8 @@ void Passes::count(Recorder& recorder, const Task& task, std::uint32_t batch) co
     const Resident& r = resident_;
     recorder.dispatch_indirect(*count_, push_of(r, task, batch), r.lists, arguments_in(offsetof(Lists, selected)),
                                {reads(r.tables), reads(r.pages), reads(r.clusters), reads(r.ranges), reads(r.no_data),
-                                reads(r.selected), reads(r.lists), writes(r.masks), writes(r.counts), writes(r.sums),
-                                writes(task.surface.head)});
+                                reads(r.cell_cases), reads(r.selected), reads(r.lists), writes(r.masks),
+                                writes(r.counts), writes(r.sums), writes(task.surface.head)});
 }
 
 void Passes::scan(Recorder& recorder, const Task& task) const {
@@ -98,8 +100,8 @@ void Passes::scan(Recorder& recorder, const Task& task) const {
 void Passes::emit(Recorder& recorder, const Task& task, std::uint32_t batch) const {
     const Resident& r = resident_;
     const SurfaceBuffers& s = task.surface;
-    std::vector<Use> uses{reads(r.tables), reads(r.pages),   reads(r.clusters), reads(r.ranges), reads(r.masks),
-                          reads(r.starts), reads(r.emitted), reads(r.lists),    writes(s.head)};
+    std::vector<Use> uses{reads(r.tables), reads(r.pages),  reads(r.cell_cases), reads(r.clusters), reads(r.ranges),
+                          reads(r.masks),  reads(r.starts), reads(r.emitted),    reads(r.lists),    writes(s.head)};
     for (const Buffer* array : {&s.positions, &s.triangles, &s.normals, &s.lowest, &s.ends, &s.weights, &s.sources})
         if (*array) uses.push_back(writes(*array));
     const layout::ExtractPush push = push_of(r, task, batch);

@@ -23,13 +23,14 @@ struct KeptArray {
     std::uint64_t bytes;
 };
 
-std::array<KeptArray, 12> arrays(const ResidentSizes& sizes) {
+std::array<KeptArray, 13> arrays(const ResidentSizes& sizes) {
     const std::uint64_t c = sizes.clusters;
     return {{{&Resident::tables, "tables", sizeof(layout::Tables)},
              {&Resident::pages, "page table", sizes.pages * sizeof(layout::Page)},
              {&Resident::clusters, "clusters", c * sizeof(layout::Cluster)},
              {&Resident::ranges, "ranges", c * sizeof(layout::Range)},
              {&Resident::no_data, "clusters without data", 4 * pieces(c, 32)},
+             {&Resident::cell_cases, "cases of cells", sizeof layout::cell_cases},
              {&Resident::masks, "masks", 4 * sizes.mask_words},
              {&Resident::counts, "counts", c * sizeof(layout::Count)},
              {&Resident::sums, "sums of counts", (sizes.segments + sizes.blocks) * sizeof(layout::Count)},
@@ -51,7 +52,10 @@ ResidentSizes::ResidentSizes(const core::Packed& packed, std::size_t page_count)
       segments(pieces(clusters, layout::segment_clusters)),
       blocks(pieces(segments, layout::block_segments)),
       pages(page_count) {
-    for (const core::ClusterHeader& h : packed.headers) mask_words += mask_words_of(h);
+    for (const core::ClusterHeader& h : packed.headers) {
+        mask_words += mask_words_of(h);
+        with_others |= h.others() != 0;
+    }
 }
 
 std::uint64_t ResidentSizes::cost() const {
@@ -97,6 +101,7 @@ Result<void> Resident::upload_tables(Context& context, const core::Packed& packe
     t.selected = address_of(selected);
     t.emitted = address_of(emitted);
     t.lists = address_of(lists);
+    t.cell_cases = address_of(cell_cases);
     t.cluster_count = static_cast<std::uint32_t>(sizes_.clusters);
     t.groups_per_axis = context.groups_per_axis();
     t.any_no_data = packed.field_report.no_data > 0;
@@ -139,6 +144,8 @@ Result<Resident> Resident::upload(Context& context, const core::Packed& packed, 
                 resident.sizes_.clusters, resident.sizes_.mask_words, limit)};
     if (auto ok = resident.take(context); !ok) return ok.error();
     if (auto ok = resident.upload_clusters(context, packed, plan); !ok) return ok.error();
+    if (auto ok = context.staging().upload(resident.cell_cases, 0, bytes_of(layout::cell_cases)); !ok)
+        return ok.error();
     if (auto ok = resident.upload_ranges(context, packed); !ok) return ok.error();
     return resident;
 }

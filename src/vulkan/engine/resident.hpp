@@ -17,6 +17,7 @@ namespace isotet::vulkan {
 /// Numbers of things that are laid out by cluster.
 struct ResidentSizes {
     std::uint64_t clusters = 0, segments = 0, blocks = 0, pages = 0, mask_words = 0;
+    bool with_others = false; ///< some cell is no tet
 
     ResidentSizes() = default;
     ResidentSizes(const core::Packed& packed, std::size_t page_count);
@@ -31,20 +32,21 @@ public:
     const ResidentSizes& sizes() const noexcept { return sizes_; }
 
     // By cluster, fixed, or replaced with the field.
-    Buffer tables;   ///< layout::Tables
-    Buffer pages;    ///< layout::Page
-    Buffer clusters; ///< layout::Cluster
-    Buffer ranges;   ///< layout::Range
-    Buffer no_data;  ///< a bit each
+    Buffer tables;     ///< layout::Tables
+    Buffer pages;      ///< layout::Page
+    Buffer clusters;   ///< layout::Cluster
+    Buffer ranges;     ///< layout::Range
+    Buffer no_data;    ///< a bit each
+    Buffer cell_cases; ///< layout::cell_cases
 
     // Written by every extraction.
     Buffer masks;
-    Buffer counts;   ///< layout::Count of clusters
-    Buffer sums;     ///< layout::Count of segments, then of blocks
+    Buffer counts; ///< layout::Count of clusters
+    Buffer sums;   ///< layout::Count of segments, then of blocks
     Buffer starts;
     Buffer selected;
     Buffer emitted;
-    Buffer lists;    ///< layout::Lists
+    Buffer lists; ///< layout::Lists
 
     /// Addresses and sizes, and whether any point has no data.
     Result<void> upload_tables(Context& context, const core::Packed& packed);

@@ -1,10 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Counts what each selected cluster gives, and sets the masks: which own seams are crossed, which own tied points are used.
-// A workgroup a cluster, an invocation a point, a tet of a group, a seam. All that workgroups share they OR or add to, so
+// A workgroup a cluster, an invocation a point, a cell of a group, a seam. All that workgroups share they OR or add to, so
 // their order does not matter. Twin: cpu/count.cpp.
 #version 460
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"
+
+layout(constant_id = 0) const bool with_others = true; ///< the grid has cells that are no tets
+
 #include "shared/cut.glsl"
 
 layout(push_constant, scalar) uniform Push {
@@ -48,19 +51,30 @@ void load_points(bool merge) {
     if (self >= ghost_points && value == push.tied) atomicAdd(tied_points, 1u);
 }
 
-void cut_tets(bool special) {
+/// Tied points are used where a triangle is kept.
+void use_tied(Cell cell) {
+    for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
+        const uint polygon = polygon_of(tables, cell, i);
+        for (uint t = 0u; t < triangles_of(polygon); ++t) {
+            if (!is_kept(cell, polygon, t)) continue;
+            for (uint k = 0u; k < 3u; ++k) {
+                const uint end = polygon_edge(polygon, k == 0u ? 0u : k + t).x, point = corner_of(cell, end);
+                if ((cell.tied >> end & 1u) != 0u) atomicOr(used_tied[point / 32u], 1u << point % 32u);
+            }
+        }
+    }
+}
+
+void cut_cells(bool special) {
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     uint triangles = 0u;
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
-        const uint tet = hit_group[place] * group_size + self % group_size;
-        if (tet >= tet_count) continue;
-        const CutTet cut = cut_tet(tet, special);
-        if (cut.triangles == 0u) continue;
-        triangles += cut.triangles;
-        add_edges(cut);
-        for (uint k = 0u; k < 4u; ++k)
-            if ((cut.tied >> k & 1u) != 0u) atomicOr(used_tied[cut.corners[k] / 32u], 1u << cut.corners[k] % 32u);
+        const Cell cell = cut_cell(tables, hit_group[place], self % group_size, special);
+        if (cell.triangles == 0u) continue;
+        triangles += cell.triangles;
+        add_edges(tables, cell);
+        if (cell.tied != 0u) use_tied(cell);
     }
     if (triangles != 0u) atomicAdd(triangle_sum, triangles);
 }
@@ -83,7 +97,7 @@ void find_seams() {
         const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
         ++found;
-        // Where all points of the owner have data, it knows from its own tets: all of them count.
+        // Where all points of the owner have data, it knows from its own cells: all of them count.
         if (tables.any_no_data == 0u) continue;
         const uint owner = neighbour_of(k, 16u).cluster;
         if (has_no_data(owner)) tell_owner(owner, 32u * tied_words + seam.z, 0u);
@@ -134,7 +148,7 @@ void main() {
     barrier();
     const bool special = any_in(tied) || any_in(no_data);
     find_hit_groups(push.isovalue, Ranges(tables.ranges).at[number]);
-    cut_tets(special);
+    cut_cells(special);
     barrier();
     count_edges();
     find_seams();

@@ -3,18 +3,20 @@
 // A vertex on an edge has as its number the active edges before it in a matrix of bits, one on a seam the bits before it in
 // its owner's mask: no edge is stored, nothing is searched for. Twin: cpu/emit.cpp.
 //
-// Vertices of a cluster: tied own points, own seams in stored order, inner edges by (lower, higher). Its triangles: by tet,
+// Vertices of a cluster: tied own points, own seams in stored order, inner edges by (lower, higher). Its triangles: by cell,
 // then by case table.
 #version 460
 #include "shared/arithmetic.glsl"
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"
-#include "shared/cut.glsl"
 
 layout(constant_id = 0) const uint edge_room = 1024; ///< few_edges or max_edges: which of the two lists is worked through
 layout(constant_id = 1) const bool with_ends = false;
 layout(constant_id = 2) const bool with_normals = false;
 layout(constant_id = 3) const bool with_sources = false;
+layout(constant_id = 4) const bool with_others = true; ///< the grid has cells that are no tets
+
+#include "shared/cut.glsl"
 
 layout(push_constant, scalar) uniform Push {
     ExtractPush push;
@@ -28,8 +30,7 @@ shared uint edge_ranks[matrix_words];         ///< active edges before each word
 shared uint edge_numbers[edge_room];          ///< by rank: the vertex on the edge; before that, lower + 256 * higher
 shared uint seam_bits[edge_room / 32u];       ///< by rank: the edge is a seam
 shared uint seam_ranks[edge_room / 32u];
-shared uint one_triangle[max_cluster_groups]; ///< by place in hit_group, a bit a tet: gives at least one
-shared uint two_triangles[max_cluster_groups];
+shared uint triangle_bits[3u * max_cluster_groups]; ///< by place in hit_group, a bit a cell: of its number of triangles
 shared uint first_triangle[max_cluster_groups];
 
 Tables tables;
@@ -88,18 +89,23 @@ void load_points() {
     classify(self, values[self], push.isovalue, push.tied, push.merge != 0u);
 }
 
-void cut_tets(bool special) {
+/// Triangles of the cells of a hit group that a mask has.
+uint triangles_in(uint place, uint mask) {
+    uint sum = 0u;
+    for (uint bit = 0u; bit < 3u; ++bit) sum += bitCount(triangle_bits[3u * place + bit] & mask) << bit;
+    return sum;
+}
+
+void cut_cells(bool special) {
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
         const uint lane = self % group_size;
-        const uint tet = hit_group[place] * group_size + lane;
-        if (tet >= tet_count) continue;
-        const CutTet cut = cut_tet(tet, special);
-        if (cut.triangles == 0u) continue;
-        add_edges(cut);
-        atomicOr(one_triangle[place], 1u << lane);
-        if (cut.triangles == 2u) atomicOr(two_triangles[place], 1u << lane);
+        const Cell cell = cut_cell(tables, hit_group[place], lane, special);
+        if (cell.triangles == 0u) continue;
+        add_edges(tables, cell);
+        for (uint bit = 0u; bit < 3u; ++bit)
+            if ((cell.triangles >> bit & 1u) != 0u) atomicOr(triangle_bits[3u * place + bit], 1u << lane);
     }
 }
 
@@ -109,7 +115,7 @@ void rank_edges() {
     uint edges = 0u;
     for (uint i = 0u; i < 4u; ++i) edges += bitCount(matrix[4u * self + i]);
     uint triangles = 0u;
-    if (self < max_cluster_groups) triangles = bitCount(one_triangle[self]) + bitCount(two_triangles[self]);
+    if (self < max_cluster_groups) triangles = triangles_in(self, 0xffffffffu);
     const uvec2 before = sum_before(uvec2(edges, triangles));
     if (self < max_cluster_groups) first_triangle[self] = before.y;
     uint rank = before.x;
@@ -206,33 +212,34 @@ void write_vertices(bool special) {
     }
 }
 
-uint number_of(CutTet cut, uint k) {
-    const uvec2 ends = polygon_edge(cut, k);
-    if ((cut.tied >> ends.x & 1u) != 0u) return tied_numbers[cut.corners[ends.x]];
-    return edge_numbers[rank_of(ascending(cut.corners[ends.x], cut.corners[ends.y]))];
+uint number_of(Cell cell, uint polygon, uint k) {
+    const uvec2 ends = polygon_edge(polygon, k);
+    const uint a = corner_of(cell, ends.x), b = corner_of(cell, ends.y);
+    if ((cell.tied >> ends.x & 1u) != 0u) return tied_numbers[a];
+    return edge_numbers[rank_of(ascending(a, b))];
 }
 
 void write_triangles(bool special) {
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
-        const uint lane = self % group_size, before = (1u << lane) - 1u;
-        const uint one = one_triangle[place];
-        if ((one >> lane & 1u) == 0u) continue;
-        const uint tet = hit_group[place] * group_size + lane;
-        const CutTet cut = cut_tet(tet, special);
-        uint numbers[4];
-        for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(cut, k);
-        uint at = first_triangle[place] + bitCount(one & before) + bitCount(two_triangles[place] & before);
-        const uint triangles = tet_cases[cut.above] >> 16;
-        for (uint t = 0u; t < triangles; ++t) {
-            const uint a = numbers[0], b = numbers[1u + t], c = numbers[2u + t];
-            if (a == b || b == c || c == a) continue; // only with tied corners
-            triangle_out.at[3u * at] = a;
-            triangle_out.at[3u * at + 1u] = b;
-            triangle_out.at[3u * at + 2u] = c;
-            if (with_sources) source_out.at[at] = group_size * (page.first_group + cluster.first_group) + tet;
-            ++at;
+        const uint lane = self % group_size;
+        if (triangles_in(place, 1u << lane) == 0u) continue;
+        const Cell cell = cut_cell(tables, hit_group[place], lane, special);
+        uint at = first_triangle[place] + triangles_in(place, (1u << lane) - 1u);
+        for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
+            const uint polygon = polygon_of(tables, cell, i);
+            uint numbers[4];
+            for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(cell, polygon, k);
+            for (uint t = 0u; t < triangles_of(polygon); ++t) {
+                const uint a = numbers[0], b = numbers[1u + t], c = numbers[2u + t];
+                if (a == b || b == c || c == a) continue; // only with tied corners
+                triangle_out.at[3u * at] = a;
+                triangle_out.at[3u * at + 1u] = b;
+                triangle_out.at[3u * at + 2u] = c;
+                if (with_sources) source_out.at[at] = group_size * (page.first_group + cluster.first_group) + cell.word;
+                ++at;
+            }
         }
     }
 }
@@ -251,13 +258,13 @@ void main() {
 
     clear_cut();
     for (uint word = self; word < edge_room / 32u; word += workgroup_size) seam_bits[word] = 0u;
-    if (self < max_cluster_groups) one_triangle[self] = two_triangles[self] = 0u;
+    for (uint i = self; i < 3u * max_cluster_groups; i += workgroup_size) triangle_bits[i] = 0u;
     barrier();
     load_points();
     barrier();
     const bool special = any_in(tied) || any_in(no_data);
     find_hit_groups(push.isovalue, Ranges(tables.ranges).at[number]);
-    cut_tets(special);
+    cut_cells(special);
     barrier();
     rank_edges();
     barrier();

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Works out, from the values of its points, the range of each cluster and of its groups, and whether it holds a point without
 // data; clusters of pages that are not on the device are left alone. A workgroup a cluster, an invocation a point, then a
-// tet. Words that clusters share are only ANDed and ORed, each its own bits. Twin: core/store_ranges.cpp.
+// word of its cells. Words that clusters share are only ANDed and ORed, each its own bits. Twin: core/store_ranges.cpp.
 #version 460
 #include "shared/groups.glsl"
 #include "shared/cluster.glsl"
@@ -48,13 +48,14 @@ void find_steps(float value, Range range) {
     upper_steps[self] = has_data(value) ? step : no_upper;
 }
 
-/// With the copies of the last tet that fill the last group.
+/// With the copies of the last cell of each kind that fill its last group.
 void find_group_ranges(uint groups) {
-    for (uint tet = gl_LocalInvocationIndex; tet < group_size * groups; tet += workgroup_size) {
-        const uvec4 v = corners_of_tet(tet);
-        atomicMin(group_lower[tet / group_size],
+    for (uint k = gl_LocalInvocationIndex; k < group_size * groups; k += workgroup_size) {
+        const uint word = cell_word(k);
+        const uvec4 v = uvec4(word & 0xffu, word >> 8 & 0xffu, word >> 16 & 0xffu, word >> 24);
+        atomicMin(group_lower[k / group_size],
                   min(min(lower_steps[v.x], lower_steps[v.y]), min(lower_steps[v.z], lower_steps[v.w])));
-        atomicMax(group_upper[tet / group_size],
+        atomicMax(group_upper[k / group_size],
                   max(max(upper_steps[v.x], upper_steps[v.y]), max(upper_steps[v.z], upper_steps[v.w])));
     }
 }
@@ -80,7 +81,7 @@ void main() {
     if (number >= tables.cluster_count) return;
     open_cluster(tables, number);
     if (page.data == Address(0u)) return;
-    const uint groups = (tet_count + group_size - 1u) / group_size;
+    const uint groups = group_count();
 
     if (self == 0u) {
         lowest = ordered(largest_float);

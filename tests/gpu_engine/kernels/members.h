@@ -22,11 +22,11 @@
 
 #define ISOTET_MEMBERS(M) \
     M(a_page, Page, data) M(a_page, Page, values) M(a_page, Page, positions) M(a_page, Page, gradients) \
-    M(a_page, Page, halo) M(a_page, Page, tets) M(a_page, Page, group_ranges) M(a_page, Page, links) \
+    M(a_page, Page, halo) M(a_page, Page, cells) M(a_page, Page, group_ranges) M(a_page, Page, links) \
     M(a_page, Page, own_points) M(a_page, Page, first_point) M(a_page, Page, first_group) M(a_page, Page, batch) \
     M(a_cluster, Cluster, page) M(a_cluster, Cluster, first_point) M(a_cluster, Cluster, first_group) \
     M(a_cluster, Cluster, first_link) M(a_cluster, Cluster, first_mask) M(a_cluster, Cluster, points) \
-    M(a_cluster, Cluster, tets) M(a_cluster, Cluster, seams) \
+    M(a_cluster, Cluster, tets) M(a_cluster, Cluster, others) M(a_cluster, Cluster, seams) \
     M(a_neighbour, Neighbour, cluster) M(a_neighbour, Neighbour, first_point) M(a_neighbour, Neighbour, begin) \
     M(a_range, Range, lower) M(a_range, Range, upper) \
     M(a_count, Count, vertices) M(a_count, Count, triangles) \
@@ -37,7 +37,7 @@
     M(a_tables, Tables, no_data) M(a_tables, Tables, masks) M(a_tables, Tables, counts) \
     M(a_tables, Tables, segments) M(a_tables, Tables, blocks) M(a_tables, Tables, starts) \
     M(a_tables, Tables, selected) M(a_tables, Tables, emitted) M(a_tables, Tables, lists) \
-    M(a_tables, Tables, cluster_count) M(a_tables, Tables, groups_per_axis) M(a_tables, Tables, any_no_data) \
+    M(a_tables, Tables, cell_cases) M(a_tables, Tables, cluster_count) M(a_tables, Tables, groups_per_axis) M(a_tables, Tables, any_no_data) \
     M(a_lists, Lists, selected.count) M(a_lists, Lists, selected.groups_x) M(a_lists, Lists, selected.groups_y) \
     M(a_lists, Lists, selected.groups_z) M(a_lists, Lists, few_edges.count) M(a_lists, Lists, few_edges.groups_x) \
     M(a_lists, Lists, few_edges.groups_y) M(a_lists, Lists, few_edges.groups_z) M(a_lists, Lists, many_edges.count) \

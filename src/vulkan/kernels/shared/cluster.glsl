@@ -9,7 +9,9 @@
 Cluster cluster;
 Page page;
 Words page_words;
-uint own_points, ghost_points, tet_count, neighbour_count, own_seams, ghost_seams;
+uint own_points, ghost_points, neighbour_count, own_seams, ghost_seams;
+uvec4 kind_counts; ///< tets, pyramids, wedges, hexahedra
+uvec4 kind_ends;   ///< the group behind the last one of each
 uint ghost_points_at, own_seams_at, ghost_seams_at; ///< words of the page
 
 void open_cluster(Tables tables, uint number) {
@@ -18,7 +20,10 @@ void open_cluster(Tables tables, uint number) {
     page_words = Words(page.data);
     own_points = cluster.points & 0xffffu;
     ghost_points = cluster.points >> 16;
-    tet_count = cluster.tets & 0xffffu;
+    kind_counts = uvec4(cluster.tets & 0xffffu, cluster.others & 1023u, cluster.others >> 10 & 1023u, cluster.others >> 20);
+    kind_ends.x = (kind_counts.x + group_size - 1u) / group_size;
+    for (uint kind = 1u; kind < 4u; ++kind)
+        kind_ends[kind] = kind_ends[kind - 1u] + (kind_counts[kind] + group_size / 2u - 1u) / (group_size / 2u);
     neighbour_count = cluster.tets >> 16;
     own_seams = cluster.seams & 0xffffu;
     ghost_seams = cluster.seams >> 16;
@@ -78,10 +83,10 @@ uint place_in_owner(Tables tables, Neighbour neighbour, uint k) {
     return packed_point(point) - Pages(tables.pages).at[owner.page].first_point - owner.first_point;
 }
 
-uvec4 corners_of_tet(uint tet) {
-    const uint word = page_words.at[page.tets + group_size * cluster.first_group + tet];
-    return uvec4(word & 0xffu, word >> 8 & 0xffu, word >> 16 & 0xffu, word >> 24);
-}
+uint group_count() { return kind_ends.w; }
+
+/// Word `k` of the cluster's cells: four corners.
+uint cell_word(uint k) { return page_words.at[page.cells + group_size * cluster.first_group + k]; }
 
 /// Range of a group in steps of the cluster's: lower + 256 * upper.
 uint range_of_group(uint group) {

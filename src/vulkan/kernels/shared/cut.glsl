@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The cluster at hand at one isovalue: which of its tets give triangles, and which edges these cross. What count and emit
-// have in common; the twin of cpu/cut_cluster.hpp.
+// The cluster at hand at one isovalue: which of its cells give triangles, and which edges these cross. What count and emit
+// have in common. On the processor: cpu/plain_cluster.cpp, cpu/any_cluster.cpp.
 #ifndef ISOTET_CUT_GLSL
 #define ISOTET_CUT_GLSL
 
@@ -14,7 +14,7 @@ const uint tied = 4u;    ///< value == tied_value (Ties::merge; with Ties::keep 
 const uint no_data = 8u;
 shared uint sides[12];
 
-/// Active edges of the tets that give triangles: bit (lower, higher), four words a row. Edges to a tied point are not in it.
+/// Active edges of the cells that give triangles: bit (lower, higher), four words a row. Edges to a tied point are not in it.
 shared uint matrix[matrix_words];
 
 shared uint hit_groups; ///< bits: whose range holds the isovalue
@@ -23,11 +23,6 @@ shared uint hit_group[max_cluster_groups]; ///< the same as a list
 const uint tet_cases[16] = uint[](ISOTET_TET_CASES);
 
 bool is_in(uint set, uint point) { return (sides[set + point / 32u] >> point % 32u & 1u) != 0u; }
-
-/// Which of four local points are in a set.
-uint corners_in(uint set, uvec4 v) {
-    return uint(is_in(set, v.x)) | uint(is_in(set, v.y)) << 1 | uint(is_in(set, v.z)) << 2 | uint(is_in(set, v.w)) << 3;
-}
 
 bool any_in(uint set) { return (sides[set] | sides[set + 1u] | sides[set + 2u] | sides[set + 3u]) != 0u; }
 
@@ -50,8 +45,6 @@ void classify(uint point, float value, float isovalue, float tied_value, bool me
     }
 }
 
-uint group_count() { return (tet_count + group_size - 1u) / group_size; }
-
 /// Notes the groups that may have something to give: none when no point is below. All invocations must call it.
 void find_hit_groups(float isovalue, Range range) {
     const uint self = gl_LocalInvocationIndex;
@@ -67,32 +60,86 @@ void find_hit_groups(float isovalue, Range range) {
     barrier();
 }
 
-/// A tet of a hit group: the case by its corners above, its tied corners, and how many triangles it gives.
-struct CutTet {
-    uvec4 corners;
-    uint above, tied, triangles;
+/// A cell of a hit group.
+struct Cell {
+    uint kind;    ///< 0 to 3; 4 where there is none
+    uint word;    ///< its first in the cluster
+    uvec2 words;  ///< corners
+    uint above;   ///< which corners are: the case
+    uint tied;
+    uint triangles;
 };
 
-/// `special`   some local point is tied or without data
-CutTet cut_tet(uint tet, bool special) {
-    CutTet cut;
-    cut.corners = corners_of_tet(tet);
-    cut.above = corners_in(above, cut.corners);
-    cut.tied = 0u;
-    cut.triangles = tet_cases[cut.above] >> 16;
-    if (special && cut.triangles != 0u) {
-        cut.tied = corners_in(tied, cut.corners);
-        if (corners_in(no_data, cut.corners) != 0u) cut.triangles = 0u;
-        else if (cut.tied == cut.above && bitCount(cut.tied) != 3) cut.triangles = 0u; // nothing strictly above
-        else if (cut.tied != 0u) cut.triangles = 1u;
-    }
-    return cut;
+uint corner_of(Cell cell, uint k) { return cell.words[k / 4u] >> 8u * (k % 4u) & 0xffu; }
+
+uint corners_in(uint set, Cell cell, uint count) {
+    uint bits = 0u;
+    for (uint k = 0u; k < count; ++k) bits |= uint(is_in(set, corner_of(cell, k))) << k;
+    return bits;
 }
 
-/// Active edge `k` of the tet's polygon, 0 to 3, as (corner above, corner below).
-uvec2 polygon_edge(CutTet cut, uint k) {
-    const uint nibble = tet_cases[cut.above] >> 4u * k;
-    return uvec2(nibble & 3u, nibble >> 2 & 3u);
+/// The first polygon + 65536 * number of polygons + 2^20 * number of triangles, of a cell that is no tet.
+uint case_of(Tables tables, Cell cell) {
+    const uint at = cell.kind == 1u ? pyramid_cases_at : cell.kind == 2u ? wedge_cases_at : hexahedron_cases_at;
+    return Words(tables.cell_cases).at[at + cell.above];
+}
+
+uint polygon_count(Tables tables, Cell cell) {
+    return !with_others || cell.kind == 0u ? 1u : case_of(tables, cell) >> 16 & 15u;
+}
+uint polygon_of(Tables tables, Cell cell, uint i) {
+    return !with_others || cell.kind == 0u ? tet_cases[cell.above] : Words(tables.cell_cases).at[(case_of(tables, cell) & 0xffffu) + i];
+}
+uint triangles_of(uint polygon) { return polygon >> 24; }
+
+/// Active edge `k` of a polygon, 0 to 3, as (corner above, corner below).
+uvec2 polygon_edge(uint polygon, uint k) {
+    const uint edge = polygon >> 6u * k & 63u;
+    return uvec2(edge & 7u, edge >> 3);
+}
+
+/// What tells one vertex of a cell from another: its edge, or its tied point.
+uint vertex_key(Cell cell, uint polygon, uint k) {
+    const uvec2 ends = polygon_edge(polygon, k);
+    const uint a = corner_of(cell, ends.x), b = corner_of(cell, ends.y);
+    return (cell.tied >> ends.x & 1u) != 0u ? max_cluster_points * a + a : max_cluster_points * min(a, b) + max(a, b);
+}
+
+/// Whether triangle `t` of a polygon, (0, 1, 2) or (0, 2, 3), has three different vertices.
+bool is_kept(Cell cell, uint polygon, uint t) {
+    const uint a = vertex_key(cell, polygon, 0u), b = vertex_key(cell, polygon, 1u + t),
+               c = vertex_key(cell, polygon, 2u + t);
+    return a != b && b != c && c != a;
+}
+
+/// `special`   some local point is tied or without data
+Cell cut_cell(Tables tables, uint group, uint lane, bool special) {
+    Cell cell;
+    cell.kind = !with_others || group < kind_ends.x ? 0u : group < kind_ends.y ? 1u : group < kind_ends.z ? 2u : 3u;
+    const bool is_tet = cell.kind == 0u;
+    const uint first_group = is_tet ? 0u : kind_ends[cell.kind - 1u], a_group = is_tet ? group_size : group_size / 2u;
+    const uint corners = is_tet ? 4u : cell.kind == 3u ? 8u : cell.kind + 4u;
+    cell.tied = 0u;
+    cell.triangles = 0u;
+    if (lane >= a_group || (group - first_group) * a_group + lane >= kind_counts[cell.kind]) {
+        cell.kind = 4u;
+        return cell;
+    }
+    cell.word = group_size * group + (is_tet ? lane : 2u * lane);
+    cell.words = uvec2(cell_word(cell.word), is_tet ? 0u : cell_word(cell.word + 1u));
+    cell.above = corners_in(above, cell, corners);
+    if (special && corners_in(no_data, cell, corners) != 0u) return cell;
+    cell.triangles = is_tet ? triangles_of(tet_cases[cell.above]) : case_of(tables, cell) >> 20;
+    if (special && cell.triangles != 0u) {
+        cell.tied = corners_in(tied, cell, corners);
+        if (cell.tied == 0u) return cell;
+        cell.triangles = 0u;
+        for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
+            const uint polygon = polygon_of(tables, cell, i);
+            for (uint t = 0u; t < triangles_of(polygon); ++t) cell.triangles += uint(is_kept(cell, polygon, t));
+        }
+    }
+    return cell;
 }
 
 uint matrix_word(uvec2 edge) { return 4u * edge.x + edge.y / 32u; }
@@ -100,12 +147,15 @@ uint matrix_word(uvec2 edge) { return 4u * edge.x + edge.y / 32u; }
 /// (lower, higher) of two local points.
 uvec2 ascending(uint a, uint b) { return uvec2(min(a, b), max(a, b)); }
 
-void add_edges(CutTet cut) {
-    for (uint k = 0u; k < 4u; ++k) {
-        const uvec2 ends = polygon_edge(cut, k);
-        if ((cut.tied >> ends.x & 1u) != 0u) continue;
-        const uvec2 edge = ascending(cut.corners[ends.x], cut.corners[ends.y]);
-        atomicOr(matrix[matrix_word(edge)], 1u << edge.y % 32u);
+void add_edges(Tables tables, Cell cell) {
+    for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
+        const uint polygon = polygon_of(tables, cell, i);
+        for (uint k = 0u; k < 4u; ++k) {
+            const uvec2 ends = polygon_edge(polygon, k);
+            if ((cell.tied >> ends.x & 1u) != 0u) continue;
+            const uvec2 edge = ascending(corner_of(cell, ends.x), corner_of(cell, ends.y));
+            atomicOr(matrix[matrix_word(edge)], 1u << edge.y % 32u);
+        }
     }
 }
 

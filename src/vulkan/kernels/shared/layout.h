@@ -4,7 +4,7 @@
 // each place.
 //
 // On the device a packed grid lies in two kinds of memory. Resident, by cluster: Page, Cluster, Range, masks, counts,
-// starts. In pages, which may come and go: points, values, tets, group ranges, links, each array of a page beginning at
+// starts. In pages, which may come and go: points, values, cells, group ranges, links, each array of a page beginning at
 // a word that Page tells. A page holds whole clusters, and copies of the points that these borrow from other pages: its
 // halo.
 //
@@ -32,9 +32,9 @@ struct Address { ///< on the device; halves, so that no kernel needs 64-bit inte
 #define ISOTET_CONSTANT const uint
 #endif
 
-ISOTET_CONSTANT group_size = 32u;            ///< tets
+ISOTET_CONSTANT group_size = 32u;            ///< words: a tet is one, any other cell two
 ISOTET_CONSTANT max_cluster_points = 128u;   ///< and invocations of a workgroup: one a point
-ISOTET_CONSTANT max_cluster_groups = 32u;    ///< of tets
+ISOTET_CONSTANT max_cluster_groups = 32u;
 ISOTET_CONSTANT max_cluster_seams = 6144u;   ///< edges of the most tets there can be
 ISOTET_CONSTANT matrix_words = 512u;         ///< a bit for every pair of local points
 ISOTET_CONSTANT tied_words = 4u;             ///< of a cluster's masks, before those of its own seams
@@ -43,11 +43,20 @@ ISOTET_CONSTANT block_segments = 128u;
 ISOTET_CONSTANT few_edges = 1024u;           ///< active edges of a cluster that the smaller emit kernel has room for
 ISOTET_CONSTANT max_edges = 4096u;          ///< active edges that a cluster can have: 64 points below, 64 above
 
-/// Marching tetrahedra by which corners are above (core/case_table.hpp): four active edges, each corner above + 4 *
-/// corner below, in 4 bits; then the number of triangles. engine/layout.hpp checks them against the table.
-#define ISOTET_TET_CASES                                                        \
-    0x00000u, 0x188c4u, 0x1dd91u, 0x2cd98u, 0x166e2u, 0x26ec4u, 0x2de21u, 0x1ddecu, \
-    0x1bb73u, 0x28b74u, 0x23b91u, 0x1bb98u, 0x26732u, 0x16674u, 0x13321u, 0x00000u
+/// Marching tetrahedra by which corners are above (core/case_table.hpp): a polygon's four active edges, each corner above
+/// + 8 * corner below, in 6 bits; then the number of its triangles. engine/layout.hpp checks them against the table.
+#define ISOTET_TET_CASES \
+    0x0000000u, 0x1410608u, 0x1659441u, 0x2619450u, \
+    0x128a682u, 0x229a608u, 0x265a081u, 0x1659698u, \
+    0x14d32c3u, 0x24132c8u, 0x20d3441u, 0x14d3450u, \
+    0x228b0c2u, 0x128a2c8u, 0x10c3081u, 0x0000000u
+
+/// Cases of the other kinds (core/cell_cases.hpp) lie in memory, a word each: the word of the first polygon + 65536 *
+/// number of polygons + 2^20 * number of triangles. Polygons, as above, stand behind.
+ISOTET_CONSTANT pyramid_cases_at = 0u;
+ISOTET_CONSTANT wedge_cases_at = 32u;
+ISOTET_CONSTANT hexahedron_cases_at = 96u;
+ISOTET_CONSTANT polygons_at = 352u;
 
 /// A page of the packed grid; (0, 0) as `data` when it is not on the device.
 struct Page {
@@ -56,7 +65,7 @@ struct Page {
     uint positions;    ///< 3 a point
     uint gradients;    ///< one a point, where the grid was packed with them
     uint halo;         ///< one a halo point: its packed number
-    uint tets;         ///< one a tet, groups padded
+    uint cells;        ///< one a tet, two any other cell, groups padded
     uint group_ranges; ///< 16 bits a group
     uint links;
     uint own_points;
@@ -73,6 +82,7 @@ struct Cluster {
     uint first_mask;   ///< in the masks: tied_words, then one bit an own seam
     uint points;       ///< own + 65536 * ghost
     uint tets;         ///< tets + 65536 * neighbours
+    uint others;       ///< pyramids + 1024 * wedges + 2^20 * hexahedra
     uint seams;        ///< own + 65536 * ghost
 };
 
@@ -122,6 +132,7 @@ struct Tables {
     Address selected;   ///< list of clusters
     Address emitted;    ///< list of those with output: few edges from the front, many edges from the back
     Address lists;      ///< Lists
+    Address cell_cases;
     uint cluster_count;
     uint groups_per_axis;
     uint any_no_data;   ///< some point has none
@@ -157,7 +168,7 @@ struct Output {
     Address lowest;        ///< uint a vertex: lowest triangle at vertices without a gradient normal
     Address ends;          ///< uint x 2 a vertex: packed points
     Address weights;       ///< float a vertex
-    Address sources;       ///< uint a triangle: number of the stored tet
+    Address sources;       ///< uint a triangle: first word of the stored cell
 };
 
 /// Push constants of the four steps.

@@ -6,14 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/tet_buckets.hpp"
+#include "core/ranked_buckets.hpp"
 
 namespace isotet::test {
 namespace {
 
 using core::RankedTet;
-using core::TetBuckets;
-using core::TetOrigin;
+using core::RankedBuckets;
+using core::CellOrigin;
 
 struct Dealt {
     RankedTet tet;
@@ -23,10 +23,10 @@ struct Dealt {
 
 void expect_everything_comes_back(std::size_t ranks, std::size_t tets, std::size_t writers) {
     std::mt19937 random(3);
-    TetBuckets buckets(ranks, tets, writers, true);
+    RankedBuckets<RankedTet> buckets(ranks, tets, writers, true);
     std::vector<std::vector<Dealt>> expected(buckets.buckets());
     for (std::size_t w = 0; w < writers; ++w) {
-        TetBuckets::Writer writer(buckets, w);
+        RankedBuckets<RankedTet>::Writer writer(buckets, w);
         for (std::size_t i = tets / writers * w; i < tets / writers * (w + 1); ++i) {
             RankedTet tet;
             for (std::uint32_t& rank : tet) rank = static_cast<std::uint32_t>(random() % ranks);
@@ -37,11 +37,11 @@ void expect_everything_comes_back(std::size_t ranks, std::size_t tets, std::size
     std::vector<Dealt> all;
     for (std::size_t b = 0; b < buckets.buckets(); ++b) {
         std::vector<Dealt> found;
-        buckets.for_dealt(b, [&](const RankedTet& tet, TetOrigin origin) { found.push_back({tet, origin.value}); });
+        buckets.for_dealt(b, [&](const RankedTet& tet, CellOrigin origin) { found.push_back({tet, origin.value}); });
         ASSERT_EQ(found, expected[b]);
         ASSERT_EQ(buckets.dealt(b), found.size());
         std::vector<RankedTet> sorted;
-        std::vector<TetOrigin> origins;
+        std::vector<CellOrigin> origins;
         for (const Dealt& one : found) {
             if (one.origin % 7 == 0) continue; // some are dropped
             sorted.push_back(one.tet);
@@ -55,8 +55,8 @@ void expect_everything_comes_back(std::size_t ranks, std::size_t tets, std::size
     ASSERT_EQ(buckets.size(), all.size());
     for (std::size_t first = 0; first < all.size(); first += 1000) {
         std::vector<RankedTet> found(std::min<std::size_t>(1000, all.size() - first));
-        std::vector<TetOrigin> origins(found.size());
-        buckets.copy_tets(first, found);
+        std::vector<CellOrigin> origins(found.size());
+        buckets.copy_items(first, found);
         buckets.copy_origins(first, origins);
         for (std::size_t i = 0; i < found.size(); ++i) {
             ASSERT_EQ(found[i], all[first + i].tet);
@@ -65,7 +65,7 @@ void expect_everything_comes_back(std::size_t ranks, std::size_t tets, std::size
     }
 }
 
-TEST(TetBuckets, GiveBackWhatIsDealtOut) {
+TEST(RankedBuckets, GiveBackWhatIsDealtOut) {
     expect_everything_comes_back(10, 5000, 1);
     expect_everything_comes_back(4096, 5000, 3);
     expect_everything_comes_back(60'000, 20'000, 7);

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "core/tet_order.hpp"
+#include "core/cell_order.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "core/bucket_sorter.hpp"
+#include "core/native_cells.hpp"
 #include "core/parallel.hpp"
 #include "core/point_order.hpp"
 #include "core/prefetch.hpp"
@@ -31,7 +32,7 @@ Result<Ranks> rank_points(const PointReader& points, const Buffer<std::uint8_t>&
     constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
     if (sorted.size() >= limit)
         return Error{ErrorCode::invalid_data,
-                     fmt::format("the tets use {} points, but there can be {}", sorted.size(), limit - 1)};
+                     fmt::format("the cells use {} points, but there can be {}", sorted.size(), limit - 1)};
     Ranks ranks{Buffer<std::uint64_t>(sorted.size()), Buffer<std::uint32_t>(used.size())};
     parallel_ranges(sorted.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t rank = begin; rank < end; ++rank) {
@@ -67,54 +68,106 @@ std::size_t writers_for(std::size_t cells) {
     return std::min(std::max(threads, std::min<std::size_t>(8 * threads, 128)), 1 + (cells >> 16));
 }
 
-/// Deals out the tets of the cells [begin, end). Each waits for a while behind others, as the ranks of its points are
-/// on their way from memory.
-void deal_out(const PointReader& points, const CellReader& cells, std::size_t begin, std::size_t end,
-              const Buffer<std::uint32_t>& rank_of, TetBuckets::Writer& writer) {
+/// Deals out what the cells [begin, end) give. Each waits for a while behind others, as the ranks of its points are on
+/// their way from memory.
+template <class Item>
+class Dealer {
+public:
+    Dealer(const Buffer<std::uint32_t>& rank_of, typename RankedBuckets<Item>::Writer& writer)
+        : rank_of_(rank_of), writer_(writer) {}
+    ~Dealer() {
+        for (std::size_t i = arrived_ - std::min(arrived_, most); i < arrived_; ++i) deal(queue_[i % most]);
+    }
+    Dealer(const Dealer&) = delete;
+    Dealer& operator=(const Dealer&) = delete;
+
+    /// `corners`   user's points
+    void put(std::span<const std::uint64_t> corners, CellOrigin origin) {
+        for (const std::uint64_t corner : corners) prefetch(&rank_of_[corner]);
+        Waiting& place = queue_[arrived_ % most];
+        if (arrived_++ >= most) deal(place);
+        std::copy(corners.begin(), corners.end(), place.corners.begin());
+        place.count = corners.size();
+        place.origin = origin;
+    }
+
+private:
+    static constexpr std::size_t most = 32;
+    static constexpr std::size_t max_corners = sizeof(Item) / sizeof(std::uint32_t);
+
     struct Waiting {
-        Tet corners;
-        TetOrigin origin;
+        std::array<std::uint64_t, max_corners> corners;
+        std::size_t count;
+        CellOrigin origin;
     };
-    constexpr std::size_t most = 32;
-    std::array<Waiting, most> queue;
-    std::size_t arrived = 0;
-    const auto deal = [&](const Waiting& waiting) {
-        RankedTet tet;
-        for (std::size_t k = 0; k < 4; ++k) tet[k] = rank_of[waiting.corners[k]];
-        writer.put(tet, lowest_rank(tet), waiting.origin);
-    };
+
+    void deal(const Waiting& waiting) {
+        if constexpr (max_corners == 4) {
+            RankedTet tet;
+            for (std::size_t k = 0; k < 4; ++k) tet[k] = rank_of_[waiting.corners[k]];
+            writer_.put(tet, lowest_rank(tet), waiting.origin);
+        } else {
+            RankedCell cell;
+            cell.corners.fill(RankedCell::no_corner);
+            for (std::size_t k = 0; k < waiting.count; ++k) cell.corners[k] = rank_of_[waiting.corners[k]];
+            writer_.put(cell, lowest_rank(cell), waiting.origin);
+        }
+    }
+
+    const Buffer<std::uint32_t>& rank_of_;
+    typename RankedBuckets<Item>::Writer& writer_;
+    std::array<Waiting, most> queue_;
+    std::size_t arrived_ = 0;
+};
+
+void deal_out(const PointReader& points, const CellReader& cells, std::size_t begin, std::size_t end,
+              const Buffer<std::uint32_t>& rank_of, RankedBuckets<RankedTet>::Writer& writer) {
+    Dealer<RankedTet> dealer(rank_of, writer);
     cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
         const bool cell_negative =
             !cells.only_tets() && !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(points, pieces) < 0;
-        for (const Tet& corners : pieces) {
-            for (const std::uint64_t corner : corners) prefetch(&rank_of[corner]);
-            Waiting& place = queue[arrived % most];
-            if (arrived++ >= most) deal(place);
-            place = {corners, TetOrigin::make(cell, cell_negative)};
-        }
+        for (const Tet& corners : pieces) dealer.put(corners, CellOrigin::make(cell, cell_negative));
     });
-    for (std::size_t i = arrived - std::min(arrived, most); i < arrived; ++i) deal(queue[i % most]);
 }
+
+void deal_out(const PointReader& points, const CellReader& cells, std::size_t begin, std::size_t end,
+              const Buffer<std::uint32_t>& rank_of, RankedBuckets<RankedCell>::Writer& writer) {
+    Dealer<RankedCell> dealer(rank_of, writer);
+    for (std::size_t cell = begin; cell < end; ++cell) {
+        if (!is_contoured(cells.type(cell))) continue;
+        const NativeParts parts = native_parts(cells.whole(cell));
+        const bool negative = parts.count && parts.cells[0].kind == CellKind::tetrahedron &&
+                              !Orienter::is_whole(cells.type(cell)) &&
+                              Orienter::six_volumes(points, cells.tets(cell)) < 0;
+        for (const WholeCell& part : parts)
+            dealer.put({part.corners.data(), corner_count(part.kind)}, CellOrigin::make(cell, negative));
+    }
+}
+
+RankedTet& corners_of_item(RankedTet& tet) { return tet; }
+std::array<std::uint32_t, 8>& corners_of_item(RankedCell& cell) { return cell.corners; }
 
 Error cancelled() { return Error{ErrorCode::cancelled, "packing was cancelled"}; }
 
 } // namespace
 
-Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts counts, bool keep_origins,
-                           const Progress& progress) {
+template <class Item>
+Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, CellCounts counts, bool keep_origins,
+                                   const Progress& progress) {
     const PointReader points(grid.points);
     auto ranks = rank_points(points, counts.used);
     if (!ranks) return ranks.error();
     counts.used.release();
-    TetOrder order;
+    CellOrder<Item> order;
     order.point_of = std::move(ranks->point_of);
     if (progress.cancelled()) return cancelled();
     progress("pack", 0.05);
 
     const std::size_t writers = writers_for(cells.count());
-    order.tets = TetBuckets(order.point_of.size(), counts.tets, writers, keep_origins || !cells.only_tets());
+    order.cells =
+        RankedBuckets<Item>(order.point_of.size(), counts.stored, writers, keep_origins || !cells.only_tets());
     parallel_each(writers, 1, [&](std::size_t w) {
-        TetBuckets::Writer writer(order.tets, w);
+        typename RankedBuckets<Item>::Writer writer(order.cells, w);
         constexpr std::size_t cells_at_once = 1 << 14;
         const std::size_t last = cells.count() / writers * (w + 1) + std::min(w + 1, cells.count() % writers);
         for (std::size_t begin = cells.count() / writers * w + std::min(w, cells.count() % writers); begin < last;
@@ -127,12 +180,12 @@ Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts 
     ranks->rank_of.release();
     progress("pack", 0.15);
 
-    std::vector<SortedBucket> sorted(order.tets.buckets());
+    std::vector<SortedBucket> sorted(order.cells.buckets());
     {
         const Array coordinates = coordinates_by_rank(grid.points, order.point_of);
         const RankedPoints ranked{order.point_of.data(), PointReader(coordinates)};
         parallel_each(sorted.size(), 1, [&](std::size_t bucket) {
-            if (!progress.cancelled()) sorted[bucket] = sort_bucket(ranked, cells, bucket, order.tets);
+            if (!progress.cancelled()) sorted[bucket] = sort_bucket(ranked, cells, bucket, order.cells);
         });
     }
     if (progress.cancelled()) return cancelled();
@@ -141,18 +194,24 @@ Result<TetOrder> sort_tets(const Grid& grid, const CellReader& cells, TetCounts 
         order.orientation.combine(bucket.orientation);
         order.repeated += bucket.repeated;
         balance += bucket.balance;
+        for (std::size_t k = 0; k < cell_kind_count; ++k) order.kinds[k] += bucket.kinds[k];
     }
     if (balance < 0) // in the canonical order, mirroring is an exchange of the last two corners
         for (std::size_t bucket = 0; bucket < sorted.size(); ++bucket)
             for (const std::size_t i : sorted[bucket].flat) {
-                RankedTet& tet = order.tets.sorted(bucket, i);
-                std::swap(tet[2], tet[3]);
+                auto& corners = corners_of_item(order.cells.sorted(bucket, i));
+                std::swap(corners[2], corners[3]);
             }
     order.inverted = order.orientation.inverted(balance < 0);
-    if (!keep_origins) order.tets.drop_origins();
-    order.tets.number();
+    if (!keep_origins) order.cells.drop_origins();
+    order.cells.number();
     progress("pack", 0.3);
     return order;
 }
+
+template Result<CellOrder<RankedTet>> sort_cells<RankedTet>(const Grid&, const CellReader&, CellCounts, bool,
+                                                            const Progress&);
+template Result<CellOrder<RankedCell>> sort_cells<RankedCell>(const Grid&, const CellReader&, CellCounts, bool,
+                                                              const Progress&);
 
 } // namespace isotet::core
