@@ -15,6 +15,10 @@ foreach(component ${ISOTET_COMPONENTS})
     install(EXPORT isotet-${component} NAMESPACE isotet:: DESTINATION ${package_dir} FILE isotet-${component}.cmake)
 endforeach()
 
+if(TARGET isotet_reader)
+    install(TARGETS isotet_reader EXPORT isotet-io RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
 # What belongs to isotet_extras, which is not installed, stays here.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/isotet DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
     FILES_MATCHING PATTERN "*.hpp"
@@ -28,8 +32,7 @@ install(FILES ${PROJECT_BINARY_DIR}/isotet-config.cmake ${PROJECT_BINARY_DIR}/is
     ${PROJECT_SOURCE_DIR}/cmake/FindCompressors.cmake ${PROJECT_SOURCE_DIR}/cmake/FindWebP.cmake
     DESTINATION ${package_dir})
 
-# pkg-config: what only a static library needs stands under .private. isotet-io read through VTK has no complete list of
-# libraries, so its static form is for CMake alone.
+# pkg-config: what only a static library needs stands under .private.
 function(isotet_pkg_config name description requires requires_private libs_private)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${name}.pc CONTENT
 "prefix=\${pcfiledir}/@pc_to_prefix@

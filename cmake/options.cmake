@@ -4,15 +4,17 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-option(ISOTET_IO "Read files through VTK and HDF5, too (Exodus, CGNS, VTKHDF, XDMF, ...)" ON)
+option(ISOTET_IO "Read more formats (Exodus, CGNS, VTKHDF, XDMF, ...): build the program isotet-reader, with VTK and HDF5" ON)
 option(ISOTET_VULKAN "Extract on graphics cards through Vulkan, opened at run time" ON)
 option(ISOTET_PROGRAM "Build the program isotet" ${PROJECT_IS_TOP_LEVEL})
+option(ISOTET_PYTHON "Build the Python package" OFF)
 option(ISOTET_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_BENCH "Build the benchmarks" OFF)
 option(ISOTET_FUZZ "Build the fuzz targets (clang with libFuzzer)" OFF)
 option(ISOTET_WERROR "Warnings are errors" OFF)
 option(ISOTET_UNITY "Compile the library in groups of files: half the work; OFF: file by file, for work on it" ON)
 set(ISOTET_TEST_KINDS "" CACHE STRING "Folders of tests/ to build; empty: all")
+set(ISOTET_TEST_PYTHON "" CACHE FILEPATH "A Python that has the package and what its tests need; empty: they are not run")
 set(ISOTET_TEST_PREFIX "" CACHE STRING "What the names of all tests begin with, such as thread.")
 set(ISOTET_FUZZ_SECONDS 20 CACHE STRING "How long ctest runs each fuzz target")
 set(ISOTET_SANITIZE "" CACHE STRING "Sanitizers to build with: address,undefined or thread")
@@ -24,10 +26,6 @@ if(ISOTET_FUZZ)
     endif()
     set(ISOTET_SANITIZE "address,undefined,fuzzer-no-link")
 endif()
-
-# What is asked of VTK; an installed isotet::io asks for the same.
-set(ISOTET_VTK_COMPONENTS CommonCore CommonDataModel IOXML IOParallelXML IOLegacy IOGeometry IOExodus IOCGNSReader IOHDF
-    IOEnSight)
 
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)

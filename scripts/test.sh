@@ -20,7 +20,7 @@ fi
 
 # What a sanitizer can say nothing about: these look at the tree, at installing, or at the program. And tests on a Vulkan
 # device: drivers and layers leave memory behind and are unloaded, so that their leaks cannot be told from ours by name.
-readonly not_for_address=(cli docs fuzz gpu_engine headers includes install render vulkan)
+readonly not_for_address=(cli docs fuzz gpu_engine headers includes install python render vulkan)
 readonly for_thread='determinism;laws'
 
 kinds_for_address() {
@@ -33,7 +33,18 @@ kinds_for_address() {
 }
 
 build_release() {
-    build release "$trees/release" -DCMAKE_BUILD_TYPE=Release -DISOTET_WERROR=ON
+    local python=
+    if [[ $mode == full ]]; then python=$trees/python/venv/bin/python; fi
+    build release "$trees/release" -DCMAKE_BUILD_TYPE=Release -DISOTET_WERROR=ON -DISOTET_TEST_PYTHON="$python"
+}
+
+# The wheel, and the environment that its tests run in, which are tests of release. The library inside is that of release
+# where its component io needs no VTK, else it is compiled once more.
+build_python() {
+    local prefix=$trees/python/prefix installed=
+    in_log "python: installs release" "$trees/python.install.log" cmake --install "$trees/release" --prefix "$prefix" || return
+    if ! grep -q VTK "$prefix/lib/cmake/isotet/isotet-io.cmake"; then installed=$prefix; fi
+    ISOTET_INSTALLED=$installed measured python "$root/scripts/wheel.sh" "$trees/python"
 }
 
 # Without VTK: its readers run as uninstrumented children under a limit on address space that a sanitizer cannot live in.
@@ -83,6 +94,7 @@ mkdir -p "$trees"
 : >"$trees/CTestTestfile.cmake"
 try_stage release release
 if [[ $mode == full ]]; then
+    try_stage python
     try_stage tidy
     try_stage address address
     try_stage thread thread

@@ -97,6 +97,7 @@ Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, co
 Result<void> BenchRun::run_file() {
     const Result<GridSource> source = GridSource::open(command_.grid, console_);
     if (!source) return source.error();
+    if (auto paths = check_output_paths(source->info().files, {command_.common.json}); !paths) return paths;
     const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
     if (!steps) return steps.error();
     Grid grid;

@@ -29,6 +29,7 @@ struct Origin {
 Result<Origin> read_origin(const CheckCommand& command, Console& console) {
     const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
+    if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
     FieldsToRead fields{std::vector<std::string>{}, std::vector<std::string>{}};
@@ -159,12 +160,14 @@ Result<ExitCode> run_check(const CheckCommand& command) {
     if (!command.grid.file.empty()) {
         if (file->surface.edge_ends.empty()) {
             return usage_error("{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends "
-                               "writes it into .vtp and .vtk", command.surface);
+                               "writes it into .vtp and .vtk",
+                               command.surface);
         }
         Result<Origin> read = read_origin(command, console);
         if (!read) return read.error();
         origin = *std::move(read);
         options.grid = &origin->grid;
+        options.split_cells = command.split_cells;
         if (origin->field) options.field = &*origin->field;
     }
     const Result<SurfaceReport> report = check(file->surface, options, console.run());

@@ -59,8 +59,8 @@ private:
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
-    Grid grid_;         ///< of the step at hand
-    Array field_;       ///< its values
+    Grid grid_;                                    ///< of the step at hand
+    Array field_;                                  ///< its values
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
@@ -78,8 +78,7 @@ Result<void> ExtractRun::open_device() {
     if (!wanted) return {};
     if (command_.method == Method::direct)
         return usage_error("--method direct was asked for, but devices take packed grids only: clusters");
-    if (command_.device.name == "none")
-        return usage_error("--engine vulkan needs a device, but --device is none");
+    if (command_.device.name == "none") return usage_error("--engine vulkan needs a device, but --device is none");
     Result<std::optional<Device>> device = isotet::cli::open_device(command_.device, console_);
     if (device) {
         device_ = vulkan_engine(**device);
@@ -103,6 +102,9 @@ Result<void> ExtractRun::open() {
     Result<GridSource> source = GridSource::open(command_.grid, console_);
     if (!source) return source.error();
     source_ = *std::move(source);
+    if (auto paths = check_output_paths(source_->info().files, {fixed_name ? command_.out : "", command_.common.json});
+        !paths)
+        return paths;
     Result<ExtractPlan> plan = plan_extract(command_, *source_, console_);
     if (!plan) return plan.error();
     plan_ = *std::move(plan);
@@ -141,7 +143,7 @@ Result<Contour> ExtractRun::start(ContourInput input) {
 /// What all steps are expected to take, from a look at the first.
 void ExtractRun::predict(const ContourInput& input) {
     if (device_ || command_.engine == EngineChoice::reference) return;
-    const Result<FieldSample> sample = FieldSample::create(input.grid, input.field);
+    const Result<FieldSample> sample = FieldSample::create(input.grid, input.field, command_.split_cells);
     if (!sample) return; // an error that Contour::create() gives, too
     const std::vector<double> levels =
         evenly_spaced_levels(sample->lower(), sample->upper(), std::max<std::uint64_t>(command_.levels, 1));
@@ -162,8 +164,7 @@ void ExtractRun::predict(const ContourInput& input) {
     work.gradients = command_.normals == Normals::gradient;
     work.find_range = command_.isovalues.empty();
     work.triangles = all / static_cast<double>(isovalues.size());
-    const Method method =
-        command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
+    const Method method = command_.method.value_or(method_for(isovalues.size() * plan_.steps.size(), work.gradients));
     numbers_.predicted = estimate(method, work);
 }
 
@@ -174,8 +175,7 @@ Result<void> ExtractRun::load(std::size_t step) {
     grid_ = {};
     Result<Grid> grid = source_->read(plan_.read, step, console_);
     if (!grid) return grid.error();
-    Result<PointField> field =
-        find_chosen(*grid, plan_.field.name, command_.field, console_);
+    Result<PointField> field = find_chosen(*grid, plan_.field.name, command_.field, console_);
     if (!field) return field.error();
     Result<StepFields> fields = carried_fields(plan_, *grid, console_.run());
     if (!fields) return fields.error();
@@ -193,8 +193,7 @@ Result<void> ExtractRun::load(std::size_t step) {
     } else {
         const Result<ContourUpdate> update = contour_->set(std::move(input), console_.run());
         if (!update) return update.error();
-        if (*update != ContourUpdate::grid)
-            console_.detail("the cells are those of the step before: not packed again");
+        if (*update != ContourUpdate::grid) console_.detail("the cells are those of the step before: not packed again");
     }
     if (contour_->method() == Method::clusters) {
         console_.detail("packing");
@@ -219,8 +218,9 @@ Result<void> ExtractRun::choose_values(std::size_t step) {
     if (plan_.names.fixed()) return {};
     for (const double isovalue : isovalues_) {
         const std::string name = plan_.names.name(key(isovalue, step));
-        if (auto path = check_output_paths({command_.grid.file, command_.common.json, plan_.collection}, {name}); !path)
-            return path;
+        std::vector<std::string> others = source_->info().files;
+        others.insert(others.end(), {command_.grid.file, command_.common.json, plan_.collection});
+        if (auto path = check_output_paths(others, {name}); !path) return path;
         if (!plan_.names.by_value()) break; // all values go into the same file
     }
     return {};
@@ -252,8 +252,8 @@ std::string ExtractRun::why_empty(double isovalue) const {
     if (isovalue == field.lower)
         return fmt::format("{} is the smallest value of '{}': nothing is below it, the surface is empty", value,
                            field.name);
-    const std::string range = fmt::format("the range of '{}', {} to {}", field.name, shortest(field.lower),
-                                          shortest(field.upper));
+    const std::string range =
+        fmt::format("the range of '{}', {} to {}", field.name, shortest(field.lower), shortest(field.upper));
     if (isovalue < field.lower || isovalue > field.upper)
         return fmt::format("isovalue {} is outside {}: the surface is empty", value, range);
     return fmt::format("isovalue {} is within {}, but no tet has values on both sides of it: the surface is empty",

@@ -184,6 +184,7 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     if (Result<void> paths = check_output_paths({path}, {command.common.json}); !paths) return paths.error();
     const Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
+    if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
     const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
     if (!steps) return steps.error();
     const Result<Grid> grid = source->read({}, steps->front(), console);

@@ -123,7 +123,8 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
         "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
-    command.add_flag("--merge-pieces", grid.merge_pieces, "Join pieces without global ids by exact coordinates");
+    command.add_flag("--keep-pieces", grid.keep_pieces,
+                     "Keep points of different pieces apart, which are joined where their coordinates are equal");
     command.add_flag("--allow-outside", grid.allow_outside,
                      "Index files (.pvd, .pvtu and so on) may name files outside their own folder");
 }
@@ -174,6 +175,8 @@ void add_surface_arrays(const Command& command, ExtractCommand& extract) {
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
     command.add_flag("--source-cells", extract.source_cells,
                      "Write the grid cell of each triangle (source_cell); .vtp, .vtk");
+    command.add_flag("--split-cells", extract.split_cells,
+                     "Split pyramids, wedges and hexahedra into tets first: 2 to 3 times the triangles");
 }
 
 void add_extract(const Command& program, ExtractCommand& extract) {
@@ -217,13 +220,18 @@ void add_extract(const Command& program, ExtractCommand& extract) {
 }
 
 void add_render(const Command& program, RenderCommand& render) {
-    add_machine_and_input(add_render_command(program, render), render.device, render.grid, render.common);
+    const Command command = add_render_command(program, render);
+    add_machine_and_input(command, render.device, render.grid, render.common);
+    const Option all_steps = command.add_flag("--all-steps", render.all_steps,
+                                              "A picture of every time step, with one camera and one colour scale");
+    for (const char* name : {"--time", "--step", "--sweep", "--orbit", "--reference"})
+        all_steps.excludes(command.option(name));
 }
 
 void add_bench(const Command& program, BenchCommand& bench) {
     const Command command = add_bench_command(program, bench);
     add_machine_and_input(command, bench.device, bench.grid, bench.common);
-    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--merge-pieces",
+    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--keep-pieces",
                              "--allow-outside", "--cell-field"})
         command.option(name).excludes(command.option("--paper"));
 }
@@ -235,13 +243,14 @@ void add_check(const Command& program, CheckCommand& check) {
     command.add_flag("--closed", check.closed, "Report every edge that is used unequally often in the two directions");
     const Option grid = command.add_file("--grid", check.grid.file, "FILE",
                                          "Report such edges unless they lie in one boundary face of this grid");
-    add_field(command, check.field, "The field that was contoured: tets without a value do not count").needs(grid);
+    add_field(command, check.field, "The field that was contoured: cells without a value do not count").needs(grid);
     command.option("--cell-field").needs(grid);
     add_time(command, check.grid);
+    command.add_flag("--split-cells", check.split_cells, "The surface was made with --split-cells").needs(grid);
     command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; without it the name decides");
     add_reading(command, check.grid, "--grid-format");
-    for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--merge-pieces"}) {
+    for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--keep-pieces"}) {
         command.option(name).needs(grid);
     }
     add_common(command, check.common);

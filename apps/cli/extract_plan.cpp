@@ -39,7 +39,8 @@ Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan,
     if (plan.names.none()) return {};
     if (plan.steps.size() > 1 && !plan.names.by_step())
         return usage_error("--all-steps has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
-                           "one file for each step", plan.steps.size(), command.out);
+                           "one file for each step",
+                           plan.steps.size(), command.out);
     if (!plan.names.by_time()) return {};
     std::set<double> times;
     for (const std::size_t step : plan.steps) {
@@ -49,7 +50,8 @@ Result<void> check_names(const ExtractCommand& command, const ExtractPlan& plan,
                                command.out);
         if (!times.insert(*time).second)
             return usage_error("several time steps have the time {}, but each needs a file of its own: {{step}} in "
-                               "OUT tells them apart", shortest(*time));
+                               "OUT tells them apart",
+                               shortest(*time));
     }
     return {};
 }
@@ -118,6 +120,7 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     plan.contour.normals = command.normals;
     plan.contour.edge_ends = command.edge_ends;
     plan.contour.source_cells = command.source_cells;
+    plan.contour.split_cells = command.split_cells;
     return plan;
 }
 

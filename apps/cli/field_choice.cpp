@@ -2,6 +2,7 @@
 #include "field_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,19 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
 
+/// Whole numbers are numbers of something, of a region say, more often than measured. Up to 200,000 are looked at.
+bool holds_whole_numbers(const Array& values) {
+    if (!is_floating(values.type())) return true;
+    return values.visit([](auto scalars) {
+        const std::size_t step = std::max<std::size_t>(1, scalars.size() / 200'000);
+        for (std::size_t i = 0; i < scalars.size(); i += step) {
+            const auto value = static_cast<double>(scalars[i]);
+            if (std::isfinite(value) && value != std::floor(value)) return false;
+        }
+        return true;
+    });
+}
+
 std::vector<std::string> all_names(const GridSource& source) {
     std::vector<std::string> names = source.names(Association::point);
     add_names(names, source.names(Association::cell));
@@ -28,8 +42,7 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
     const std::vector<std::string> point = source.names(Association::point), cell = source.names(Association::cell);
     if (has(point, name)) add_names(carried.point, {name});
     else if (has(cell, name)) add_names(carried.cell, {name});
-    else if (const auto match = match_field_name(name, point))
-        carried.components.push_back({name, {match->field}, {}});
+    else if (const auto match = match_field_name(name, point)) carried.components.push_back({name, {match->field}, {}});
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
     else if (match_field_name(name, cell))
         return usage_error("--with got '{}', a component of a cell field, but cell fields are carried whole", name);
@@ -77,12 +90,20 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
     return carried;
 }
 
-Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
-                               Console& console) {
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Console& console) {
     const auto prefer = choice.cell_field ? Association::cell : Association::point;
     Result<PointField> field = find_field(grid, name, {prefer}, console.run());
     if (field) console.note(field->note);
     return field;
+}
+
+DefaultField default_field(const Grid& grid) {
+    Grid measured = grid;
+    for (std::vector<Field>* fields : {&measured.point_fields, &measured.cell_fields})
+        std::erase_if(*fields, [](const Field& field) { return holds_whole_numbers(field.values); });
+    const std::string name = most_varied_field(measured);
+    if (!name.empty()) return {name, false};
+    return {most_varied_field(grid), true};
 }
 
 Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
@@ -106,7 +127,7 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
     if (!all) return all.error();
     grid = *std::move(all);
     if (name.empty()) {
-        name = most_varied_field(grid);
+        name = default_field(grid).name;
         if (name.empty())
             return Error{ErrorCode::invalid_data,
                          fmt::format("none of the {} fields has two different values: there is nothing to contour; "

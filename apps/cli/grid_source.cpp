@@ -85,10 +85,9 @@ Result<GridSource> GridSource::open(const GridOptions& options, const Console& c
     }
     ReadOptions& read_options = source.read_options_;
     read_options.format = options.format;
-    read_options.merge_pieces_by_coordinates = options.merge_pieces;
+    read_options.merge_pieces_by_coordinates = !options.keep_pieces;
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
-    read_options.reader_program = "/proc/self/exe"; // this program, wherever it lies
     Result<FileInfo> info = inspect(options.file, read_options, console.run());
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);

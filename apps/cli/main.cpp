@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <isotet/read.hpp>
-
 #include "console.hpp"
 #include "exit_code.hpp"
 #include "program.hpp"
@@ -14,7 +12,6 @@
 
 int main(int argc, char** argv) {
     using namespace isotet;
-    if (const std::optional<int> status = run_as_reader(argc, argv)) return *status;
     cli::open_missing_streams();
     cli::install_signal_handlers();
     try {

@@ -10,6 +10,7 @@
 #include <isotet/draw_tets.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/grid_bench.hpp>
+#include <isotet/isosurface_scene.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/plan.hpp>
@@ -33,7 +34,7 @@ struct GridOptions {
     std::optional<double> time;
     std::optional<std::uint64_t> step;
     std::optional<double> merge_points; ///< tolerance
-    bool merge_pieces = false;
+    bool keep_pieces = false;
     bool allow_outside = false;
     std::string displace;
 };
@@ -73,6 +74,7 @@ struct ExtractCommand {
     bool fail_if_empty = false;
     bool edge_ends = false;
     bool source_cells = false;
+    bool split_cells = false;
     Precision precision = Precision::float32;
     std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;
@@ -103,33 +105,46 @@ struct RenderCommand {
     std::uint64_t levels = 0; ///< 0: `isovalues` say it, or three
     PictureOptions picture;   ///< the camera aside
     View view = View::iso;
+    std::vector<double> angles; ///< azimuth and elevation, instead of `view`; or none
+    std::optional<UpAxis> up;
+    std::optional<Camera> camera; ///< all of it: neither view nor fit counts
+    double zoom = 1;
+    bool fit_surface = false; ///< else the grid
     bool parallel = false;
-    bool outline = false;     ///< the box around
-    bool plain = false;       ///< no text
-    std::string color_by;     ///< a field; empty: each isovalue has its colour
-    ColorScale scale;         ///< the map, the logarithm and the colour for no data
-    std::vector<double> range; ///< both ends of the scale, or none
+    std::string unit; ///< of coordinates, beside a scale bar; empty: none
+    bool scale_bar = false;
+    std::vector<double> stretch; ///< of x, y and z; or none
+    std::vector<Plane> clips, slices;
+    bool edges = false;
+    ShadeBy shade_by = ShadeBy::vertices;
+    std::string boundary_color_by; ///< a field; empty: none
+    bool all_steps = false;
+    bool outline = false;                    ///< the box around
+    bool plain = false;                      ///< no text
+    std::string color_by;                    ///< a field; empty: each isovalue has its colour
+    ColorScale scale;                        ///< the map, the logarithm and the colour for no data
+    std::vector<double> range;               ///< both ends of the scale, or none
     std::optional<double> boundary, opacity; ///< of the grid's boundary, of the surfaces
     EngineChoice engine = EngineChoice::automatic;
     RenderMethod method;
-    std::optional<SearchIndex> index;      ///< nothing: none was given
-    std::vector<double> sweep;  ///< first and last isovalue, and how many; or none
-    std::uint64_t orbit = 0;    ///< pictures around; 0: one
+    std::optional<SearchIndex> index; ///< nothing: none was given
+    std::vector<double> sweep;        ///< first and last isovalue, and how many; or none
+    std::uint64_t orbit = 0;          ///< pictures around; 0: one
     double frames_per_second = 12;
-    std::string reference;     ///< a picture to compare with; empty: none
-    double threshold = 0.001;  ///< share of its pixels that may differ
+    std::string reference;    ///< a picture to compare with; empty: none
+    double threshold = 0.001; ///< share of its pixels that may differ
     DeviceChoice device;
 };
 
 struct BenchCommand {
     CommonOptions common;
-    GridOptions grid;   ///< `file` is empty with --paper
+    GridOptions grid; ///< `file` is empty with --paper
     FieldChoice field;
-    std::vector<double> isovalues;     ///< none: three
+    std::vector<double> isovalues; ///< none: three
     bool paper = false;
     std::uint64_t max_tets = 5'000'000;
-    std::vector<BenchMethod> methods;  ///< none: all that can be
-    std::vector<SearchIndex> indexes;       ///< none: without and with the interval tree
+    std::vector<BenchMethod> methods; ///< none: all that can be
+    std::vector<SearchIndex> indexes; ///< none: without and with the interval tree
     std::uint64_t rounds = 5;
     DeviceChoice device;
 };
@@ -140,6 +155,7 @@ struct CheckCommand {
     std::string format;
     bool closed = false;
     bool strict = false;
+    bool split_cells = false;
     GridOptions grid; ///< `file` is empty without --grid
     FieldChoice field;
 };

@@ -2,7 +2,9 @@
 #include "render_colors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -42,9 +44,56 @@ void widen(ColorScale& scale) {
     scale.upper = value + half;
 }
 
+/// Whether the cell is of a type that is contoured, and so drawn.
+bool is_contoured(const Cells& cells, std::size_t cell) {
+    if (cells.types.empty()) return true;
+    const std::uint8_t type = cells.types.as<std::uint8_t>()[cell];
+    return type >= static_cast<std::uint8_t>(CellType::tetrahedron) &&
+           type <= static_cast<std::uint8_t>(CellType::pyramid);
+}
+
+/// A colour for each whole number, where they are few; false where the field has others.
+bool make_classes(ColorField& field, const Cells& cells) {
+    // Paul Tol's "bright" and "light" schemes, which colour-blind people tell apart.
+    constexpr std::array<std::string_view, 12> colors{"#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377",
+                                                      "#ee8866", "#44bb99", "#99ddff", "#ffaabb", "#aaaa00", "#777777"};
+    std::set<double> numbers;
+    const bool few = field.values.components() == 1 && field.values.visit([&](auto scalars) {
+        for (std::size_t i = 0; i < scalars.size(); ++i) {
+            const auto value = static_cast<double>(scalars[i]);
+            if (!is_contoured(cells, i)) continue;
+            if (std::isnan(value)) {
+                field.has_no_data = true;
+                continue;
+            }
+            if (value != std::floor(value)) return false;
+            if (numbers.insert(value).second && numbers.size() > colors.size()) return false;
+        }
+        return !numbers.empty();
+    });
+    if (!few) return false;
+    const std::vector<double> ascending(numbers.begin(), numbers.end());
+    std::vector<float> classes(field.values.size());
+    field.values.visit([&](auto scalars) {
+        for (std::size_t i = 0; i < scalars.size(); ++i) {
+            const auto value = static_cast<double>(scalars[i]);
+            const auto place = std::ranges::lower_bound(ascending, value) - ascending.begin();
+            classes[i] = std::isnan(value) ? NAN : static_cast<float>(place);
+        }
+    });
+    field.values = Array::own(std::move(classes));
+    field.scale.lower = -0.5;
+    field.scale.upper = static_cast<double>(ascending.size()) - 0.5;
+    for (std::size_t i = 0; i < ascending.size(); ++i) {
+        field.scale.classes.push_back(*parse_color(colors[i]));
+        field.classes.push_back(shortest(ascending[i]));
+    }
+    return true;
+}
+
 Result<ColorField> with_scale(ColorField field, const RenderCommand& command, Console& console) {
     if (field.values.components() != 1) {
-        return usage_error("--color-by names '{}', which has {} components: name one, such as {}:mag", field.name,
+        return usage_error("the field to colour by, '{}', has {} components: name one, such as {}:mag", field.name,
                            field.values.components(), field.name);
     }
     field.scale = command.scale;
@@ -79,11 +128,19 @@ const Array* find(const std::vector<Field>& fields, const std::string& name) {
 
 } // namespace
 
-Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Console& console) {
-    const std::string& name = command.color_by;
+ValueRange range_of(const Array& values, const RenderCommand& command) {
+    const Seen seen = look_at(values, command.scale.logarithmic);
+    return {seen.lower, seen.upper};
+}
+
+Result<ColorField> colors_of(const Grid& grid, const std::string& name, const RenderCommand& command,
+                             Console& console) {
     const Array* cells = find(grid.cell_fields, name);
-    if (cells && !find(grid.point_fields, name))
-        return with_scale({name, *cells, Association::cell, {}, false}, command, console);
+    if (cells && !find(grid.point_fields, name)) {
+        ColorField field{name, *cells, Association::cell, {}, false};
+        if (command.range.empty() && !command.scale.logarithmic && make_classes(field, grid.cells)) return field;
+        return with_scale(std::move(field), command, console);
+    }
     const Result<PointField> found = find_field(grid, name, {}, console.run());
     if (!found) return found.error();
     return with_scale({name, found->values, Association::point, {}, false}, command, console);

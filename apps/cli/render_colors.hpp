@@ -12,10 +12,13 @@
 
 namespace isotet::cli {
 
+/// The smallest and the largest value that has a colour on the scale of `command`; lower > upper: there is none.
+ValueRange range_of(const Array& values, const RenderCommand& command);
+
 /// A field of the grid: a point field or a component of one, a cell field as it is, otherwise what find_field() makes
-/// of the name.
+/// of the name. A cell field of at most twelve whole numbers has a colour for each, unless --range or --log is given.
 /// Errors   invalid_argument: no such field; it has several components; --range is no range, or does not fit --log
-Result<ColorField> colors_of(const Grid& grid, const RenderCommand& command, Console& console);
+Result<ColorField> colors_of(const Grid& grid, const std::string& name, const RenderCommand& command, Console& console);
 
 /// A field of a surface, point fields first; components by `:x`, `:mag` and so on of point fields.
 Result<ColorField> colors_of(const Surface& surface, const RenderCommand& command, Console& console);

@@ -19,12 +19,13 @@ constexpr double max_frames = 100'000;
 
 } // namespace
 
-Result<std::size_t> count_frames(const RenderCommand& command) {
+Result<std::size_t> count_frames(const RenderCommand& command, std::size_t steps) {
     if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
-    if (command.sweep.empty()) return std::size_t{1};
+    if (command.sweep.empty()) return steps;
     if (command.sweep.size() != 3)
         return usage_error("--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such "
-                           "as 0,1,50", command.sweep.size());
+                           "as 0,1,50",
+                           command.sweep.size());
     const double count = command.sweep[2];
     if (count < 2 || count > max_frames || count != std::floor(count))
         return usage_error("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
@@ -32,12 +33,14 @@ Result<std::size_t> count_frames(const RenderCommand& command) {
     return static_cast<std::size_t>(count);
 }
 
-Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues) {
-    const Result<std::size_t> count = count_frames(command);
+Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues,
+                                           std::size_t steps) {
+    const Result<std::size_t> count = count_frames(command, steps);
     if (!count) return count.error();
-    std::vector<RenderFrame> frames(*count, {isovalues, 0});
+    std::vector<RenderFrame> frames(*count, {isovalues, 0, 0});
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (command.orbit > 0) frames[i].azimuth = 360 * static_cast<double>(i) / static_cast<double>(frames.size());
+        if (steps > 1) frames[i].step = i;
         if (command.sweep.empty()) continue;
         const double part = static_cast<double>(i) / static_cast<double>(frames.size() - 1);
         frames[i].isovalues = {(1 - part) * command.sweep[0] + part * command.sweep[1]};
@@ -50,11 +53,11 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     PictureFiles files(out, pictures);
     const bool numbered = out.find(number_mark) != std::string::npos;
     if (pictures == 1) {
-        if (!out.ends_with(".png"))
-            return usage_error("the name of the output is '{}', but it must end in .png", out);
+        if (!out.ends_with(".png")) return usage_error("the name of the output is '{}', but it must end in .png", out);
         if (numbered)
-            return usage_error("the name of the output is '{}', but only pictures of --sweep and --orbit have numbers",
-                               out);
+            return usage_error(
+                "the name of the output is '{}', but only pictures of --sweep, --orbit and --all-steps have numbers",
+                out);
         return files;
     }
     if (out.ends_with(".webp") && !numbered) {
@@ -65,7 +68,8 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     }
     if (out.ends_with(".png") && numbered) return files;
     return usage_error("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} "
-                       "and ends in .png", out, pictures, number_mark);
+                       "and ends in .png",
+                       out, pictures, number_mark);
 }
 
 std::string PictureFiles::name(std::size_t picture) const {
@@ -80,6 +84,15 @@ std::vector<std::string> PictureFiles::names() const {
     std::vector<std::string> names{name(0)};
     for (std::size_t i = 1; i < pictures_ && !animation_; ++i) names.push_back(name(i));
     return names;
+}
+
+std::string PictureFiles::film_command(double pictures_per_second) const {
+    const std::size_t at = out_.find(number_mark);
+    if (at == std::string::npos) return {};
+    std::string pattern = out_;
+    pattern.replace(at, number_mark.size(), fmt::format("%0{}d", std::to_string(pictures_).size()));
+    return fmt::format("ffmpeg -framerate {} -i '{}' -pix_fmt yuv420p film.mp4", shortest(pictures_per_second),
+                       pattern);
 }
 
 Result<void> PictureFiles::add(const Picture& picture) {

@@ -17,14 +17,16 @@ namespace isotet::cli {
 struct RenderFrame {
     std::vector<double> isovalues;
     double azimuth = 0; ///< degrees to the right of --view
+    std::size_t step = 0; ///< of those that are drawn
 };
 
-/// With --sweep a picture for each isovalue, with --orbit one from each side, else one.
+/// With --sweep a picture for each isovalue, with --orbit one from each side, else one for each step.
 /// Errors   invalid_argument when --sweep does not make sense
-Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues);
+Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues,
+                                           std::size_t steps);
 
 /// How many those will be.
-Result<std::size_t> count_frames(const RenderCommand& command);
+Result<std::size_t> count_frames(const RenderCommand& command, std::size_t steps);
 
 /// OUT: a PNG file; numbered ones, where it holds {frame}; or one animated WebP file.
 class PictureFiles {
@@ -34,6 +36,9 @@ public:
 
     const std::string& out() const noexcept { return out_; }
     std::vector<std::string> names() const; ///< of all files
+
+    /// The command of FFmpeg that makes a film of numbered files; empty where there are none.
+    std::string film_command(double pictures_per_second) const;
 
     Result<void> add(const Picture& picture);
     Result<void> finish();

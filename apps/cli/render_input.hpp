@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What `isotet render` draws: a scene of a surface from a file, or of isosurfaces of a grid.
+// What `isotet render` draws: a scene of a surface from a file, or of a grid.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,10 @@
 #include <vector>
 
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/write.hpp>
 
 #include "console.hpp"
+#include "grid_source.hpp"
 #include "options.hpp"
 
 namespace isotet::cli {
@@ -16,20 +18,45 @@ namespace isotet::cli {
 struct RenderInput {
     std::string format;
     bool is_surface = false;
-    std::string field;          ///< that is contoured; empty for a surface file
+    std::string field;          ///< that is contoured; empty for a surface file, and where nothing is
     std::optional<double> time; ///< of the step
+    std::optional<std::size_t> step; ///< where there are several
     std::vector<double> isovalues;
-    std::optional<ColorField> colors;
-    std::uint64_t cells = 0; ///< of the grid
+    std::optional<ColorField> colors; ///< of whatever is coloured
+    std::uint64_t cells = 0;          ///< of the grid
     double read_seconds = 0;
     std::optional<IsosurfaceScene> scene; ///< always there
 };
 
-/// Reads the file, chooses field and isovalues, and starts the scene.
-///
-/// `device`   draws; extracts too if it is a graphics card, or if --engine vulkan asks for it
-/// Errors     as of reading and packing; invalid_argument where options are for grids, but the file is a surface, or a
-///            field to colour by is none
-Result<RenderInput> read_render_input(const RenderCommand& command, const Device& device, Console& console);
+/// The file, and the time steps that are drawn.
+class RenderSource {
+public:
+    /// Errors   as of reading; invalid_argument where options are for grids, but the file is a surface
+    static Result<RenderSource> open(const RenderCommand& command, Console& console);
+
+    std::size_t steps() const noexcept { return steps_.empty() ? 1 : steps_.size(); }
+
+    /// Reads a step, chooses field and isovalues, and starts the scene. All steps have the isovalues and the colour scale
+    /// of the first that is read, whose range is that of all of them.
+    ///
+    /// `device`   draws, nothing: the CPU does; extracts too if it is a graphics card, or if --engine vulkan asks for it
+    /// Errors     as of reading and packing; invalid_argument where a field to colour by is none
+    Result<RenderInput> read(std::size_t which, const std::optional<Device>& device, Console& console);
+
+private:
+    struct Contents; ///< of one step
+    explicit RenderSource(const RenderCommand& command) : command_(command) {}
+    Result<RenderInput> take_surface(const std::optional<Device>& device, Console& console);
+    Result<Contents> read_contents(std::size_t step, Console& console);
+    Result<void> widen_range(const std::string& color, Console& console);
+    SceneLook look_of(const Contents& contents) const;
+
+    RenderCommand command_; ///< with the isovalues and the range of the first step
+    std::string surface_format_;
+    std::optional<Surface> surface_;
+    double surface_seconds_ = 0;
+    std::optional<GridSource> source_;
+    std::vector<std::size_t> steps_;
+};
 
 } // namespace isotet::cli

@@ -1,4 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
 #include "command_options.hpp"
 #include "number_format.hpp"
 
@@ -14,9 +17,8 @@ The picture is as large as possible in its frame, z upwards; +x looks from the e
 without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1
 where {frame} stands in OUT, or go into one animated file when OUT ends in .webp.
 
-A graphics card draws, if there is one; otherwise, or with --device software, a software device, with a note. If there
-is neither, nothing can be drawn: on Debian the package mesa-vulkan-drivers has a software device. On one device the same
-command gives the same bytes.
+The CPU draws, unless --device or --engine vulkan asks for a Vulkan device; a method that draws tets needs one. On the
+CPU the same command gives the same bytes on every machine.
 
 Examples:
   isotet render grid.vtu
@@ -24,6 +26,8 @@ Examples:
   isotet render surface.vtp --view +x --size 800x600 --background transparent
   isotet render grid.vtu -f pressure --sweep 0,1,50 -o sweep.webp
   isotet render grid.vtu -f pressure -i 0.5 --orbit 90 -o 'frame{frame}.png'
+  isotet render grid.vtu -f pressure --slice x=0 --clip x=0 --view 30,20
+  isotet render model.vtu --boundary-color-by region --edges --scale 1,1,20
 )";
 
 void add_size(const Command& command, PictureOptions& picture) {
@@ -64,6 +68,130 @@ void add_color(const Command& command, const std::string& name, Color& color, co
         "COLOR", description);
 }
 
+/// "z", "+z" and "-z".
+std::optional<UpAxis> parse_up_axis(std::string_view text) {
+    const bool minus = text.starts_with('-');
+    if (minus || text.starts_with('+')) text.remove_prefix(1);
+    if (text.size() != 1 || text[0] < 'x' || text[0] > 'z') return {};
+    return static_cast<UpAxis>(2 * (text[0] - 'x') + (minus ? 1 : 0));
+}
+
+std::vector<double> parse_numbers(const std::string& text) {
+    std::vector<double> numbers;
+    std::size_t at = 0;
+    while (true) {
+        const std::size_t end = text.find(',', at);
+        const auto number = parse_number(text.substr(at, end - at));
+        if (!number) return {};
+        numbers.push_back(*number);
+        if (end == std::string::npos) return numbers;
+        at = end + 1;
+    }
+}
+
+/// "x=0.5", "-x=0.5" and "NX,NY,NZ,OFFSET".
+std::optional<Plane> parse_plane(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+        const std::vector<double> numbers = parse_numbers(text);
+        if (numbers.size() != 4 || (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0)) return {};
+        return Plane{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+    }
+    const auto axis = parse_up_axis(text.substr(0, equals));
+    const auto value = parse_number(text.substr(equals + 1));
+    if (!axis || !value) return {};
+    const bool minus = static_cast<int>(*axis) % 2 == 1;
+    Plane plane{{0, 0, 0}, minus ? -*value : *value};
+    plane.normal[static_cast<std::size_t>(*axis) / 2] = minus ? -1 : 1;
+    return plane;
+}
+
+void add_camera(const Command& command, RenderCommand& render) {
+    command.add_value(
+        "--view",
+        [&render](const std::string& text) {
+            const std::optional<View> named = parse_view(text);
+            const std::vector<double> angles = parse_numbers(text);
+            if (!named && (angles.size() != 2 || std::abs(angles[1]) > 90))
+                refuse_value("--view", text,
+                             "iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION in degrees, such as 30,20");
+            if (named) render.view = *named;
+            render.angles = named ? std::vector<double>() : angles;
+        },
+        "VIEW",
+        "From where one looks: iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION, degrees to the right of the front "
+        "and "
+        "upwards; without it iso, obliquely from above");
+    command.add_value(
+        "--up",
+        [&render](const std::string& text) {
+            render.up = parse_up_axis(text);
+            if (!render.up) refuse_value("--up", text, "x, y or z, with a minus where it points downwards");
+        },
+        "AXIS", "The axis that points upwards; without it z");
+    command.add_number(
+        "--zoom",
+        [&render](double factor) {
+            if (factor <= 0) refuse_value("--zoom", shortest(factor), "a number above 0");
+            render.zoom = factor;
+        },
+        "FACTOR", "Everything so many times as large");
+    command.add_choice<bool>("--fit", render.fit_surface, {{"grid", false}, {"surface", true}},
+                             "What fills the picture: the grid, or isosurfaces and slices alone; without it grid");
+    command.add_value(
+        "--camera",
+        [&render](const std::string& text) {
+            render.camera = parse_camera(text);
+            if (!render.camera)
+                refuse_value("--camera", text,
+                             "perspective:TARGET:DIRECTION:UP:DISTANCE:ANGLE or parallel:TARGET:DIRECTION:UP:HEIGHT, "
+                             "as --json tells");
+        },
+        "CAMERA", "All of a camera, as -v and --json tell it of another picture");
+    command.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
+    command.add_flag("--scale-bar", render.scale_bar, "Show how long a round number is; with --parallel it always is");
+    command.add_text("--unit", render.unit, "TEXT", "Unit of coordinates, written beside the scale bar");
+    command.add_value(
+        "--scale",
+        [&render](const std::string& text) {
+            render.stretch = parse_numbers(text);
+            const bool positive = std::ranges::all_of(render.stretch, [](double factor) { return factor > 0; });
+            if (render.stretch.size() != 3 || !positive)
+                refuse_value("--scale", text, "three numbers above 0, of x, y and z, such as 1,1,20");
+        },
+        "X,Y,Z", "Stretch the axes by these factors; 1,1,20 exaggerates heights");
+}
+
+void add_cuts(const Command& command, RenderCommand& render) {
+    const auto add_planes = [&command](const std::string& name, std::vector<Plane>& planes, const std::string& text) {
+        command.add_texts(
+            name,
+            [&planes, name](const std::vector<std::string>& texts) {
+                for (const std::string& one : texts) {
+                    const std::optional<Plane> plane = parse_plane(one);
+                    if (!plane) refuse_value(name, one, "x=0.5, -x=0.5 (y and z alike), or NX,NY,NZ,OFFSET");
+                    planes.push_back(*plane);
+                }
+            },
+            "PLANE", text);
+    };
+    add_planes("--clip", render.clips,
+               "Leave out what is beyond a plane: x=0.5 leaves out what has larger x, -x=0.5 what has smaller x, "
+               "NX,NY,NZ,OFFSET where the product with the normal is larger; may be repeated");
+    add_planes("--slice", render.slices,
+               "Show the cut through the grid along a plane, coloured by --color-by or else by the field; isosurfaces "
+               "only with -i, --levels or --sweep; may be repeated");
+    command.add_flag("--edges", render.edges, "Draw the edges of the triangles of boundary and slices");
+    command.add_text("--boundary-color-by", render.boundary_color_by, "FIELD",
+                     "Colour the grid's boundary by this field, opaque unless --boundary says otherwise; isosurfaces "
+                     "only with -f, -i, --levels or --sweep");
+    command.add_choice<ShadeBy>(
+        "--normals", render.shade_by,
+        {{"vertex", ShadeBy::vertices}, {"gradient", ShadeBy::gradient}, {"face", ShadeBy::faces}},
+        "Shade by the mean of the faces around each vertex, by the gradient of the field, or "
+        "each triangle flat; without it vertex");
+}
+
 } // namespace
 
 Command add_render_command(const Command& program, RenderCommand& render) {
@@ -98,23 +226,16 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
     command.add_flag("--outline", render.outline, "Draw the edges of the box around");
     add_part(command, "--opacity", render.opacity,
-             "Opacity of the surfaces, 0 to 1; without it 1, and of several isosurfaces 0.35 for all but the smallest");
+             "Opacity of the surfaces, 0 to 1; without it 1, and of several isosurfaces 0.35 for those that may hide "
+             "others");
     add_size(command, render.picture);
-    command.add_choice<View>("--view", render.view,
-                             {{"iso", View::iso},
-                              {"+x", View::plus_x},
-                              {"-x", View::minus_x},
-                              {"+y", View::plus_y},
-                              {"-y", View::minus_y},
-                              {"+z", View::plus_z},
-                              {"-z", View::minus_z}},
-                             "From where one looks; without it iso, obliquely from above");
-    command.add_flag("--parallel", render.parallel, "Without perspective: what is farther away is not smaller");
+    add_camera(command, render);
+    add_cuts(command, render);
     command.add_choice<EngineChoice>(
         "--engine", render.engine,
         {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
         "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
-        "CPU");
+        "CPU; vulkan draws, too");
     std::vector<std::pair<std::string, RenderMethod>> methods{
         {"auto", {}}, {"direct", {Method::direct, {}}}, {"clusters", {Method::clusters, {}}}};
     for (const DrawMethod method : all_draw_methods) methods.push_back({std::string(name_of(method)), {{}, method}});
@@ -135,12 +256,9 @@ Command add_render_command(const Command& program, RenderCommand& render) {
                                   {"turbo", ColorMap::turbo},
                                   {"cool-warm", ColorMap::cool_warm}},
                                  "Colour map; without it viridis");
-    const Option range = command.add_numbers(
-        "--range", render.range, "A,B",
-        "Values at the ends of the colour map; without it the smallest and the largest of the field");
-    const Option logarithmic =
-        command.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
-    for (const Option& option : {range, logarithmic}) option.needs(command.option("--color-by"));
+    command.add_numbers("--range", render.range, "A,B",
+                        "Values at the ends of the colour map; without it the smallest and the largest of the field");
+    command.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
     add_color(command, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
     const Option reference = command.add_file(
         "--reference", render.reference, "FILE",

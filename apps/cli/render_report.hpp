@@ -21,6 +21,7 @@ struct PictureNumbers {
     std::uint64_t bytes = 0;  ///< of all
     double draw_seconds = 0, write_seconds = 0; ///< for all
     DeviceWork drawing;       ///< of the last one
+    std::string camera;       ///< of the last one, as --camera takes it
     std::optional<double> differs; ///< share of the pixels, with --reference
 };
 
@@ -36,9 +37,9 @@ void note_empty_surfaces(const RenderInput& input, Console& console);
 /// Scale, legend and caption; empty with --plain.
 Annotation annotation_of(const RenderCommand& command, const RenderInput& input);
 
-std::string render_table(const RenderCommand& command, const RenderInput& input, const Device& device,
+std::string render_table(const RenderCommand& command, const RenderInput& input, const std::optional<Device>& device,
                          const PictureNumbers& picture);
-Json render_json(const RenderCommand& command, const RenderInput& input, const Device& device,
+Json render_json(const RenderCommand& command, const RenderInput& input, const std::optional<Device>& device,
                  const PictureNumbers& picture);
 
 } // namespace isotet::cli

@@ -3,6 +3,7 @@
 #include <CLI/Version.hpp>
 #include <fmt/format.h>
 
+#include <isotet/read.hpp>
 #include <isotet/version.hpp>
 
 #include "build_facts.hpp"
@@ -29,6 +30,12 @@ std::string version_text() {
     table.row({"compiler", fmt::format("{}, {} build{}", compiler, ISOTET_BUILD_TYPE,
                                        *ISOTET_SANITIZERS ? ", sanitizers " ISOTET_SANITIZERS : "")});
     table.row({"files through VTK", *ISOTET_VTK_VERSION ? "on, VTK " ISOTET_VTK_VERSION : "off (-DISOTET_IO=OFF)"});
+    if (*ISOTET_VTK_VERSION) {
+        const ReaderConfinement confined = reader_confinement();
+        table.row({"isotet-reader", fmt::format("files {} (Landlock), calls {} (seccomp)",
+                                                confined.files ? "confined" : "not confined: the kernel lacks it",
+                                                confined.calls ? "confined" : "not confined: the kernel lacks it")});
+    }
     table.row({"Vulkan", ISOTET_VULKAN ? "on, opened at run time" : "off (-DISOTET_VULKAN=OFF)"});
     table.row({"libraries", fmt::format("oneTBB {}, fmt {}.{}.{}, CLI11 {}, nlohmann_json {}", ISOTET_TBB_VERSION,
                                         FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, CLI11_VERSION,
