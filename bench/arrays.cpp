@@ -28,13 +28,30 @@ Reals read_reals(const std::string& path) {
 
 } // namespace
 
+std::size_t corners_of_type(std::uint8_t type) {
+    switch (type) {
+    case 10: return 4;
+    case 11:
+    case 12: return 8;
+    case 13: return 6;
+    case 14: return 5;
+    }
+    throw std::runtime_error("cells of VTK's type " + std::to_string(type) + " are not raced");
+}
+
 Arrays read_arrays(const std::string& folder) {
-    Arrays arrays{read_reals(folder + "/points"), read_file<std::int32_t>(folder + "/tets.i32"),
-                  read_reals(folder + "/field")};
-    if (size(arrays.points) != 3 * size(arrays.field) || arrays.tets.size() % 4 != 0)
+    Arrays arrays;
+    arrays.points = read_reals(folder + "/points");
+    arrays.corners = read_file<std::int32_t>(folder + "/corners.i32");
+    if (fs::exists(folder + "/offsets.i64")) arrays.offsets = read_file<std::int64_t>(folder + "/offsets.i64");
+    arrays.types = read_file<std::uint8_t>(folder + "/types.u8");
+    arrays.field = read_reals(folder + "/field");
+    const bool whole = arrays.uniform() ? arrays.types.size() == 1 : arrays.types.size() == arrays.offsets.size() - 1;
+    if (size(arrays.points) != 3 * size(arrays.field) || !whole)
         throw std::runtime_error(folder + " has " + std::to_string(size(arrays.points)) + " coordinates, " +
-                                 std::to_string(size(arrays.field)) + " values and " +
-                                 std::to_string(arrays.tets.size()) + " corners, which is no grid of tets");
+                                 std::to_string(size(arrays.field)) + " values, " +
+                                 std::to_string(arrays.types.size()) + " types and " +
+                                 std::to_string(arrays.offsets.size()) + " offsets, which is no grid");
     return arrays;
 }
 

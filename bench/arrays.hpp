@@ -1,9 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A grid of tets as plain arrays in files of one folder, from which every contestant fills its own memory: the same
-// arrays for all of them. Sizes of the files tell the counts. C++17.
+// A grid as plain arrays in files of one folder, from which every contestant fills its own memory: the same arrays for
+// all of them. Sizes of the files tell the counts. C++17.
 //
 //   points.f32 or points.f64   x y z of each point
-//   tets.i32                   four point numbers of each tet
+//   corners.i32                point numbers of each cell, in VTK's order
+//   types.u8                   VTK's type of each cell; one byte where all cells are of one type
+//   offsets.i64                where the corners of each cell begin, and their end; not there where all cells are of one
+//                              type
 //   field.f32 or field.f64     one value of each point
 #pragma once
 
@@ -23,13 +26,20 @@ inline std::size_t bytes(const Reals& reals) {
     return std::visit([](const auto& values) { return values.size() * sizeof(values[0]); }, reals);
 }
 
+/// Of a tet, voxel, hexahedron, wedge or pyramid, by VTK's number.
+std::size_t corners_of_type(std::uint8_t type);
+
 struct Arrays {
     Reals points;
-    std::vector<std::int32_t> tets;
+    std::vector<std::int32_t> corners;
+    std::vector<std::int64_t> offsets;
+    std::vector<std::uint8_t> types;
     Reals field;
 
-    std::size_t point_count() const { return size(field); }
-    std::size_t tet_count() const { return tets.size() / 4; }
+    bool uniform() const { return offsets.empty(); }
+    std::size_t cell_count() const {
+        return uniform() ? corners.size() / corners_of_type(types[0]) : offsets.size() - 1;
+    }
 };
 
 /// Throws std::runtime_error when a file is not there, or its size is not what the others ask for.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include <isotet/grid.hpp>
@@ -26,7 +28,8 @@ Grid load(const std::string& source, const std::string& field, int threads) {
         return make_grid(options, {.threads = threads}).value();
     }
     ReadOptions options;
-    options.reader_program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../apps/cli/isotet-reader";
+    options.reader_program =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../apps/cli/isotet-reader";
     return read(source, options).value().grid;
 }
 
@@ -42,25 +45,42 @@ void write_reals(const std::string& folder, const std::string& name, const Array
     write_array(folder, name + ending, array.data(), array.bytes());
 }
 
-bool is_tets_of_int32(const Grid& grid) {
-    return grid.cells.types.empty() && grid.cells.offsets.empty() && grid.cells.uniform_type == CellType::tetrahedron &&
-           grid.cells.connectivity.type() == ScalarType::int32;
-}
-
-/// The split tets whose four points all have a value.
-std::vector<std::int32_t> valid_tets(const Grid& grid, const Array& field) {
+/// The cells that are contoured and whose corners all have a value.
+Arrays valid_cells(const Grid& grid, const Array& field) {
     if (grid.points.tuples() > std::numeric_limits<std::int32_t>::max())
         throw std::runtime_error("the grid has " + std::to_string(grid.points.tuples()) +
                                  " points, but a race is for at most 2^31 - 1");
-    const std::vector<std::array<std::uint64_t, 4>> tets = split(grid).value().tets;
-    std::vector<std::int32_t> out;
-    out.reserve(4 * tets.size());
-    for (const auto& tet : tets) {
-        const auto has_no_data = [&](std::uint64_t point) { return std::isnan(field.at(point)); };
-        if (std::any_of(tet.begin(), tet.end(), has_no_data)) continue;
-        for (const std::uint64_t point : tet) out.push_back(static_cast<std::int32_t>(point));
+    const std::vector<std::int64_t> corners = grid.cells.connectivity.visit(
+        [](auto values) { return std::vector<std::int64_t>(values.begin(), values.end()); });
+    Arrays out;
+    out.corners.reserve(corners.size());
+    out.offsets.push_back(0);
+    for (std::size_t cell = 0, begin = 0; cell < grid.cells.count(); ++cell) {
+        const bool uniform = grid.cells.types.empty();
+        const CellType type =
+            uniform ? grid.cells.uniform_type : static_cast<CellType>(grid.cells.types.as<std::uint8_t>()[cell]);
+        const std::size_t end = uniform ? begin + corners_of_type(static_cast<std::uint8_t>(type))
+                                        : static_cast<std::size_t>(grid.cells.offsets.at(cell + 1));
+        const std::span<const std::int64_t> of_cell(corners.data() + begin, end - begin);
+        begin = end;
+        const bool has_values = std::ranges::none_of(
+            of_cell, [&](std::int64_t point) { return std::isnan(field.at(static_cast<std::size_t>(point))); });
+        if (type < CellType::tetrahedron || type > CellType::pyramid || !has_values) continue;
+        for (const std::int64_t point : of_cell) out.corners.push_back(static_cast<std::int32_t>(point));
+        out.offsets.push_back(static_cast<std::int64_t>(out.corners.size()));
+        out.types.push_back(static_cast<std::uint8_t>(type));
+    }
+    const bool one_type = std::ranges::adjacent_find(out.types, std::not_equal_to<>()) == out.types.end();
+    if (one_type && !out.types.empty()) {
+        out.offsets.clear();
+        out.types.resize(1);
     }
     return out;
+}
+
+template <class T>
+void write_values(const std::string& folder, const std::string& name, const std::vector<T>& values) {
+    write_array(folder, name, values.data(), values.size() * sizeof(T));
 }
 
 } // namespace
@@ -72,16 +92,10 @@ Reply write_grid_arrays(const std::string& source, const std::string& field, con
     write_reals(folder, "points", grid.points);
     write_reals(folder, "field", values);
 
-    std::size_t tets;
-    if (is_tets_of_int32(grid)) {
-        const Array& connectivity = grid.cells.connectivity;
-        tets = connectivity.size() / 4;
-        write_array(folder, "tets.i32", connectivity.data(), connectivity.bytes());
-    } else {
-        const std::vector<std::int32_t> corners = valid_tets(grid, values);
-        tets = corners.size() / 4;
-        write_array(folder, "tets.i32", corners.data(), corners.size() * sizeof(corners[0]));
-    }
+    const Arrays cells = valid_cells(grid, values);
+    write_values(folder, "corners.i32", cells.corners);
+    write_values(folder, "types.u8", cells.types);
+    if (!cells.uniform()) write_values(folder, "offsets.i64", cells.offsets);
 
     double lower = std::numeric_limits<double>::infinity(), upper = -lower;
     values.visit([&](auto span) {
@@ -93,7 +107,7 @@ Reply write_grid_arrays(const std::string& source, const std::string& field, con
     });
     return Reply()
         .count("points", grid.points.tuples())
-        .count("tets", tets)
+        .count("cells", cells.cell_count())
         .number("lower", lower)
         .number("upper", upper);
 }

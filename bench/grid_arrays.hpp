@@ -9,7 +9,7 @@
 namespace isotet::bench {
 
 /// Writes the arrays (arrays.hpp) of `source`, "make:kuhn:94" or a path, with the field called `field` into `folder`.
-/// Cells of a file are split into tets; tets with a corner of no data are left out, since VTK has no notion of them.
+/// Cells with a corner of no data are left out, since VTK has no notion of them, and those that are not contoured.
 /// The reply has the counts and the smallest and largest value.
 Reply write_grid_arrays(const std::string& source, const std::string& field, const std::string& folder, int threads);
 

@@ -74,20 +74,29 @@ Reply IsotetContestant::open(const std::string& folder, int threads) {
     packed_.clear();
     Arrays arrays = read_arrays(folder);
     threads_ = threads;
-    const std::uint64_t tets = arrays.tet_count();
+    const std::uint64_t cells = arrays.cell_count();
     grid_ = {};
     grid_.points = to_array(std::move(arrays.points), 3);
-    grid_.cells.connectivity = Array::own(std::move(arrays.tets));
+    grid_.cells.connectivity = Array::own(std::move(arrays.corners));
+    if (arrays.uniform()) grid_.cells.uniform_type = static_cast<CellType>(arrays.types[0]);
+    else {
+        grid_.cells.offsets = Array::own(std::move(arrays.offsets));
+        grid_.cells.types = Array::own(std::move(arrays.types));
+    }
     field_.name = "field";
     field_.values = to_array(std::move(arrays.field), 1);
     negative_.name = "negative";
     negative_.values = negated(field_.values);
-    const std::uint64_t bytes = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
     return Reply()
         .count("points", grid_.points.tuples())
-        .count("tets", tets)
-        .count("input_bytes", bytes)
+        .count("cells", cells)
+        .count("input_bytes", input_bytes())
         .text("level", std::string(core::name_of(core::best_level())));
+}
+
+std::uint64_t IsotetContestant::input_bytes() const {
+    return grid_.points.bytes() + grid_.cells.connectivity.bytes() + grid_.cells.offsets.bytes() +
+           grid_.cells.types.bytes() + field_.values.bytes();
 }
 
 Reply IsotetContestant::pack_as(const std::string& name, const Words& words) {
@@ -103,12 +112,11 @@ Reply IsotetContestant::pack_as(const std::string& name, const Words& words) {
     const double seconds = watch.seconds();
 
     const PackReport& report = packed_.emplace(name, std::move(made)).first->second.report();
-    const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
     const std::uint64_t kept = report.bytes + report.source_bytes + report.gradient_bytes;
     return Reply()
         .number("seconds", seconds)
-        .count("must_move", input + kept)
-        .count("tets", report.tets)
+        .count("must_move", input_bytes() + kept)
+        .count("cells", report.tets + report.pyramids + report.wedges + report.hexahedra)
         .count("points", report.points)
         .count("clusters", report.clusters)
         .count("repeated_tets", report.repeated_tets)
@@ -150,8 +158,7 @@ Reply IsotetContestant::extract_direct(double isovalue) {
         isotet::extract_direct(grid_, field_, {&isovalue, 1}, {}, {.threads = threads_}).value();
     const double seconds = watch.seconds();
     const Extraction& extraction = once.surfaces.front();
-    const std::uint64_t input = grid_.points.bytes() + grid_.cells.connectivity.bytes() + field_.values.bytes();
-    return describe(extraction, seconds).count("must_move", input + bytes_of(extraction.surface));
+    return describe(extraction, seconds).count("must_move", input_bytes() + bytes_of(extraction.surface));
 }
 
 Reply IsotetContestant::set_field(const std::string& name) {

@@ -32,6 +32,7 @@ private:
     Reply set_field(const std::string& name);
 
     PackedGrid& packed(const std::string& name);
+    std::uint64_t input_bytes() const;
 
     int threads_ = 0;
     Grid grid_;

@@ -24,6 +24,7 @@
 #include <vtkSpanSpace.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkVersion.h>
 
@@ -52,10 +53,15 @@ vtkSmartPointer<vtkDataArray> borrow_reals(Reals& reals, int components) {
 }
 
 template <class Array>
-vtkSmartPointer<Array> offsets_of_tets(vtkIdType tets) {
+vtkSmartPointer<Array> offsets_of(const Arrays& arrays) {
+    const auto cells = static_cast<vtkIdType>(arrays.cell_count());
     auto offsets = vtkSmartPointer<Array>::New();
-    offsets->SetNumberOfValues(tets + 1);
-    for (vtkIdType tet = 0; tet <= tets; ++tet) offsets->SetValue(tet, static_cast<typename Array::ValueType>(4 * tet));
+    offsets->SetNumberOfValues(cells + 1);
+    const auto size = arrays.uniform() ? static_cast<vtkIdType>(isotet::bench::corners_of_type(arrays.types[0])) : 0;
+    for (vtkIdType cell = 0; cell <= cells; ++cell) {
+        const auto offset = arrays.uniform() ? size * cell : arrays.offsets[static_cast<std::size_t>(cell)];
+        offsets->SetValue(cell, static_cast<typename Array::ValueType>(offset));
+    }
     return offsets;
 }
 
@@ -81,14 +87,15 @@ private:
         arrays_ = isotet::bench::read_arrays(folder);
         vtkSMPTools::Initialize(threads);
 
-        const auto tets = static_cast<vtkIdType>(arrays_.tet_count());
+        const std::uint64_t cell_count = arrays_.cell_count(), corners = arrays_.corners.size();
         vtkNew<vtkCellArray> cells;
         if (ids == "int32") {
-            cells->SetData(offsets_of_tets<vtkTypeInt32Array>(tets), borrow<vtkTypeInt32Array>(arrays_.tets, 1));
+            cells->SetData(offsets_of<vtkTypeInt32Array>(arrays_), borrow<vtkTypeInt32Array>(arrays_.corners, 1));
         } else {
-            wide_tets_.assign(arrays_.tets.begin(), arrays_.tets.end());
-            arrays_.tets = {};
-            cells->SetData(offsets_of_tets<vtkTypeInt64Array>(tets), borrow<vtkTypeInt64Array>(wide_tets_, 1));
+            const auto offsets = offsets_of<vtkTypeInt64Array>(arrays_);
+            wide_corners_.assign(arrays_.corners.begin(), arrays_.corners.end());
+            arrays_.corners = {};
+            cells->SetData(offsets, borrow<vtkTypeInt64Array>(wide_corners_, 1));
         }
         vtkNew<vtkPoints> points;
         points->SetData(borrow_reals(arrays_.points, 3));
@@ -96,16 +103,20 @@ private:
         field->SetName("field");
         grid_ = vtkSmartPointer<vtkUnstructuredGrid>::New();
         grid_->SetPoints(points);
-        grid_->SetCells(VTK_TETRA, cells);
+        if (arrays_.uniform()) {
+            grid_->SetCells(arrays_.types[0], cells);
+        } else {
+            const auto types = borrow<vtkUnsignedCharArray>(arrays_.types, 1);
+            grid_->SetCells(types, cells);
+        }
         grid_->GetPointData()->SetScalars(field);
 
-        must_read_ =
-            static_cast<std::uint64_t>(tets) * (ids == "int32" ? 16 : 32) + isotet::bench::bytes(arrays_.field);
+        must_read_ = corners * (ids == "int32" ? 4 : 8) + arrays_.types.size() + isotet::bench::bytes(arrays_.field);
         return Reply()
             .text("version", vtkVersion::GetVTKVersion())
             .text("backend", vtkSMPTools::GetBackend())
             .count("threads", static_cast<std::uint64_t>(vtkSMPTools::GetEstimatedNumberOfThreads()))
-            .count("tets", static_cast<std::uint64_t>(tets));
+            .count("cells", cell_count);
     }
 
     vtkSmartPointer<vtkContour3DLinearGrid> new_filter(const std::string& method) {
@@ -162,7 +173,7 @@ private:
     }
 
     Arrays arrays_;
-    std::vector<vtkTypeInt64> wide_tets_;
+    std::vector<vtkTypeInt64> wide_corners_;
     vtkSmartPointer<vtkUnstructuredGrid> grid_;
     std::map<std::string, vtkSmartPointer<vtkContour3DLinearGrid>> filters_;
     vtkSmartPointer<vtkContour3DLinearGrid> span_space_;

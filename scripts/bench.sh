@@ -11,11 +11,11 @@ readonly wheel_packages=(vtk==9.7.2 numpy==2.4.6) # what a wheel of VTK needs of
 
 usage() {
     cat <<'USAGE'
-usage: bench.sh [--quick] [--threads N] [--max-tets N] [--wheel] [OPTION...]
+usage: bench.sh [--quick] [--threads N] [--max-cells N] [--wheel] [OPTION...]
 
   --quick          regular grids to 30 million tetrahedra, the others at 5 million: some minutes, 8 GB
   --threads N      threads of every contestant (all processors)
-  --max-tets N     leave larger made grids out; 100 million need 24 GB
+  --max-cells N     leave larger made grids out; 100 million need 24 GB
   --wheel          get the VTK wheel from the Python package index into build/bench, as another rival
   --rounds N       how often everything is measured (5)
   --pack-rounds N  how often packing and what goes with it is measured (as --rounds; 3 with --quick)

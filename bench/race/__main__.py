@@ -20,9 +20,9 @@ ROOT = Path(__file__).resolve().parents[2]
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="bench.sh", description="Races isotet against VTK in one run.")
     parser.add_argument("--build", type=Path, required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--quick", action="store_true", help="regular grids to 30 million tets, others at 5 million")
+    parser.add_argument("--quick", action="store_true", help="regular grids to 30 million cells, others at 5 million")
     parser.add_argument("--threads", type=int, default=len(os.sched_getaffinity(0)), help="of every contestant (all)")
-    parser.add_argument("--max-tets", type=float, default=110e6, help="leave larger made grids out (110e6)")
+    parser.add_argument("--max-cells", type=float, default=110e6, help="leave larger made grids out (110e6)")
     parser.add_argument("--rounds", type=int, default=5, help="how often everything is measured (5)")
     parser.add_argument("--pack-rounds", type=int,
                         help="how often packing and what goes with it is measured (as --rounds; 3 with --quick)")
@@ -54,7 +54,7 @@ def say(text: str) -> None:
 def main(arguments: list[str]) -> int:
     options = parse(arguments)
     options.build = options.build.resolve()
-    cases = made_cases(options.quick, options.max_tets) + shipped_files(ROOT)
+    cases = made_cases(options.quick, options.max_cells) + shipped_files(ROOT)
     cases = [case for case in cases if any(text in case.name for text in options.only.split(","))]
     cases += [file_case(Path(path).resolve(), field) for path, field in options.file]
     found, absent = entrants(options.build, options.wheel_python, options.vtk_ids)

@@ -4,9 +4,11 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-# Six tets a cube, side^3 cubes.
+# Cubes along an edge, by millions of cells. Tetrahedra: six a cube.
 SIDES = {0.1: 26, 0.3: 37, 1: 55, 5: 94, 30: 170, 100: 255}
 SHAPES = ("kuhn", "shuffled", "layer")
+# Other cells, as they are: a hexahedron a cube; layers of hexahedra, wedges, pyramids and tetrahedra, 3.6 cells a cube.
+OTHERS = {"hex": {0.8: 94, 3.4: 150, 27: 300}, "mixed": {3: 94}}
 
 # The surface of the gyroid, 55 side^2 triangles near 0; none of these is a value of a float32 field.
 FIELD = "gyroid"
@@ -20,7 +22,7 @@ class Case:
     source: str
     field: str
     isovalues: tuple[float, ...] | None  # None: spread over the range of the field
-    about_tets: float = 0
+    about_cells: float = 0
 
     def choose_isovalues(self, lower: float, upper: float, count: int) -> list[float]:
         if self.isovalues is None:
@@ -30,26 +32,24 @@ class Case:
         return list(self.isovalues[first:first + count])
 
 
-def made(shape: str, millions: float) -> Case:
-    return Case(f"{shape}_{millions:g}M", shape, f"make:{shape}:{SIDES[millions]}", FIELD, ISOVALUES,
-                6 * SIDES[millions] ** 3)
+def made(shape: str, millions: float, side: int) -> Case:
+    return Case(f"{shape}_{millions:g}M", shape, f"make:{shape}:{side}", FIELD, ISOVALUES, 1e6 * millions)
 
 
 def file_case(path: Path, field: str) -> Case:
     return Case(path.stem, "file", str(path), field, None)
 
 
-def made_cases(quick: bool, most_tets: float) -> list[Case]:
-    """All shapes and sizes; quick: the regular grid up to 30 million, the others at 5 million."""
+def made_cases(quick: bool, max_cells: float) -> list[Case]:
+    """All shapes and sizes; quick: the regular grids up to 30 million, the others at 5 million."""
     cases = []
     for shape in SHAPES:
         for millions in SIDES:
             if quick and (millions > 30 or (shape != "kuhn" and millions != 5)):
                 continue
-            case = made(shape, millions)
-            if case.about_tets <= most_tets:
-                cases.append(case)
-    return cases
+            cases.append(made(shape, millions, SIDES[millions]))
+    cases += [made(shape, millions, side) for shape, sides in OTHERS.items() for millions, side in sides.items()]
+    return [case for case in cases if case.about_cells <= max_cells]
 
 
 def shipped_files(root: Path) -> list[Case]:

@@ -46,11 +46,11 @@ def write_charts(folder: Path, results: list[CaseResult], lines: list[Line], con
     written = []
     for shape in sorted({line.shape for line in lines} - {"file"}):
         of_shape = [line for line in lines if line.shape == shape]
-        if len({line.tets for line in of_shape}) > 1:
+        if len({line.cells for line in of_shape}) > 1:
             written.append(f"time_{shape}.svg")
             (folder / written[-1]).write_text(time_chart(shape, of_shape, conditions))
     for name, bars, title, unit in (
-            ("memory.svg", memory_bars(results), "Bytes a tetrahedron", "B"),
+            ("memory.svg", memory_bars(results), "Bytes a cell", "B"),
             ("bandwidth.svg", bandwidth_bars(results, lines), "Share of the copy bandwidth", "%")):
         if bars:
             (folder / name).write_text(svg.bars(title, conditions, bars, unit))
@@ -59,17 +59,17 @@ def write_charts(folder: Path, results: list[CaseResult], lines: list[Line], con
 
 
 def time_chart(shape: str, lines: list[Line], conditions: str) -> str:
-    series = [svg.Series(SHORT[key], points=[(line.tets, line.median) for line in lines if line.method == key], **style)
+    series = [svg.Series(SHORT[key], points=[(line.cells, line.median) for line in lines if line.method == key], **style)
               for key, style in STYLE.items()]
-    return svg.log_log(f"One surface: time against size, grid '{shape}'", conditions, "tetrahedra", "median time",
+    return svg.log_log(f"One surface: time against size, grid '{shape}'", conditions, "cells", "median time",
                        series, short_count, short_time)
 
 
 def memory_bars(results: list[CaseResult]) -> list[svg.Bar]:
     bars = []
     for result in largest_of_each_shape(results):
-        group = f"{result.case.name}, {result.tets / result.points:.2f} tetrahedra a point"
-        kept = result.packed["pack"]["bytes"] / result.packed["pack"]["tets"]
+        group = f"{result.case.name}, {result.cells / result.points:.2f} cells a point"
+        kept = result.packed["pack"]["bytes"] / result.packed["pack"]["cells"]
         bars.append(svg.Bar(group, "isotet, packed grid (stays)", kept, STYLE["clusters"]["color"]))
         for key, label in (("pack", "isotet, packing (peak)"), ("once", "isotet, one surface from arrays (peak)"),
                            ("clusters", "isotet, one surface (peak)"),
@@ -77,7 +77,7 @@ def memory_bars(results: list[CaseResult]) -> list[svg.Bar]:
                            ("wheel_merged", "VTK wheel, one surface (peak)")):
             if key in result.peaks:
                 color = STYLE.get(key, STYLE["vtk_span_space"])["color"]
-                bars.append(svg.Bar(group, label, result.peaks[key] / result.tets, color))
+                bars.append(svg.Bar(group, label, result.peaks[key] / result.cells, color))
     return bars
 
 
@@ -93,6 +93,6 @@ def largest_of_each_shape(results: list[CaseResult]) -> list[CaseResult]:
     largest: dict[str, CaseResult] = {}
     for result in results:
         shape = result.case.shape
-        if shape != "file" and (shape not in largest or largest[shape].tets < result.tets):
+        if shape != "file" and (shape not in largest or largest[shape].cells < result.cells):
             largest[shape] = result
     return list(largest.values())

@@ -19,7 +19,7 @@ PAUSE = 0.01  # seconds before each command, in which the threads of the last co
 class Measurement:
     case: str
     shape: str
-    tets: int
+    cells: int
     points: int
     method: str
     round: int
@@ -33,7 +33,7 @@ class Measurement:
 @dataclass
 class CaseResult:
     case: Case
-    tets: int = 0
+    cells: int = 0
     points: int = 0
     isovalues: list[float] = field(default_factory=list)
     measurements: list[Measurement] = field(default_factory=list)
@@ -83,7 +83,7 @@ class Race:
     def takes_part(self, method: Method) -> bool:
         here = any(entrant.name == method.contestant for entrant in self.entrants)
         able = method.levels is None or self.level in method.levels
-        return here and able and (method.most_tets is None or self.result.tets <= method.most_tets)
+        return here and able and (method.max_cells is None or self.result.cells <= method.max_cells)
 
     def middle(self) -> float:
         return self.result.isovalues[len(self.result.isovalues) // 2]
@@ -92,9 +92,9 @@ class Race:
         case = self.result.case
         with self.entrants[0].start() as maker:
             facts = maker.ask("arrays", case.source, case.field, folder, self.threads)
-        self.result.tets, self.result.points = facts["tets"], facts["points"]
+        self.result.cells, self.result.points = facts["cells"], facts["points"]
         self.result.isovalues = case.choose_isovalues(facts["lower"], facts["upper"], self.plan.isovalues)
-        self.say(f"{case.name}: {self.result.tets:,} tets, {self.result.points:,} points")
+        self.say(f"{case.name}: {self.result.cells:,} cells, {self.result.points:,} points")
 
     def prepare(self, contestants: dict[str, Contestant], methods: list[Method]) -> None:
         """Packs, builds trees, and runs every method once before anything counts."""
@@ -125,7 +125,7 @@ class Race:
         reply = contestants[method.contestant].ask(*command_of(method, isovalue))
         uses_isovalue = any("{isovalue}" in word for word in method.command)
         self.result.measurements.append(Measurement(
-            self.result.case.name, self.result.case.shape, self.result.tets, self.result.points, method.key, number,
+            self.result.case.name, self.result.case.shape, self.result.cells, self.result.points, method.key, number,
             isovalue if uses_isovalue else None, reply["seconds"], reply.get("vertices"), reply.get("triangles"),
             reply["must_move"]))
         if method.key == "clusters":
@@ -164,8 +164,8 @@ class Race:
 
 
 def arrays_home(case: Case) -> str | None:
-    """Memory, where it has room for the arrays (at most 24 bytes a tet) three times over; else the usual folder."""
+    """Memory, where it has room for the arrays (at most 24 bytes a cell) three times over; else the usual folder."""
     memory = Path("/dev/shm")
-    if memory.is_dir() and shutil.disk_usage(memory).free > 3 * 24 * case.about_tets:
+    if memory.is_dir() and shutil.disk_usage(memory).free > 3 * 24 * case.about_cells:
         return str(memory)
     return None

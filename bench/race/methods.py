@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-SERIAL_LIMIT = 5_100_000  # tets; vtkContourGrid takes a second for each 3 to 6 million
+SERIAL_LIMIT = 5_100_000  # cells; vtkContourGrid takes a second for each 3 to 6 million
 
 
 @dataclass(frozen=True)
@@ -13,7 +13,7 @@ class Method:
     label: str
     command: tuple[str, ...]  # "{isovalue}" is replaced
     per_isovalue: bool = True  # else once a round, at the middle isovalue
-    most_tets: int | None = None
+    max_cells: int | None = None
     levels: tuple[str, ...] | None = None  # what isotet's processor must be able to do; None: anything
 
 
@@ -45,7 +45,7 @@ METHODS = [
     _surface("vtk_attributes", "vtk", "VTK linear grid, merged, one point field",
              "contour", "merged_attributes", "{isovalue}"),
     _surface("vtk_contour_grid", "vtk", "VTK contour grid (serial)", "contour", "contour_grid", "{isovalue}",
-             most_tets=SERIAL_LIMIT),
+             max_cells=SERIAL_LIMIT),
     _surface("wheel_merged", "wheel", "VTK wheel, merged", "contour", "merged", "{isovalue}"),
     _surface("wheel_span_space", "wheel", "VTK wheel, merged, span space built before",
              "contour", "span_space", "{isovalue}"),

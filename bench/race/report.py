@@ -35,7 +35,7 @@ def write_csv(path: Path, rows: list, kind: type) -> None:
 
 
 def facts_of(result: CaseResult) -> dict:
-    return {"name": result.case.name, "field": result.case.field, "isovalues": result.isovalues, "tets": result.tets,
+    return {"name": result.case.name, "field": result.case.field, "isovalues": result.isovalues, "cells": result.cells,
             "points": result.points, "copy_bytes_per_second": result.copy_bandwidths, "packed": result.packed,
             "peak_bytes": result.peaks, "rivals": result.rivals, "surfaces_compared": result.compared,
             "differences": result.differences, "refused": result.refused}
@@ -48,7 +48,7 @@ def conditions(facts: dict) -> str:
 
 
 def print_table(lines: list[Line], case: str) -> None:
-    header = [("best", 9), ("median", 9), ("worst", 9), ("triangles", 10), ("Mtet/s", 8), ("share", 6), ("faster", 7)]
+    header = [("best", 9), ("median", 9), ("worst", 9), ("triangles", 10), ("Mcell/s", 8), ("share", 6), ("faster", 7)]
     print(" " * 52, *(f"{name:>{width}}" for name, width in header))
     for line in lines:
         if line.case != case:
@@ -56,7 +56,7 @@ def print_table(lines: list[Line], case: str) -> None:
         triangles = f"{line.triangles:,.0f}" if line.triangles is not None else ""
         faster = f"{line.speedup_best:.1f} x" if line.speedup_best is not None else ""
         print(f"  {BY_KEY[line.method].label:<50} {short_time(line.best):>9} {short_time(line.median):>9} "
-              f"{short_time(line.worst):>9} {triangles:>10} {line.tets_a_second / 1e6:>8.1f} {100 * line.share:>5.0f}% "
+              f"{short_time(line.worst):>9} {triangles:>10} {line.cells_per_second / 1e6:>8.1f} {100 * line.share:>5.0f}% "
               f"{faster:>7}", flush=True)
 
 
@@ -120,8 +120,8 @@ def speed_table(results: list[CaseResult], lines: list[Line]) -> str:
         of = by_method(lines, result.case.name)
         ours = of["clusters"]
         rivals = [three(of.get(key)) for key in ("vtk_merged", "wheel_merged", "vtk_span_space")]
-        rows.append([result.case.name, f"{result.tets:,}", f"{ours.triangles:,.0f}", three(ours), *rivals, times_faster(ours)])
-    return table(["grid", "tetrahedra", "triangles", "isotet, packed before", "VTK merged", "VTK wheel, merged",
+        rows.append([result.case.name, f"{result.cells:,}", f"{ours.triangles:,.0f}", three(ours), *rivals, times_faster(ours)])
+    return table(["grid", "cells", "triangles", "isotet, packed before", "VTK merged", "VTK wheel, merged",
                   "VTK merged, span space", "faster than the faster merged VTK (best, median)"], rows)
 
 
@@ -149,7 +149,7 @@ def exponents(lines: list[Line]) -> str:
                 said.append(f"{BY_KEY[key].label}, {shape}: {slope:.2f}")
     if not said:
         return ""
-    return f"Time grows with the number of tetrahedra, from 1 million on, to the power of: {'; '.join(said)}.\n"
+    return f"Time grows with the number of cells, from 1 million on, to the power of: {'; '.join(said)}.\n"
 
 
 def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
@@ -157,11 +157,11 @@ def steps_table(results: list[CaseResult], lines: list[Line]) -> str:
     for result in results:
         of = by_method(lines, result.case.name)
         pack, new_field, once = of["pack"], of["new_field"], of["once"]
-        rows.append([result.case.name, three(pack), f"{pack.tets_a_second / 1e6:.1f}", three(new_field),
-                     f"{new_field.tets_a_second / 1e6:.0f}", three(once),
+        rows.append([result.case.name, three(pack), f"{pack.cells_per_second / 1e6:.1f}", three(new_field),
+                     f"{new_field.cells_per_second / 1e6:.0f}", three(once),
                      f"{once.speedup_best:.2f} x, {once.speedup_median:.2f} x" if once.speedup_best else "",
                      three(of.get("vtk_tree"))])
-    return table(["grid", "pack", "million tets a second", "new field", "million tets a second",
+    return table(["grid", "pack", "million cells a second", "new field", "million cells a second",
                   "one surface from arrays, nothing kept", "against the faster merged VTK (best, median)",
                   "VTK span space and one surface"], rows)
 
@@ -190,12 +190,12 @@ def memory_table(results: list[CaseResult]) -> str:
     rows = []
     for result in results:
         pack, full = result.packed["pack"], result.packed["pack_full"]
-        peak = {key: f"{value / result.tets:.1f}" for key, value in result.peaks.items()}
-        rows.append([result.case.name, f"{result.tets / result.points:.2f}", f"{pack['bytes'] / pack['tets']:.2f}",
-                     f"{full['source_bytes'] / full['tets']:.2f}", f"{full['gradient_bytes'] / full['tets']:.2f}",
+        peak = {key: f"{value / result.cells:.1f}" for key, value in result.peaks.items()}
+        rows.append([result.case.name, f"{result.cells / result.points:.2f}", f"{pack['bytes'] / pack['cells']:.2f}",
+                     f"{full['source_bytes'] / full['cells']:.2f}", f"{full['gradient_bytes'] / full['cells']:.2f}",
                      *(peak.get(key, "") for key in MEASURED_FOR_MEMORY)])
-    return "Bytes a tetrahedron. Peaks: beyond the input, in a process of its own.\n\n" + table(
-        ["grid", "tets a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: one surface from arrays",
+    return "Bytes a cell. Peaks: beyond the input, in a process of its own.\n\n" + table(
+        ["grid", "cells a point", "packed grid", "source cells", "gradients", "peak: pack", "peak: one surface from arrays",
          "peak: one surface, packed before", "peak: VTK merged", "peak: VTK span space", "peak: VTK wheel"], rows)
 
 

@@ -16,7 +16,7 @@ class Line:
 
     case: str
     shape: str
-    tets: int
+    cells: int
     points: int
     method: str
     triangles: float | None
@@ -30,8 +30,8 @@ class Line:
     speedup_median: float | None
 
     @property
-    def tets_a_second(self) -> float:
-        return self.tets / self.median
+    def cells_per_second(self) -> float:
+        return self.cells / self.median
 
 
 def lines_of(result: CaseResult) -> list[Line]:
@@ -51,7 +51,7 @@ def lines_of(result: CaseResult) -> list[Line]:
         bandwidth = must_move / median(times)
         comparable = rivals and triangles  # makes a surface
         lines.append(Line(
-            result.case.name, result.case.shape, result.tets, result.points, method,
+            result.case.name, result.case.shape, result.cells, result.points, method,
             mean(triangles) if triangles else None, min(times), median(times), max(times), must_move,
             bandwidth, bandwidth / copy,
             min(min(rival) for rival in rivals) / min(times) if comparable else None,
@@ -60,12 +60,12 @@ def lines_of(result: CaseResult) -> list[Line]:
     return sorted(lines, key=lambda line: order.index(line.method))
 
 
-def growth_exponent(lines: list[Line], method: str, shape: str, from_tets: float) -> float | None:
-    """Slope of log time against log tets, by least squares; 1 is in proportion to the grid, 2/3 to its surface."""
-    chosen = [line for line in lines if line.method == method and line.shape == shape and line.tets >= from_tets]
+def growth_exponent(lines: list[Line], method: str, shape: str, from_cells: float) -> float | None:
+    """Slope of log time against log cells, by least squares; 1 is in proportion to the grid, 2/3 to its surface."""
+    chosen = [line for line in lines if line.method == method and line.shape == shape and line.cells >= from_cells]
     if len(chosen) < 2:
         return None
-    x = [math.log(line.tets) for line in chosen]
+    x = [math.log(line.cells) for line in chosen]
     y = [math.log(line.best) for line in chosen]
     x_mean, y_mean = mean(x), mean(y)
     return (sum((a - x_mean) * (b - y_mean) for a, b in zip(x, y)) / sum((a - x_mean) ** 2 for a in x))

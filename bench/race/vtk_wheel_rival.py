@@ -13,9 +13,11 @@ from pathlib import Path
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints, vtkSMPTools, vtkTypeInt32Array, vtkTypeInt64Array, vtkVersion
-from vtkmodules.vtkCommonDataModel import VTK_TETRA, vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkCommonExecutionModel import vtkSpanSpace
 from vtkmodules.vtkFiltersCore import vtkContour3DLinearGrid
+
+CORNERS = {10: 4, 11: 8, 12: 8, 13: 6, 14: 5}  # of VTK's types of cells
 
 
 def read_reals(folder: Path, name: str) -> numpy.ndarray:
@@ -53,25 +55,29 @@ class Rival:
         vtkSMPTools.Initialize(threads)
         integer = numpy.int32 if ids == "int32" else numpy.int64
         points, field = read_reals(folder, "points"), read_reals(folder, "field")
-        tets = numpy.fromfile(folder / "tets.i32", numpy.int32).astype(integer, copy=False)
-        count = tets.size // 4
-        offsets = numpy.arange(count + 1, dtype=integer) * integer(4)
+        corners = numpy.fromfile(folder / "corners.i32", numpy.int32).astype(integer, copy=False)
+        types = numpy.fromfile(folder / "types.u8", numpy.uint8)
+        if (folder / "offsets.i64").exists():
+            offsets = numpy.fromfile(folder / "offsets.i64", numpy.int64).astype(integer, copy=False)
+        else:
+            size = CORNERS[types[0]]
+            offsets = numpy.arange(corners.size // size + 1, dtype=integer) * integer(size)
 
         cells = vtkCellArray()
-        cells.SetData(integers(offsets), integers(tets))
+        cells.SetData(integers(offsets), integers(corners))
         grid_points = vtkPoints()
         grid_points.SetData(numpy_to_vtk(points.reshape(-1, 3)))
         scalars = numpy_to_vtk(field)
         scalars.SetName("field")
         self.grid = vtkUnstructuredGrid()
         self.grid.SetPoints(grid_points)
-        self.grid.SetCells(VTK_TETRA, cells)
+        self.grid.SetCells(int(types[0]) if types.size == 1 else numpy_to_vtk(types), cells)
         self.grid.GetPointData().SetScalars(scalars)
-        self.kept = [points, field, tets, offsets]
+        self.kept = [points, field, corners, offsets, types]
         self.filters = {"merged": self.new_filter(with_tree=False)}
-        self.must_read = tets.nbytes + field.nbytes
+        self.must_read = corners.nbytes + types.nbytes + field.nbytes
         return {"version": vtkVersion.GetVTKVersion(), "backend": vtkSMPTools.GetBackend(),
-                "threads": vtkSMPTools.GetEstimatedNumberOfThreads(), "tets": count}
+                "threads": vtkSMPTools.GetEstimatedNumberOfThreads(), "cells": offsets.size - 1}
 
     def new_filter(self, with_tree: bool) -> vtkContour3DLinearGrid:
         made = vtkContour3DLinearGrid()
