@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -26,34 +26,21 @@ namespace core {
 
 namespace {
 
-constexpr std::uint8_t tetrahedron = 10, voxel = 11, hexahedron = 12, wedge = 13, pyramid = 14;
-
-constexpr std::optional<CellKind> kind_of(std::uint8_t vtk_type) {
-    switch (vtk_type) {
-    case tetrahedron: return CellKind::tetrahedron;
-    case voxel:
-    case hexahedron: return CellKind::hexahedron;
-    case wedge: return CellKind::wedge;
-    case pyramid: return CellKind::pyramid;
-    default: return std::nullopt;
-    }
-}
+constexpr auto tetrahedron = static_cast<std::uint8_t>(CellType::tetrahedron);
+constexpr auto voxel = static_cast<std::uint8_t>(CellType::voxel);
 
 } // namespace
 
-int corners_of(std::uint8_t vtk_type) {
-    const auto kind = kind_of(vtk_type);
-    return kind ? static_cast<int>(corner_count(*kind)) : 0;
-}
-
-bool is_contoured(std::uint8_t vtk_type) { return kind_of(vtk_type).has_value(); }
-
 WholeCell CellReader::whole(std::size_t cell) const {
     WholeCell out{*kind_of(type(cell)), {}};
-    const std::uint64_t start = first(cell);
-    const bool is_voxel = type(cell) == voxel; // 0 1 3 2 4 5 7 6
-    for (std::uint64_t i = 0; i < corner_count(out.kind); ++i)
-        out.corners[i] = corner(start + (is_voxel ? i ^ (i >> 1 & 1) : i));
+    connectivity_.visit([&](const auto* corners) {
+        corners += first(cell);
+        for (std::size_t i = 0; i < corner_count(out.kind); ++i) out.corners[i] = widened(corners[i]);
+    });
+    if (type(cell) == voxel) {
+        std::swap(out.corners[2], out.corners[3]);
+        std::swap(out.corners[6], out.corners[7]);
+    }
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 
 #include <isotet/export.hpp>
@@ -14,11 +15,26 @@
 
 namespace isotet::core {
 
+/// Nothing for types that are not contoured.
+constexpr std::optional<CellKind> kind_of(std::uint8_t vtk_type) {
+    switch (static_cast<CellType>(vtk_type)) {
+    case CellType::tetrahedron: return CellKind::tetrahedron;
+    case CellType::voxel:
+    case CellType::hexahedron: return CellKind::hexahedron;
+    case CellType::wedge: return CellKind::wedge;
+    case CellType::pyramid: return CellKind::pyramid;
+    }
+    return std::nullopt;
+}
+
 /// True for the types that are contoured.
-ISOTET_API bool is_contoured(std::uint8_t vtk_type);
+constexpr bool is_contoured(std::uint8_t vtk_type) { return kind_of(vtk_type).has_value(); }
 
 /// Corners of a contoured type; 0 for all others.
-ISOTET_API int corners_of(std::uint8_t vtk_type);
+constexpr int corners_of(std::uint8_t vtk_type) {
+    const auto kind = kind_of(vtk_type);
+    return kind ? static_cast<int>(corner_count(*kind)) : 0;
+}
 
 /// A point number or offset as 64 bits; a negative one becomes a huge one.
 template <class T>
@@ -108,6 +124,8 @@ public:
     /// Nothing but four point numbers for each tetrahedron.
     bool bare_tets() const { return only_tets_ && !has_offsets_; }
     const IndexColumn& connectivity() const { return connectivity_; }
+    bool has_offsets() const { return has_offsets_; }
+    const IndexColumn& offsets() const { return offsets_; }
 
     /// Corners of the cell according to the offsets.
     std::uint64_t corners(std::size_t cell) const {

@@ -9,14 +9,6 @@ namespace isotet::core {
 
 namespace {
 
-bool has_repeated_corner(const WholeCell& cell) {
-    bool repeated = false;
-    const std::size_t n = corner_count(cell.kind);
-    for (std::size_t a = 0; a < n; ++a)
-        for (std::size_t b = a + 1; b < n; ++b) repeated |= cell.corners[a] == cell.corners[b];
-    return repeated;
-}
-
 /// A face by point numbers, corners that follow each other and are equal once.
 struct PointFace {
     std::array<std::uint64_t, 4> corners{};

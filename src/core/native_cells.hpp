@@ -11,6 +11,14 @@
 
 namespace isotet::core {
 
+inline bool has_repeated_corner(const WholeCell& cell) {
+    bool repeated = false;
+    const std::size_t n = corner_count(cell.kind);
+    for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = a + 1; b < n; ++b) repeated |= cell.corners[a] == cell.corners[b];
+    return repeated;
+}
+
 /// What is stored of one cell of the user's grid.
 struct NativeParts {
     std::array<WholeCell, 6> cells;
@@ -56,6 +64,19 @@ TurnOfCell turn_of(const WholeCell& cell, const At& at) {
         turn.negative += sign < 0;
     }
     return turn;
+}
+
+/// Whether turn_of() has more negative tets than upright ones; looks at as few as tell.
+template <class At>
+bool is_mirrored(const WholeCell& cell, const At& at) {
+    const LocalTets tets = split_locally(cell);
+    int lead = 0, left = tets.count; // of upright tets
+    for (const auto& tet : tets) {
+        lead += orientation_sign(at(tet[0]), at(tet[1]), at(tet[2]), at(tet[3]));
+        --left;
+        if (lead >= left || -lead > left) break;
+    }
+    return lead < 0;
 }
 
 } // namespace isotet::core

@@ -24,6 +24,14 @@ constexpr std::size_t chunks_per_report = 1 << 10;
 
 using core::CellReader;
 
+/// 0 for types that are not contoured.
+constexpr std::array<std::uint8_t, 256> corners_by_type = [] {
+    std::array<std::uint8_t, 256> counts{};
+    for (unsigned type = 0; type < counts.size(); ++type)
+        counts[type] = static_cast<std::uint8_t>(core::corners_of(static_cast<std::uint8_t>(type)));
+    return counts;
+}();
+
 bool is_collapsed(const core::Tet& t) {
     return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
 }
@@ -123,15 +131,50 @@ public:
     /// Cells of any type, with offsets or not, `corners` those of the whole grid.
     template <class Index>
     void pass_cells(const Index* corners, std::size_t begin, std::size_t end) {
-        for (std::size_t cell = begin; cell < end; ++cell)
-            if (!pass_cell(corners, cell, static_cast<std::uint32_t>(cell - begin))) {
-                broken();
-                return;
+        const std::uint64_t mask =
+            std::min<std::uint64_t>(context_.sides.mask(), std::numeric_limits<std::make_unsigned_t<Index>>::max());
+        const auto pass = [&](std::size_t cell, std::size_t first, std::size_t count) {
+            const bool dull = count == 8   ? is_dull<8>(corners + first, mask)
+                              : count == 6 ? is_dull<6>(corners + first, mask)
+                              : count == 5 ? is_dull<5>(corners + first, mask)
+                              : count == 4 ? is_dull<4>(corners + first, mask)
+                                           : false;
+            return dull || pass_cell(corners, cell, static_cast<std::uint32_t>(cell - begin));
+        };
+        if (!cells_.has_offsets()) {
+            const std::size_t count = corners_by_type[cells_.type(begin)];
+            for (std::size_t cell = begin; cell < end; ++cell)
+                if (!pass(cell, count * cell, count)) return broken();
+            return;
+        }
+        cells_.offsets().visit([&](const auto* offsets) {
+            for (std::size_t cell = begin; cell < end; ++cell) {
+                const std::uint64_t first = core::widened(offsets[cell]), last = core::widened(offsets[cell + 1]);
+                const std::size_t count = corners_by_type[cells_.type(cell)];
+                const bool fits = last - first == count && first < last && last <= cells_.connectivity_size();
+                if (!pass(cell, first, fits ? count : 0)) return broken();
             }
+        });
     }
 
 private:
     void broken() { context_.broken.store(true, std::memory_order_relaxed); }
+
+    /// Whether all corners are points on the same side, with nothing else to them: nearly all cells. Only pass_cell()
+    /// tells what is wrong with others.
+    template <std::size_t count, class Index>
+    bool is_dull(const Index* corners, std::uint64_t mask) const {
+        std::uint64_t numbers = 0;
+        unsigned any = 0, all = side::above;
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto corner = static_cast<std::make_unsigned_t<Index>>(corners[k]);
+            const unsigned flags = context_.sides[corner & mask];
+            numbers |= corner;
+            any |= flags;
+            all &= flags;
+        }
+        return any == all && (numbers & ~mask) == 0;
+    }
 
     /// Some corner is not just above or below.
     void look_at(const core::Tet& tet) {
@@ -146,7 +189,7 @@ private:
     bool pass_cell(const Index* corners, std::size_t cell, std::uint32_t place) {
         const std::uint64_t begin = cells_.first(cell), count = cells_.corners(cell);
         if (count > cells_.connectivity_size() || begin > cells_.connectivity_size() - count) return false;
-        const auto expected = static_cast<std::uint64_t>(core::corners_of(cells_.type(cell)));
+        const std::uint64_t expected = corners_by_type[cells_.type(cell)];
         if (expected == 0) {
             cutter_.leave_out_cell();
             return true;
@@ -177,7 +220,12 @@ private:
             for (const core::Tet& tet : cells_.tets(cell)) add_tet(tet);
             return true;
         }
-        for (const core::WholeCell& part : core::native_parts(cells_.whole(cell))) {
+        const core::WholeCell whole = cells_.whole(cell);
+        if (both_sides && !watched && whole.kind != core::CellKind::tetrahedron && !core::has_repeated_corner(whole)) {
+            cutter_.add_cell(whole, place); // most of those that get here
+            return true;
+        }
+        for (const core::WholeCell& part : core::native_parts(whole)) {
             if (part.kind == core::CellKind::tetrahedron) {
                 add_tet(part.corners);
                 continue;

@@ -53,7 +53,9 @@ void Cutter<Point>::cut_cells() {
             index |= (flags & side::above) << k;
         }
         if (seen & side::no_data) continue;
-        if (core::turn_of(cell, [&](std::size_t k) { return points_[cell.corners[k]]; }).is_mirrored()) {
+        std::array<core::Point, 8> places;
+        for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) places[k] = points_[cell.corners[k]];
+        if (core::is_mirrored(cell, [&](std::size_t k) -> const core::Point& { return places[k]; })) {
             index = mirrored_case(cell.kind, index);
             cell.corners = core::mirrored(cell.kind, cell.corners);
         }

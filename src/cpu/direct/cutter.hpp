@@ -107,6 +107,7 @@ public:
     /// A native cell with corners on both sides that is no tet.
     void add_cell(const core::WholeCell& cell, std::uint32_t place) {
         if (pending_) cut();
+        for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) points_.prefetch(cell.corners[k]);
         cell_batch_[pending_cells_] = cell;
         cells_[pending_cells_] = place;
         if (++pending_cells_ == cell_batch_.size()) cut_cells();

@@ -7,7 +7,7 @@
 namespace isotet::cpu::direct {
 
 struct GradientNormals {
-    Array normals; ///< float32 x 3, V
+    Array normals;         ///< float32 x 3, V
     bool saw_flat = false; ///< a flat tet was added up, for which `mostly_negative` matters
 };
 

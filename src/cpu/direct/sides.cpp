@@ -173,8 +173,8 @@ void report_ties(const ops::DirectInput& input, const PointSurvey& survey, doubl
     surface.near_tie = tied == 0 && near;
 }
 
-template void report_ties<float>(const ops::DirectInput&, const PointSurvey&, double, const core::StoredIsovalue<float>&,
-                                 SidesFound, const Sides&, ops::DirectSurface&);
+template void report_ties<float>(const ops::DirectInput&, const PointSurvey&, double,
+                                 const core::StoredIsovalue<float>&, SidesFound, const Sides&, ops::DirectSurface&);
 template void report_ties<double>(const ops::DirectInput&, const PointSurvey&, double,
                                   const core::StoredIsovalue<double>&, SidesFound, const Sides&, ops::DirectSurface&);
 

@@ -1,7 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // survey_points(): ranges, magnitudes and bounds, in lanes that the compiler can turn into vectors.
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -95,9 +98,13 @@ struct Bounds : core::Bounds {
 
 template <class T>
 bool all_are_sound(const T* coordinates, std::size_t count) {
-    bool sound = true;
-    for (std::size_t i = 0; i < count; ++i) sound &= std::abs(coordinates[i]) < static_cast<T>(0x1p91); // false for NaN
-    return sound;
+    // Magnitudes are ordered as the bits are, NaN comes last, and a difference that is negative has its highest bit set.
+    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+    constexpr Bits magnitude = std::numeric_limits<Bits>::max() >> 1;
+    constexpr Bits most = std::bit_cast<Bits>(static_cast<T>(0x1p91)) - 1;
+    Bits differences = 0;
+    for (std::size_t i = 0; i < count; ++i) differences |= most - (std::bit_cast<Bits>(coordinates[i]) & magnitude);
+    return differences <= magnitude;
 }
 
 /// `wanted`: bounds, not only soundness.
