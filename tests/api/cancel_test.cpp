@@ -105,7 +105,7 @@ TEST(Cancelling, MidwayEndsASurveyAtOnce) {
     listen.report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
     ASSERT_TRUE(survey(grid, {}, {1, listen}));
     ASSERT_GT(fractions.size(), 10u);
-    for (std::size_t stop = 0; stop + 1 < fractions.size(); stop += 1 + fractions.size() / 40) {
+    for (std::size_t stop = 0; stop + 1 < fractions.size(); stop += 1 + fractions.size() / 10) {
         std::atomic<bool> cancel{false};
         int later = 0;
         Progress progress;
@@ -141,8 +141,8 @@ TEST(Progress, RisesFromNothingToOneInEveryOperation) {
 }
 
 TEST(Progress, NeverFallsWhenManyThreadsPack) {
-    const Grid grid = made_grid("kuhn", 64, {"plane"}); // 24 blocks
-    for (int round = 0; round < 10; ++round) {
+    const Grid grid = made_grid("kuhn", 48, {"plane"}); // 11 blocks
+    for (int round = 0; round < 4; ++round) {
         double last = 0;
         std::atomic<int> inside{0};
         Progress progress;

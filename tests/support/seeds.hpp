@@ -13,7 +13,7 @@
 namespace isotet::test {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr std::uint32_t seed_share = 4; ///< a quarter of the seeds where every access is watched
+inline constexpr std::uint32_t seed_share = 6; ///< a sixth of the seeds where every access is watched
 #else
 inline constexpr std::uint32_t seed_share = 1;
 #endif
