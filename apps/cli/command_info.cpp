@@ -81,14 +81,17 @@ std::string grid_table(const Findings& found, const std::string& path) {
     for (const auto& [type, count] : report.cells_by_type)
         table.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
     table.row({"tets", grouped(report.tets)});
-    for (const auto& [count, what] : {std::pair{report.cells_left_out, "cells left out: their type is not contoured"},
-                                      {report.collapsed_tets, "collapsed tets, dropped"},
-                                      {report.repeated_tets, "repeated tets"},
-                                      {report.negative_tets, "tets of negative volume in the order of the file"},
-                                      {report.inverted_tets, "inverted tets"},
-                                      {report.flat_tets, "flat tets"},
-                                      {report.unused_points, "unused points"},
-                                      {report.duplicate_points, "duplicate points"}}) {
+    for (const auto& [count, what] :
+         {std::pair{report.cells_left_out, "cells left out: their type is not contoured"},
+          {report.collapsed_tets, "collapsed tets, dropped"},
+          {report.repeated_tets, "repeated tets"},
+          {report.negative_tets, "tets of negative volume in the order of the file"},
+          {report.inverted_tets, "inverted tets"},
+          {report.flat_tets, "flat tets"},
+          {report.unused_points, "unused points"},
+          {report.duplicate_points, "duplicate points"},
+          {report.quads_on_triangles, "quadrilaterals that meet triangles of other cells: the "
+                                      "surface may be open there; --split-cells"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
     if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
@@ -169,6 +172,7 @@ Json json_of(const Findings& found, const std::string& path) {
         report["repeated_tets"] = grid.repeated_tets;
         report["duplicate_points"] = grid.duplicate_points;
         report["boundary_faces"] = grid.boundary_faces;
+        report["quads_on_triangles"] = grid.quads_on_triangles;
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;
@@ -189,8 +193,7 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     if (!steps) return steps.error();
     const Result<Grid> grid = source->read({}, steps->front(), console);
     if (!grid) return grid.error();
-    Result<GridReport> surveyed =
-        survey(*grid, {.faces = command.survey}, console.run());
+    Result<GridReport> surveyed = survey(*grid, {.faces = command.survey}, console.run());
     if (!surveyed) return surveyed.error();
     const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
     const auto fields = describe_fields(*grid, console.run());

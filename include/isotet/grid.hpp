@@ -72,6 +72,9 @@ struct GridReport {
     std::size_t duplicate_points = 0; ///< used points with the coordinates of a used point of a lower number
     std::size_t boundary_faces = 0;   ///< faces that the tets do not use equally often in both directions, repeated
                                       ///< tets aside
+    std::size_t quads_on_triangles =
+        0; ///< quadrilateral faces that meet triangular ones of other cells: where cells are
+           ///< not split, the surface may be open there
 };
 
 struct SurveyOptions {

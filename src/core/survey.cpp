@@ -6,6 +6,7 @@
 #include "core/duplicate_points.hpp"
 #include "core/faces.hpp"
 #include "core/memory.hpp"
+#include "core/mixed_faces.hpp"
 #include "core/tet_survey.hpp"
 
 namespace isotet {
@@ -49,6 +50,8 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
         if (!faces) return faces.error();
         report.repeated_tets = faces->repeated;
         report.boundary_faces = faces->boundary_faces;
+        report.quads_on_triangles = count_quads_on_triangles(*cells, memory, progress);
+        if (progress.cancelled()) return cancelled();
     }
     progress("check", 1);
     return report;

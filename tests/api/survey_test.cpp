@@ -13,6 +13,7 @@
 #include <isotet/pack.hpp>
 
 #include "core/faces.hpp"
+#include "core/mixed_faces.hpp"
 #include "support/random_grid.hpp"
 
 namespace isotet::test {
@@ -43,6 +44,47 @@ TEST(Survey, CountsTheBoundaryOfManyTetsInAnyOrder) {
         EXPECT_EQ(report.repeated_tets, 0u) << shape;
         EXPECT_EQ(report.duplicate_points, 0u) << shape;
     }
+}
+
+/// A cube of hexahedra of which one is replaced by its tets.
+Grid hexahedra_beside_tets(std::uint64_t side, std::size_t replaced) {
+    const Grid hexahedra = cube_of(side, "hex");
+    const TetList list = split(hexahedra).value();
+    std::vector<std::int64_t> corners, offsets{0};
+    std::vector<std::uint8_t> types;
+    const auto add = [&](CellType type, const auto& points) {
+        corners.insert(corners.end(), points.begin(), points.end());
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+        types.push_back(static_cast<std::uint8_t>(type));
+    };
+    for (std::size_t cell = 0; cell < hexahedra.cells.count(); ++cell) {
+        if (cell == replaced) continue;
+        std::vector<std::int64_t> points;
+        for (std::size_t k = 0; k < 8; ++k)
+            points.push_back(static_cast<std::int64_t>(hexahedra.cells.connectivity.at(8 * cell + k)));
+        add(CellType::hexahedron, points);
+    }
+    for (std::size_t t = 0; t < list.tets.size(); ++t)
+        if (list.cells[t] == replaced) add(CellType::tetrahedron, list.tets[t]);
+    Grid grid = hexahedra;
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::move(types));
+    return grid;
+}
+
+TEST(Survey, CountsQuadrilateralsThatMeetTriangles) {
+    EXPECT_EQ(survey(hexahedra_beside_tets(3, 0)).value().quads_on_triangles, 3u);  // in a corner
+    EXPECT_EQ(survey(hexahedra_beside_tets(3, 13)).value().quads_on_triangles, 6u); // in the middle
+    for (const char* shape : {"kuhn", "hex", "wedge", "pyramid", "mixed"})
+        EXPECT_EQ(survey(cube_of(6, shape)).value().quads_on_triangles, 0u) << shape;
+}
+
+TEST(Survey, CountsQuadrilateralsAlikeWithLittleMemory) {
+    const Grid grid = hexahedra_beside_tets(24, 7000);
+    const core::CellReader cells = core::CellReader::open(grid).value();
+    EXPECT_EQ(core::count_quads_on_triangles(cells, std::uint64_t{1} << 30, {}), 6u);
+    EXPECT_EQ(core::count_quads_on_triangles(cells, 0, {}), 6u);
 }
 
 TEST(Survey, WithoutFacesCountsAllElseAlike) {
