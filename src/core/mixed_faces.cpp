@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -35,18 +34,28 @@ std::vector<Face> sorted(tbb::enumerable_thread_specific<Faces>& parts, std::vec
     return all;
 }
 
-/// Calls f(points) for each face of a cell, by as many points as it has corners, if these are all different.
+/// The points of a face, ascending, each once.
+struct FacePoints {
+    std::array<std::uint64_t, 4> points{};
+    std::size_t count = 0;
+
+    void add(std::uint64_t point) {
+        std::size_t at = count;
+        while (at > 0 && points[at - 1] > point) --at;
+        if (at > 0 && points[at - 1] == point) return;
+        for (std::size_t k = count++; k > at; --k) points[k] = points[k - 1];
+        points[at] = point;
+    }
+};
+
+/// Calls f(face) for each face of a cell.
 template <class F>
 void for_faces(const CellReader& cells, std::size_t cell, const F& f) {
     for (const WholeCell& part : native_parts(cells.whole(cell)))
         for (const CellFace& face : shape_of(part.kind).faces()) {
-            std::array<std::uint64_t, 4> points{};
-            const auto end = std::ranges::transform(face.all(), points.begin(), [&](std::uint8_t corner) {
-                                 return part.corners[corner];
-                             }).out;
-            std::sort(points.begin(), end);
-            const auto distinct = std::unique(points.begin(), end);
-            if (distinct - points.begin() >= 3) f(std::span<const std::uint64_t>(points.begin(), distinct));
+            FacePoints points;
+            for (const std::uint8_t corner : face.all()) points.add(part.corners[corner]);
+            f(points);
         }
 }
 
@@ -57,10 +66,11 @@ Faces faces_of_share(const CellReader& cells, std::uint64_t share, std::uint64_t
         Faces& out = parts.local();
         for (std::size_t cell = begin; cell < end; ++cell) {
             if (!is_contoured(cells.type(cell))) continue;
-            for_faces(cells, cell, [&](std::span<const std::uint64_t> points) {
-                if ((points[0] * 0x9e3779b97f4a7c15u >> 32) % shares != share) return;
-                if (points.size() == 4) out.quads.push_back({points[0], points[1], points[2], points[3]});
-                else out.triangles.push_back({points[0], points[1], points[2]});
+            for_faces(cells, cell, [&](const FacePoints& face) {
+                const auto& p = face.points;
+                if ((p[0] * 0x9e3779b97f4a7c15u >> 32) % shares != share) return;
+                if (face.count == 4) out.quads.push_back(p);
+                else if (face.count == 3) out.triangles.push_back({p[0], p[1], p[2]});
             });
         }
     });
