@@ -38,7 +38,7 @@ Surface join_all(std::vector<Extraction>&& extractions, const std::vector<double
 
 ContourOptions contour_options(std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                                std::string_view precision, std::optional<std::string_view> method,
-                               std::uint64_t surfaces) {
+                               std::uint64_t surfaces, bool split_cells) {
     ContourOptions options;
     if (method) options.method = choice("method", *method, words_of_method);
     options.surfaces = surfaces;
@@ -47,6 +47,7 @@ ContourOptions contour_options(std::string_view normals, bool edge_ends, bool so
     options.normals = choice("normals", normals, words_of_normals);
     options.edge_ends = edge_ends;
     options.source_cells = source_cells;
+    options.split_cells = split_cells;
     return options;
 }
 
@@ -111,11 +112,13 @@ void add_sessions(nb::module_& module) {
         .def(
             "__init__",
             [](ContourOptions* self, std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
-               std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces) {
+               std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces,
+               bool split_cells) {
                 new (self) ContourOptions(
-                    contour_options(normals, edge_ends, source_cells, ties, precision, method, surfaces));
+                    contour_options(normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells));
             },
-            "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a);
+            "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a,
+            "split_cells"_a = false);
 
     nb::class_<Contour>(module, "Contour")
         .def(

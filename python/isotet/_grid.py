@@ -111,7 +111,7 @@ class Grid:
                 fields: Mapping[str, Any] | Iterable[str] | None = None,
                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
-                threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+                split_cells: bool = False, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
 
         isovalues
@@ -132,6 +132,8 @@ class Grid:
             Of positions and values inside: "float32" or "float64".
         method
             "direct" or "clusters"; chosen by the number of surfaces otherwise.
+        split_cells
+            Hexahedra, wedges and pyramids are split into tets, which gives more and smaller triangles.
         threads
             At most so many; 0: all.
         progress
@@ -141,7 +143,8 @@ class Grid:
         """
         values = isovalues_in(isovalues)
         call = call_options(threads, progress)
-        options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values))
+        options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
+                                         split_cells)  # fmt: skip
         session = _isotet.Contour(self._grid, self._field(field, call), self._carried(fields, "fields"),
                                   self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
@@ -246,7 +249,7 @@ class Contour:
     It extracts directly, and packs the grid when so many surfaces were asked for that this pays; `set` finds out what is the
     same as before.
 
-    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method
+    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells
         As for `Grid.contour`.
     surfaces
         How many surfaces will be asked for in all; 0: not known.
@@ -264,9 +267,10 @@ class Contour:
 
     def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
                  edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-                 method: str | None = None, surfaces: int = 0):  # fmt: skip
+                 method: str | None = None, split_cells: bool = False, surfaces: int = 0):  # fmt: skip
         call = call_options(0, None)
-        self._options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, surfaces)
+        self._options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, surfaces,
+                                               split_cells)  # fmt: skip
         self._session = _isotet.Contour(grid._grid, grid._field(field), grid._carried(fields, "fields"),
                                         grid._carried(cell_fields, "cell_fields"), self._options, call)  # fmt: skip
 
@@ -308,7 +312,8 @@ class Contour:
 def contour(points, cells, values, isovalues: float | Sequence[float], *, offsets=None, types=None, normals: str = "none",
             fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
             edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-            method: str | None = None, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+            method: str | None = None, split_cells: bool = False, threads: int = 0,
+            progress: Progress | None = None) -> Surface:  # fmt: skip
     """The surface on which values at the points of a grid, linear in each tetrahedron, equal an isovalue.
 
     points, cells, offsets, types
@@ -332,8 +337,8 @@ def contour(points, cells, values, isovalues: float | Sequence[float], *, offset
     """
     grid = Grid(points, cells, offsets=offsets, types=types)
     return grid.contour(isovalues, values, normals=normals, fields=fields, cell_fields=cell_fields, edge_ends=edge_ends,
-                        source_cells=source_cells, ties=ties, precision=precision, method=method, threads=threads,
-                        progress=progress)  # fmt: skip
+                        source_cells=source_cells, ties=ties, precision=precision, method=method,
+                        split_cells=split_cells, threads=threads, progress=progress)  # fmt: skip
 
 
 def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients: bool = False, source_cells: bool = False,

@@ -75,6 +75,11 @@ def test_other_cells_are_cut_as_they_are_or_split():
     assert whole.report["hexahedra"] == 216 and whole.report["tets"] == 0
     assert split.report["hexahedra"] == 0 and split.report["tets"] > 1000
     assert 2 * len(whole.contour(0.5).triangles) < len(split.contour(0.5).triangles)
+    for method in ("direct", "clusters"):
+        once = [grid.contour(0.5, "sphere", split_cells=split_cells, method=method) for split_cells in (False, True)]
+        session = isotet.Contour(grid, "sphere", split_cells=True, method=method)
+        assert len(once[1].triangles) > 2 * len(once[0].triangles)
+        assert same(session.contour(0.5), once[1])
 
 
 def test_packed_grids_take_fields_and_points(sphere):
