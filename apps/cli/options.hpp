@@ -116,6 +116,7 @@ struct RenderCommand {
     std::vector<double> stretch; ///< of x, y and z; or none
     std::vector<Plane> clips, slices;
     bool edges = false;
+    bool split_cells = false;
     ShadeBy shade_by = ShadeBy::vertices;
     std::string boundary_color_by; ///< a field; empty: none
     bool all_steps = false;

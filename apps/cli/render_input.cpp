@@ -241,6 +241,7 @@ Result<RenderInput> RenderSource::read(std::size_t which, const std::optional<De
     options.surfaces = command_.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(command_.sweep[2]);
     options.method = command_.method.extract;
     options.draw = command_.method.draw;
+    options.split_cells = command_.split_cells;
     options.index = command_.index.value_or(default_index);
     options.picture = command_.picture;
     options.where = command_.engine == EngineChoice::vulkan ? ExtractOn::device

@@ -181,7 +181,11 @@ void add_cuts(const Command& command, RenderCommand& render) {
     add_planes("--slice", render.slices,
                "Show the cut through the grid along a plane, coloured by --color-by or else by the field; isosurfaces "
                "only with -i, --levels or --sweep; may be repeated");
-    command.add_flag("--edges", render.edges, "Draw the edges of the triangles of boundary and slices");
+    command.add_flag(
+        "--edges", render.edges,
+        "Draw the edges of the triangles of boundary and slices, or of the surfaces where neither is drawn");
+    command.add_flag("--split-cells", render.split_cells,
+                     "Split pyramids, wedges and hexahedra into tets first: 2 to 3 times the triangles");
     command.add_text("--boundary-color-by", render.boundary_color_by, "FIELD",
                      "Colour the grid's boundary by this field, opaque unless --boundary says otherwise; isosurfaces "
                      "only with -f, -i, --levels or --sweep");

@@ -30,7 +30,7 @@ struct ColorField {
     Array values; ///< a scalar for each point or cell of the grid; of a surface for each vertex or triangle
     Association association = Association::point;
     ColorScale scale;
-    bool has_no_data = false; ///< some values are NaN: a legend shows their colour
+    bool has_no_data = false;              ///< some values are NaN: a legend shows their colour
     std::vector<std::string> classes = {}; ///< names of scale.classes; `values` are then numbers of classes
 };
 
@@ -54,32 +54,34 @@ struct SceneLook {
     std::optional<ValueRange> isovalue_range;  ///< in which isovalues have their colours; nothing: that of those shown
     ShadeBy shade_by = ShadeBy::vertices;
     ColorMap map = ColorMap::viridis;
-    std::optional<double> opacity;    ///< nothing: 1, and of several isosurfaces 0.35 for those that hide others
-    double boundary_opacity = 0.1;    ///< of the grid's boundary; 0: it is not looked for
-    bool outline = false;             ///< the edges of the box around
-    double line_width = 1;            ///< pixels
-    bool edges = false;               ///< those of the triangles of boundary and slices
-    std::vector<Plane> clips;         ///< of isosurfaces and boundary only normal . p <= offset is shown
-    std::vector<Plane> slices;        ///< through the grid; not clipped
+    std::optional<double> opacity; ///< nothing: 1, and of several isosurfaces 0.35 for those that hide others
+    double boundary_opacity = 0.1; ///< of the grid's boundary; 0: it is not looked for
+    bool outline = false;          ///< the edges of the box around
+    double line_width = 1;         ///< pixels
+    bool edges = false;            ///< those of the triangles of boundary and slices; of the surfaces where neither is
+                                   ///< drawn
+    std::vector<Plane> clips;      ///< of isosurfaces and boundary only normal . p <= offset is shown
+    std::vector<Plane> slices;     ///< through the grid; not clipped
 };
 
 /// Where surfaces of a grid are extracted.
 enum class ExtractOn : std::uint8_t {
-    best,   ///< on the device that draws if it is a graphics card and clusters pay or are asked for, else on the CPU
+    best, ///< on the device that draws if it is a graphics card and clusters pay or are asked for, else on the CPU
     cpu,
     device, ///< or an error
 };
 
 /// A grid to contour, and how.
 struct IsosurfaceOptions {
-    Grid grid; ///< its own fields are not looked at
+    Grid grid;                    ///< its own fields are not looked at
     PointField field;             ///< without values: nothing is contoured, show() takes no isovalues
     std::uint64_t surfaces = 1;   ///< how many isovalues will be shown, as ContourOptions::surfaces
     std::optional<Method> method; ///< as ContourOptions::method
     ExtractOn where = ExtractOn::best;
-    std::optional<DrawMethod> draw; ///< tets are drawn by this method instead, and no surface is made
+    std::optional<DrawMethod> draw;                  ///< tets are drawn by this method instead, and no surface is made
     SearchIndex index = SearchIndex::cluster_ranges; ///< that finds the tets to draw
-    PictureOptions picture; ///< of the pictures to come: `draw` leaves device memory free for them
+    PictureOptions picture;   ///< of the pictures to come: `draw` leaves device memory free for them
+    bool split_cells = false; ///< as PackOptions::split_cells
 };
 
 /// A surface that is shown, or the tets that stand for it.
@@ -97,10 +99,10 @@ struct SceneReport {
     FieldReport field; ///< of a grid, from the first show() on
     double pack_seconds = 0, boundary_seconds = 0, upload_seconds = 0, extract_seconds = 0;
     std::uint64_t boundary_faces = 0, slice_triangles = 0;
-    bool on_device = false;                ///< the last surfaces were extracted there
-    Method method = Method::direct;        ///< of the last surfaces
-    DeviceWork extract_work;               ///< of the last ones on the device
-    std::optional<TetStoreReport> store;   ///< with IsosurfaceOptions::draw
+    bool on_device = false;              ///< the last surfaces were extracted there
+    Method method = Method::direct;      ///< of the last surfaces
+    DeviceWork extract_work;             ///< of the last ones on the device
+    std::optional<TetStoreReport> store; ///< with IsosurfaceOptions::draw
 };
 
 /// A scene of isosurfaces of one grid, or of one surface. Moving is cheap; it keeps the device open, if it has one.

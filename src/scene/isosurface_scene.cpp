@@ -61,7 +61,8 @@ struct IsosurfaceScene::Data {
     Box bounds = {};
     std::optional<Surface> boundary = {};
     std::vector<Surface> slices = {};
-    std::vector<DrawnLines> edges = {};
+    std::vector<DrawnLines> edges = {};         ///< of slices and boundary
+    std::vector<DrawnLines> surface_edges = {}; ///< of what is shown
     std::optional<TetStore> store = {};
     std::optional<TetIndex> index = {};
     std::optional<DeviceColors> grid_colors = {};
@@ -89,6 +90,7 @@ struct IsosurfaceScene::Data {
     Result<void> show_extracted(std::span<const double> isovalues, const Run& run);
     Result<void> show_on_device(std::span<const double> isovalues, const Run& run);
     Result<void> add_surface(Surface one);
+    bool draws_surface_edges() const { return look.edges && (surface || (!boundary && slices.empty())); }
     bool hides_another(std::size_t which) const;
     std::uint64_t smallest_size() const;
     void dress();
@@ -169,7 +171,9 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     required = wanted.where == ExtractOn::device;
     if (!device && (required || wanted.draw))
         return invalid_argument("a scene without a device, but it is to extract, or to draw tets, on one");
-    const bool in_memory = !look.clips.empty() || look.shade_by == ShadeBy::vertices; // surfaces are worked on
+    options.split_cells = wanted.split_cells || wanted.draw;
+    const bool in_memory = // surfaces are worked on
+        !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges();
     const bool card = device && device->info().kind != DeviceKind::software &&
                       options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
     const bool use_device = !wanted.draw && (required || (card && !in_memory && wanted.where == ExtractOn::best));
@@ -290,6 +294,7 @@ Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
         one.normals_kind = Normals::none;
     }
     boxes.push_back(bounds_of(one));
+    if (draws_surface_edges()) surface_edges.push_back(scene::edges_of(one));
     DrawnSurface& drawn = scene.surfaces.emplace_back();
     std::optional<SurfaceColors> colors;
     if (look.colors) colors = scene::carried_colors(one, *look.colors);
@@ -332,6 +337,7 @@ void IsosurfaceScene::Data::dress() {
             look.opacity.value_or(shown.size() > 1 && hides_another(i) ? opacity_among_several : 1);
     }
     scene.lines = edges;
+    scene.lines.insert(scene.lines.end(), surface_edges.begin(), surface_edges.end());
     for (DrawnLines& lines : scene.lines) lines.lift = 1e-3;
     if (look.outline) scene.lines.push_back(outline_of(bounds));
     for (DrawnLines& lines : scene.lines) lines.width = look.line_width * (lines.lift > 0 ? 0.6 : 1);
@@ -341,6 +347,7 @@ void IsosurfaceScene::Data::dress() {
 void IsosurfaceScene::Data::clear() {
     scene.surfaces.clear();
     scene.lines.clear();
+    surface_edges.clear();
     tets.clear();
     on_device.clear();
     mesh_colors.clear();

@@ -34,7 +34,7 @@ class Gallery : public Program {};
 
 TEST_F(Gallery, ShowsWhatItsCommandsDraw) {
     const auto all = commands();
-    EXPECT_EQ(all.size(), 10u);
+    EXPECT_GE(all.size(), 10u);
     for (std::vector<std::string> words : all) {
         const std::string shown = (root / words.back()).string();
         ASSERT_EQ(fs::path(shown).parent_path(), root / "docs/gallery") << "a command ends with its picture";
