@@ -53,8 +53,13 @@ public:
         for (std::size_t i = 0; i < corners_.size(); ++i) {
             std::array<std::uint32_t, 8>& corners = corners_[i].corners;
             const CellKind kind = corners_[i].kind();
-            for (std::size_t k = 0; k < corner_count(kind); ++k) corners[k] = numbers_.number(corners[k]);
+            bool repeats = false;
+            for (std::size_t k = 0; k < corner_count(kind); ++k) {
+                corners[k] = numbers_.number(corners[k]);
+                for (std::size_t l = 0; l < k; ++l) repeats |= corners[l] == corners[k];
+            }
             states_[i] = {kind, 0};
+            has_repeats_ |= repeats;
         }
         vertices_.resize(numbers_.points().size());
         places_.resize(vertices_.size(), outside);
@@ -109,7 +114,7 @@ private:
     void for_points(std::size_t cell, const F& f) const {
         const auto all = corners(cell);
         for (auto at = all.begin(); at != all.end(); ++at)
-            if (std::find(all.begin(), at, *at) == at) f(*at);
+            if (!has_repeats_ || std::find(all.begin(), at, *at) == at) f(*at);
     }
 
     void grow_one() {
@@ -252,6 +257,7 @@ private:
     std::vector<std::uint32_t> points_, last_points_;
     std::size_t next_ = 0;
     bool full_ = false;
+    bool has_repeats_ = false; ///< some cell has a point as several corners
 };
 static_assert(cells_per_block <= 65536, "cells of points are numbers of 16 bits");
 
