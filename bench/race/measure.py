@@ -111,7 +111,7 @@ class Race:
         self.result.copy_bandwidths.append(contestants["isotet"].ask("copy", self.threads)["bytes_per_second"])
         every = [method for method in methods if method.per_isovalue]
         for place, isovalue in enumerate(self.result.isovalues):
-            first = (number + place) % len(every)  # nobody always follows the same one
+            first = (number + place) % len(every)  # so that no method always follows the same one
             for method in every[first:] + every[:first]:
                 self.measure(number, contestants, method, isovalue)
         if number >= self.plan.pack_rounds:

@@ -99,7 +99,7 @@ def conditions_table(results: list[CaseResult], facts: dict) -> str:
                                              f"{min(copies) / 1e9:.1f} to {max(copies) / 1e9:.1f})"],
         ["processes wanting to run, at start and end", f"{facts['load_before']:.1f}, {facts['load_after']:.1f}"],
         ["rivals", "; ".join(rivals.values()) or "none"],
-        ["absent", "; ".join(f"{name}: {why}" for name, why in facts["absent"].items()) or "nobody"],
+        ["absent", "; ".join(f"{name}: {why}" for name, why in facts["absent"].items()) or "none"],
         ["welded surfaces compared with VTK's", f"{sum(r.compared for r in results)}, with other counts: "
                                                 f"{sum(len(r.differences) for r in results)}"],
     ]

@@ -1,5 +1,5 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-"""isotet in PyVista, found by entry points: nobody has to import this.
+"""isotet in PyVista, found by entry points: no import of this is needed.
 
 ``grid.isotet.contour(...)`` for UnstructuredGrid and MultiBlock, ``plotter.isotet.add_isovalue(...)``.
 """

@@ -107,7 +107,7 @@ Array fill_normals(const ops::RawSurface& raw) {
     core::Buffer<std::uint64_t> lowest(zeros.size()); // triangle
     std::fill(lowest.begin(), lowest.end(), std::numeric_limits<std::uint64_t>::max());
     const Real* positions = raw.positions.as<Real>().data();
-    // The engine has just made this array and nobody else has seen it: it is finished where it lies.
+    // The engine has just made this array, and nothing else refers to it: it is finished in place.
     float* const normals = const_cast<float*>(raw.normals.as<float>().data());
     with_indices(raw.triangles, [&](auto triangles) {
         core::parallel_each(triangles.size(), grain, [&](std::size_t corner) {

@@ -25,7 +25,7 @@ template <class Real>
 Array face_normals(const ops::RawSurface& raw);
 
 /// Replaces gradient normals that are zero by the face normal of the lowest-numbered triangle at the vertex: in the
-/// array itself, which nobody but the engine and the caller may have seen.
+/// array itself, to which only the engine and the caller may refer.
 /// Cost   at most fill_normals_bytes a vertex, of memory; nothing where no normal is zero
 template <class Real>
 Array fill_normals(const ops::RawSurface& raw);

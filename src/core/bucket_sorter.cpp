@@ -99,7 +99,7 @@ struct Ascending {
     bool odd; ///< whether the corners had the other orientation before
 
     Ascending(const RankedTet& tet, const std::uint64_t* user_points) {
-        // Each corner stands behind those that are lower. Without branches: on what they depend nobody can predict.
+        // The place of a corner is the number of lower ones. Branch-free: the order is unpredictable.
         std::array<std::uint64_t, 4> users;
         for (std::size_t k = 0; k < 4; ++k) users[k] = user_points[tet[k]];
         std::array<std::uint32_t, 4> places{};

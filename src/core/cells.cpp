@@ -123,7 +123,7 @@ bool is_sound(const Grid& grid, std::uint64_t point) {
                                                      : is_sound(grid.points.as<double>().data() + 3 * point);
 }
 
-/// True for nearly every grid; then nobody need look at the points of each cell.
+/// True for nearly every grid; then the points of each cell need no look.
 bool all_points_are_sound(const Grid& grid) {
     std::atomic<bool> sound{true};
     parallel_ranges(grid.points.tuples(), 1 << 16, [&](std::size_t begin, std::size_t end) {

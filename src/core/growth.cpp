@@ -220,7 +220,7 @@ private:
         points_.push_back(v);
         const std::uint16_t* const list = tets_of_.data() + vertices_[v].first;
         const std::uint32_t listed = vertices_[v].listed;
-        // First what is simple, without branches; which tets come far enough nobody can predict.
+        // Branch-free pass first: whether a tet comes far enough is unpredictable.
         constexpr std::uint32_t some = 64;
         std::array<std::uint32_t, some> wanted, complete;
         for (std::uint32_t begin = 0; begin < listed; begin += some) {

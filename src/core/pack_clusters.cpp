@@ -113,7 +113,7 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
                 blocks[b] = grow_block(order.cells, b * cells_per_block,
                                        std::min(cells_per_block, count - b * cells_per_block));
             } catch (...) {
-                next_block = block_count; // nobody begins another one
+                next_block = block_count; // no thread begins another one
                 throw;
             }
             progress("pack", 0.3 + 0.3 * static_cast<double>(++finished) / static_cast<double>(block_count));

@@ -17,7 +17,7 @@ namespace isotet::core {
 
 namespace {
 
-/// Lets the process use more threads than there are cores while somebody needs them.
+/// Lets the process use more threads than there are cores while a call needs them.
 ///
 /// An arena alone never gets more workers than there are cores: a global_control has to allow them. Of several controls
 /// the smallest rules, so calls that run at the same time share one that allows as many as the largest of them needs.

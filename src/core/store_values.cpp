@@ -21,7 +21,7 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
     const Storage& chosen = stored.storage;
     const ValueStatistics& statistics = stored.statistics;
     packed.storage = chosen;
-    // Nobody can tell whether borrowed memory is still there.
+    // Borrowed memory may be gone.
     const bool is_kept = !(chosen.unchanged && stored.flushed == 0) && !field.values.owner().expired();
     packed.field = is_kept ? field.values : Array(field.values.type(), nullptr, 0, 1, nullptr);
     FieldReport& report = packed.field_report;

@@ -104,7 +104,7 @@ Result<Head> read_head(const std::string& path) {
     const auto failed = [&](std::string_view what, int number) {
         return Error{ErrorCode::file, fmt::format("{}: {}: {}", path, what, std::generic_category().message(number))};
     };
-    // Without O_NONBLOCK a pipe would wait for somebody to write.
+    // Without O_NONBLOCK opening a pipe would wait for a writer.
     const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     if (!descriptor) return failed("cannot be opened", errno);
     struct stat status{};

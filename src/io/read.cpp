@@ -97,7 +97,7 @@ Result<void> displace(const std::string& name, ReadResult& result) {
     return {};
 }
 
-/// The displacement must be read even if nobody wants it on the surface.
+/// The displacement must be read even where the surface does not carry it.
 ReadOptions with_displacement(ReadOptions options) {
     if (!options.displace.empty() && !wanted(options, Association::point, options.displace)) {
         options.point_fields->push_back(options.displace);

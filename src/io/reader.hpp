@@ -28,7 +28,7 @@ std::span<const GridReader> own_readers();
 /// src/io/vtk: with ISOTET_IO only.
 std::span<const GridReader> vtk_readers();
 
-/// True when `options` ask for the field; fields nobody asked for are not read.
+/// True when `options` ask for the field; other fields are not read.
 ISOTET_API bool wanted(const ReadOptions& options, Association association, std::string_view name);
 
 /// The step that `options` ask for: the first if they do not say.

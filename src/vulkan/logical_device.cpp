@@ -134,7 +134,7 @@ Result<void> LogicalDevice::wait(VkFence done, std::chrono::milliseconds limit, 
     const auto nanoseconds = static_cast<std::uint64_t>(std::chrono::nanoseconds(limit).count());
     const VkResult waited = call_.vkWaitForFences(handle_, 1, &done, VK_TRUE, nanoseconds);
     if (waited == VK_SUCCESS) return {};
-    unanswered_ = done; // nobody knows whether the work goes on
+    unanswered_ = done; // the work may still be running
     if (waited == VK_TIMEOUT) {
         return lose(fmt::format("the device {} did not answer within {} s while {}", device_name_,
                                 static_cast<double>(limit.count()) / 1000, what));

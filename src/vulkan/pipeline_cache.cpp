@@ -89,7 +89,7 @@ std::vector<std::byte> read_checked(const fs::path& path) {
 constexpr std::string_view prefix = "pipelines-", suffix = ".bin";
 
 /// Removes the files of other builds and drivers that were written longest ago, and what writers that were killed left.
-/// Other files are nobody's business here.
+/// Other files are left alone.
 void tidy(const fs::path& folder) {
     using Written = std::pair<fs::file_time_type, fs::path>;
     const auto hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);

@@ -23,7 +23,7 @@ enum class Images : std::uint8_t {
 
 /// The formats of a target, and what becomes of its images in a pass of draws: both are cleared or kept at the
 /// beginning, and the colour can be copied afterwards. Its dependencies order one use of the images after the other, so
-/// that nobody else need.
+/// that are needed here alone.
 class ISOTET_API RenderPass {
 public:
     static Result<std::unique_ptr<RenderPass>> make(Context& context);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,22 @@ TEST(Docs, TestingPageHasARowForEveryKindOfTest) {
         if (!entry.is_directory() || !fs::exists(entry.path() / "CMakeLists.txt")) continue;
         const std::string row = "| `" + entry.path().filename().string() + "` |";
         EXPECT_NE(page.find(row), std::string::npos) << "no row " << row;
+    }
+}
+
+/// Words that say of code what only people do, or that users of the field do not know.
+TEST(Docs, AndSourcesUseTheFieldsWords) {
+    static const std::regex strange(R"(\b(nobody|somebody|foretell|foretold|forecast|mailbox|crooked)\b)",
+                                    std::regex::icase);
+    std::vector<fs::path> files = documents();
+    for (const char* folder : {"src", "include", "apps", "bench", "scripts", "python/isotet", "python/bindings"})
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+            if (entry.is_regular_file() && entry.path().extension() != ".pyc" && entry.path().extension() != ".ttf")
+                files.push_back(entry.path());
+    for (const fs::path& file : files) {
+        std::smatch found;
+        const std::string text = content(file);
+        EXPECT_FALSE(std::regex_search(text, found, strange)) << file << " has '" << found.str() << "'";
     }
 }
 

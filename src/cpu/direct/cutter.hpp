@@ -37,7 +37,7 @@ struct Piece {
     const std::array<std::uint32_t, 4>* polygons =
         nullptr; ///< of each tet, or of other cells; its triangles are 0 1 2 and, if two, 0 2 3
     const std::uint8_t* triangles = nullptr;  ///< 1 or 2
-    const std::uint32_t* cells = nullptr;     ///< within the chunk; null when nobody asks
+    const std::uint32_t* cells = nullptr;     ///< within the chunk; null when they are not wanted
     const ActiveEdge<Point>* found = nullptr; ///< in the order of their numbers
 };
 

@@ -49,7 +49,7 @@ struct LegacyWants {
     bool geometry = true; ///< points and cells
 };
 
-/// Reads a whole file. Arrays nobody asked for are stepped over; integers of type vtkIdType become int64, as in VTK.
+/// Reads a whole file. Arrays that are not wanted are skipped; integers of type vtkIdType become int64, as in VTK.
 ///
 /// Errors   invalid_data: what was seen, where, and the rule; an array that is longer than the rest of the file, before
 ///          memory is taken; as ByteSource::read(); cancelled

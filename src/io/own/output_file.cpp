@@ -133,7 +133,7 @@ Result<OutputFile> OutputFile::open(const std::string& path) {
         out.folder_ = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
     if (!out.folder_) return system_error(path, fmt::format("cannot write in the folder {}", folder), errno);
 
-    // An old file's content may be private: nobody else may see the new one before it has the same bits.
+    // An old file's content may be private: the new one must not be readable by others before it has the same permissions.
     const mode_t mode = out.mode_ ? 0600 : 0666;
     // A file without a name is gone when this process is killed; it gets one through /proc.
     if (::access(own_files, X_OK) == 0)

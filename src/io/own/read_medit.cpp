@@ -221,7 +221,7 @@ private:
         return components && reads_values_ ? read_values<Real>(source) : Result<void>();
     }
 
-    /// Values of fields that nobody wants are passed over.
+    /// Values of fields that are not wanted are skipped.
     template <class Real, class Source>
     Result<void> read_values(Source& source) {
         for (SolutionField& field : fields_) {

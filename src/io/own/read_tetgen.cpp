@@ -106,7 +106,7 @@ Result<ElementHeader> read_header(RecordFile& file, ElementHeader header) {
     return header;
 }
 
-/// The columns of attributes of one file; those that nobody wants are passed over.
+/// The columns of attributes of one file; those that are not wanted are skipped.
 class Attributes {
 public:
     Attributes(std::string_view stem, std::int64_t count, Association association, const ReadOptions& options,

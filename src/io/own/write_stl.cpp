@@ -19,7 +19,7 @@ namespace {
 using Vector = std::array<float, 3>;
 
 constexpr std::size_t header_bytes = 80;
-constexpr std::size_t facet_bytes = 50; // normal, three corners, two bytes that nobody uses
+constexpr std::size_t facet_bytes = 50; // normal, three corners, two unused bytes
 
 using Origin = std::array<double, 3>;
 

@@ -145,7 +145,7 @@ ChildOutcome ReaderChild::ask(int request, int reply, std::chrono::steady_clock:
     return outcome;
 }
 
-/// Wakes when anything happens, at the deadline, and ten times a second where somebody may cancel.
+/// Wakes when anything happens, at the deadline, and ten times a second where it may be cancelled.
 void ReaderChild::wait_a_little(std::chrono::steady_clock::time_point deadline, const Progress& progress) {
     pollfd files[] = {{output_.number(), POLLIN, 0}, // those that are closed (-1) are ignored
                       {channel_.number(), POLLIN, 0},

@@ -8,7 +8,7 @@
 
 namespace isotet::io::vtk {
 
-/// A child by a descriptor, which stays its own: as soon as somebody in this program has waited for the child (a handler
+/// A child by a descriptor, which stays its own: as soon as another part of this program has waited for the child (a handler
 /// of SIGCHLD, say), its number may be another process's. Before Linux 5.4 there is the number alone.
 class ProcessHandle {
 public:
@@ -19,7 +19,7 @@ public:
 
     enum class State { runs, ended, taken };
 
-    /// Waits for the end where `flags` do not say WNOHANG. `taken`: it has ended, and somebody else has its status.
+    /// Waits for the end where `flags` do not say WNOHANG. `taken`: it has ended, and another part of the program has its status.
     State state(siginfo_t& info, int flags);
 
     /// Kills it with its process group: a script used as reader_program may have children.

@@ -79,12 +79,12 @@ Error failure(const Request& request, const ChildOutcome& outcome) {
         switch (outcome.number) {
         case SIGKILL:
             return sentence(ErrorCode::out_of_memory,
-                            "was killed (signal 9): by the system when memory ran out, or by somebody");
+                            "was killed (signal 9): by the system when memory ran out, or from outside");
         case SIGXCPU: return sentence(ErrorCode::system, "was stopped by the limit on processor time (ulimit -t)");
         case SIGTERM:
         case SIGINT:
         case SIGHUP:
-            return sentence(ErrorCode::system, fmt::format("was stopped by somebody (signal {}, {})", outcome.number,
+            return sentence(ErrorCode::system, fmt::format("was stopped from outside (signal {}, {})", outcome.number,
                                                            ::strsignal(outcome.number)));
         case SIGBUS:
             return sentence(

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// A memory file that nobody can change any more, as bytes.
+// A memory file that cannot change any more, as bytes.
 #pragma once
 
 #include <cstddef>

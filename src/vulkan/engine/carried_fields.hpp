@@ -31,7 +31,7 @@ public:
     /// Errors     out_of_memory; machine
     Result<std::shared_ptr<const CarriedField>> get(Context& context, const core::Packed& packed, const Field& field);
 
-    /// Gives their memory back, as far as nobody uses them.
+    /// Frees what is not in use.
     void clear() { entries_.clear(); }
 
 private:

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Counts what each selected cluster gives, and sets the masks: which own seams are crossed, which own tied points are used.
 // A workgroup a cluster, an invocation a point, a cell of a group, a seam. All that workgroups share they OR or add to, so
-// their order does not matter. Twin: cpu/count.cpp.
+// their order does not matter. Same as cpu/count.cpp.
 #version 460
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"
@@ -105,7 +105,7 @@ void find_seams() {
     if (found != 0u) atomicAdd(seam_sum, found);
 }
 
-/// Writes the mask of own seams; counts the bits that nobody has set before.
+/// Writes the mask of own seams; counts the bits that were not set before.
 void write_own_seams(uint number) {
     const bool others_write = tables.any_no_data != 0u && has_no_data(number);
     uint fresh = 0u;

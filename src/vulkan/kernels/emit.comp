@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Writes the vertices and triangles of each listed cluster straight to their place in the surface. A workgroup a cluster.
 // A vertex on an edge has as its number the active edges before it in a matrix of bits, one on a seam the bits before it in
-// its owner's mask: no edge is stored, nothing is searched for. Twin: cpu/emit.cpp.
+// its owner's mask: no edge is stored, nothing is searched for. Same as cpu/emit.cpp.
 //
 // Vertices of a cluster: tied own points, own seams in stored order, inner edges by (lower, higher). Its triangles: by cell,
 // then by case table.

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Writes the normal of every triangle. An invocation a triangle. Twin: api::face_normals().
+// Writes the normal of every triangle. An invocation a triangle. Same as api::face_normals().
 #version 460
 #include "shared/surface.glsl"
 

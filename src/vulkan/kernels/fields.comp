@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Interpolates a point field between the ends of each vertex. An invocation a vertex. Twin: cpu/field_writer.cpp.
+// Interpolates a point field between the ends of each vertex. An invocation a vertex. Same as cpu/field_writer.cpp.
 #version 460
 #include "shared/surface.glsl"
 

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // For vertices without a gradient normal, which emit has marked: the lowest-numbered triangle that uses each. An invocation
-// a triangle; atomic minimums. First half of the twin of api::fill_normals().
+// a triangle; atomic minimums. First half of what api::fill_normals() does.
 #version 460
 #include "shared/surface.glsl"
 

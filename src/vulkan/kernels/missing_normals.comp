@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Gives vertices without a gradient normal the face normal of the triangle that lowest_triangles found. An invocation a
-// vertex. Second half of the twin of api::fill_normals().
+// vertex. Second half of what api::fill_normals() does.
 #version 460
 #include "shared/surface.glsl"
 

@@ -1,7 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Turns counts into starts: where the vertices and triangles of each cluster begin. Lists the clusters that have any; writes
 // the size of the surface, and whether it fits. An invocation a cluster, a workgroup a segment, each of which adds up the
-// blocks and segments before it: no workgroup waits for another. Twin: scan() of cpu/count.cpp.
+// blocks and segments before it: no workgroup waits for another. Same as scan() of cpu/count.cpp.
 #version 460
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Writes the list of clusters whose range holds the isovalue, both ends included, in any order; empties their masks, and the
-// counts of all clusters, segments and blocks. An invocation a cluster, a workgroup a segment. Twin: cpu/select.cpp.
+// counts of all clusters, segments and blocks. An invocation a cluster, a workgroup a segment. Same as cpu/select.cpp.
 #version 460
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Writes what this device's arithmetic makes of each case, an invocation a case. Twin: vulkan/self_test.cpp, on the processor.
+// Writes what this device's arithmetic makes of each case, an invocation a case. Same as vulkan/self_test.cpp, on the processor.
 #version 460
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require

@@ -89,7 +89,7 @@ void each_row(const Extent& whole, const Extent& piece, bool of_points, const Vi
             visit(row, ((z + shift(2)) * count(whole, 1) + y + shift(1)) * count(whole, 0) + shift(0));
 }
 
-/// Every point and cell must be in a piece: what no piece has would be memory that nobody wrote.
+/// Every point and cell must be in a piece: what no piece has would be uninitialized memory.
 Result<void> check_cover(const Boxes& boxes, bool of_points) {
     const std::uint64_t total = of_points ? all_points(boxes.whole) : all_cells(boxes.whole);
     if (boxes.pieces.size() == 1 && total == (of_points ? all_points(boxes.pieces[0]) : all_cells(boxes.pieces[0])))

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of the contract, bit for bit as the processor has it. Twin: core/arithmetic.hpp, name by name.
+// The arithmetic of the contract, bit for bit as the processor has it. Same as core/arithmetic.hpp, name by name.
 //
 // Vulkan rounds sums, differences and products as IEEE 754 does, if they are `precise` and neither operands nor results are
 // denormal: stored values (docs/inside/precision.md) see to that. Quotients and roots may be off by a few units: `divide`
