@@ -2,6 +2,7 @@
 #include "session/fingerprint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -22,15 +23,25 @@ void stir(Fingerprint& print, std::uint64_t word) noexcept {
     print.high ^= print.high >> 29;
 }
 
+std::uint64_t load(const std::byte* data, std::size_t bytes) noexcept {
+    std::uint64_t word = 0;
+    std::memcpy(&word, data, bytes);
+    return word;
+}
+
+/// Several states, each of every so many words: one alone would wait for its own multiplications.
 Fingerprint of_block(const std::byte* data, std::size_t bytes) noexcept {
-    Fingerprint print{bytes, ~std::uint64_t{bytes}};
-    while (bytes > 0) {
-        std::uint64_t word = 0;
-        const std::size_t count = std::min(bytes, sizeof word);
-        std::memcpy(&word, data, count);
-        stir(print, word);
-        data += count;
-        bytes -= count;
+    constexpr std::size_t lanes = 4, word = sizeof(std::uint64_t);
+    std::array<Fingerprint, lanes> prints;
+    for (std::size_t lane = 0; lane < lanes; ++lane) prints[lane] = {bytes + lane, ~std::uint64_t{bytes}};
+    for (; bytes >= lanes * word; data += lanes * word, bytes -= lanes * word)
+        for (std::size_t lane = 0; lane < lanes; ++lane) stir(prints[lane], load(data + lane * word, word));
+    for (; bytes > 0; data += std::min(bytes, word), bytes -= std::min(bytes, word))
+        stir(prints[0], load(data, std::min(bytes, word)));
+    Fingerprint print = prints[0];
+    for (std::size_t lane = 1; lane < lanes; ++lane) {
+        stir(print, prints[lane].low);
+        stir(print, prints[lane].high);
     }
     return print;
 }
