@@ -117,9 +117,9 @@ namespace {
 
 Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
                                        std::span<const double> isovalues, const Run& run) {
-    Result<DirectExtraction> direct =
-        options.engine->extract_direct(input.grid, input.field, isovalues,
-                                       {extract_options(options, input), options.precision, options.split_cells}, run);
+    Result<DirectExtraction> direct = options.engine->extract_direct(
+        input.grid, input.field, isovalues,
+        {extract_options(options, input), options.precision, options.split_cells, options.frame}, run);
     if (!direct) return std::move(direct).error();
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
@@ -166,6 +166,7 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
     pack_options.source_cells = options.source_cells || !input.cell_fields.empty();
     pack_options.split_cells = options.split_cells;
     pack_options.gradients = options.normals == Normals::gradient;
+    pack_options.frame = options.frame;
     Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run);
     if (!made) return made.error();
     packed = *made;
