@@ -27,8 +27,8 @@ struct PackOptions {
     bool split_cells = false;  ///< store pyramids, wedges and hexahedra as tets: the surface has 2 to 3 times
                                ///< the triangles
     bool gradients = false;    ///< keep a gradient direction at every point (4 bytes a point), for gradient normals
-    std::optional<Frame> frame = {}; ///< the grid is a piece of one that is stored so; kept for with_field() and
-                                     ///< with_points(). The frame must know the field, and hold its values
+    std::optional<Frame> frame = {}; ///< the grid is a piece of one that is stored so, perhaps without a cell; kept for
+                                     ///< with_field() and with_points(). It must know the field, and hold its values
 };
 
 /// What packing found and what it costs.

@@ -21,12 +21,15 @@ namespace isotet {
 /// Errors   invalid_argument when first > last or last is beyond the cells; invalid_data as survey(); out_of_memory
 ISOTET_API Result<Grid> take_cells(const Grid& grid, std::uint64_t first, std::uint64_t last, const Run& run = {});
 
-/// The cells of piece `piece` (from 0) of `pieces`: [cells * piece / pieces, cells * (piece + 1) / pieces), rounded
-/// down.
-/// Errors   invalid_argument when `piece` is not below `pieces`; otherwise as take_cells()
+/// Which of how many.
 struct PieceOf {
-    std::uint64_t piece = 0, pieces = 1;
+    std::uint64_t piece = 0; ///< from 0
+    std::uint64_t pieces = 1;
 };
+
+/// A piece of a grid that is cut by the order of its cells into pieces of equally many cells, the first ones with one
+/// more where that does not come out even.
+/// Errors   invalid_argument when `piece` is not below `pieces`; otherwise as take_cells()
 ISOTET_API Result<Grid> take_piece(const Grid& grid, const PieceOf& which, const Run& run = {});
 
 /// Numbers for Grid::point_numbers where a grid has none: the rank of each point by x, then y, then z. Two pieces rank

@@ -126,17 +126,19 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
     const Grid& numbered = sorted ? sorted->grid : grid;
     const bool native = !cells->only_tets() && !options.split_cells;
     CellCounts counts = native ? count_native_cells(*cells) : count_tets(*cells);
-    if (counts.stored == 0) return nothing_to_contour(grid, *cells);
+    if (counts.stored == 0 && !options.frame) return nothing_to_contour(grid, *cells); // a piece may be empty
 
     const BlockReuse reuse;
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed, split = counts.split;
     Draft draft;
     if (options.precision == Precision::float64) draft.packed.reals = Values<double>{};
-    const auto gathered = native ? gather<RankedCell>(numbered, *cells, std::move(counts), options, draft, progress)
-                                 : gather<RankedTet>(numbered, *cells, std::move(counts), options, draft, progress);
-    if (!gathered) return gathered.error();
-    progress("pack", 0.7);
-    if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
+    if (counts.stored > 0) {
+        const auto gathered = native ? gather<RankedCell>(numbered, *cells, std::move(counts), options, draft, progress)
+                                     : gather<RankedTet>(numbered, *cells, std::move(counts), options, draft, progress);
+        if (!gathered) return gathered.error();
+        progress("pack", 0.7);
+        if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
+    }
     draft.locals.release();
     draft.point_of.release();
 

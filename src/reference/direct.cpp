@@ -359,7 +359,7 @@ template <class Real>
 Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
                                          const Progress& progress) {
     if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
-    if (all_tets(input).empty()) return core::nothing_to_contour(input.grid, input.cells);
+    if (!input.frame && all_tets(input).empty()) return core::nothing_to_contour(input.grid, input.cells);
     ops::DirectResult result;
     for (std::size_t cell = 0; cell < input.cells.count(); ++cell)
         result.cells_left_out += !core::is_contoured(input.cells.type(cell));

@@ -226,6 +226,7 @@ private:
     }
 
     Result<void> require_a_tet() const {
+        if (input_.frame) return {}; // a piece may be empty
         for (std::size_t cell = 0; cell < input_.cells.count(); ++cell)
             if (input_.cells.tets(cell).count) return {};
         return core::nothing_to_contour(input_.grid, input_.cells);
