@@ -6,7 +6,9 @@
 #include <cstdint>
 
 #include <isotet/array.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/export.hpp>
+#include <isotet/frame.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -31,6 +33,30 @@ struct PieceOf {
 /// more where that does not come out even.
 /// Errors   invalid_argument when `piece` is not below `pieces`; otherwise as take_cells()
 ISOTET_API Result<Grid> take_piece(const Grid& grid, const PieceOf& which, const Run& run = {});
+
+/// The number of the first cell of a piece.
+ISOTET_API std::uint64_t first_cell_of(const Grid& grid, const PieceOf& which) noexcept;
+
+/// A piece of what a session contours, and the frame of the whole.
+struct FramedPiece {
+    ContourInput input; ///< its fields are those of the piece
+    Frame frame;
+    std::uint64_t first_cell = 0; ///< the number of the piece's first cell in the whole grid
+};
+
+/// As take_piece(), with all fields; for one machine that reads the whole and extracts a part.
+/// Errors   as take_cells() and survey_piece()
+ISOTET_API Result<FramedPiece> take_piece(const ContourInput& whole, const PieceOf& which,
+                                          const SurveyPieceOptions& options = {}, const Run& run = {});
+
+/// The surface of a piece with edge ends and source cells as in the whole grid: two vertices of different pieces are
+/// the same when their edge ends are.
+///
+/// `point_numbers`   of the piece; empty: edge ends stay
+/// `first_cell`      is added to source cells
+/// Errors            invalid_argument when there is no number for an edge end
+ISOTET_API Result<Surface> number_as_whole(const Surface& surface, const Array& point_numbers,
+                                           std::uint64_t first_cell = 0);
 
 /// Numbers for Grid::point_numbers where a grid has none: the rank of each point by x, then y, then z. Two pieces rank
 /// the points that they share alike. Points with equal coordinates are ranked by their index.

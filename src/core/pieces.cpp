@@ -236,13 +236,17 @@ Result<Grid> take_cells(const Grid& grid, std::uint64_t first, std::uint64_t las
     return core::carry_out("taking cells", run, [&](const Progress&) { return take(grid, first, last); });
 }
 
+std::uint64_t first_cell_of(const Grid& grid, const PieceOf& which) noexcept {
+    if (which.pieces == 0) return 0;
+    const std::uint64_t cells = grid.cells.count();
+    return cells / which.pieces * which.piece + std::min(which.piece, cells % which.pieces);
+}
+
 Result<Grid> take_piece(const Grid& grid, const PieceOf& which, const Run& run) {
     if (which.piece >= which.pieces)
         return invalid_argument(
             fmt::format("piece {} is asked for, but there are {} pieces, numbered from 0", which.piece, which.pieces));
-    const std::uint64_t cells = grid.cells.count(), each = cells / which.pieces, rest = cells % which.pieces;
-    const auto before = [&](std::uint64_t piece) { return each * piece + std::min(piece, rest); };
-    return take_cells(grid, before(which.piece), before(which.piece + 1), run);
+    return take_cells(grid, first_cell_of(grid, which), first_cell_of(grid, {which.piece + 1, which.pieces}), run);
 }
 
 Result<Array> number_points_by_coordinates(const Array& points, const Run& run) {
