@@ -261,11 +261,17 @@ void add_bench(const Command& program, BenchCommand& bench) {
 
 void add_check(const Command& program, CheckCommand& check) {
     const Command command = program.add_command("check", "Measure a surface and check it for defects");
-    command.add_file("SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
+    command
+        .add_texts(
+            "SURFACE",
+            [&](const std::vector<std::string>& names) {
+                for (const std::string& name : names)
+                    if (name.empty()) refuse_value("SURFACE", name, "the name of a file");
+                check.surface = names.front();
+                check.more.assign(names.begin() + 1, names.end());
+            },
+            "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts; or its pieces, one after another")
         .required();
-    command.add_texts(
-        "MORE", [&](const std::vector<std::string>& names) { check.more = names; }, "SURFACE_FILE",
-        "Other pieces of the surface: checked together, welded by exact coordinates");
     command.add_flag("--closed", check.closed, "Report every edge that is used unequally often in the two directions");
     const Option grid = command.add_file("--grid", check.grid.file, "FILE",
                                          "Report such edges unless they lie in one boundary face of this grid");
