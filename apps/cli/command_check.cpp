@@ -67,7 +67,8 @@ std::string genus_text(const std::vector<std::int64_t>& genus) {
 
 std::string check_table(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {
     Table table = facts();
-    table.row({"surface", fmt::format("{} ({})", command.surface, file.format)});
+    const std::string others = command.more.empty() ? "" : fmt::format(" and {} more", command.more.size());
+    table.row({"surface", fmt::format("{}{} ({})", command.surface, others, file.format)});
     table.row({"vertices", grouped(report.vertices)});
     table.row({"triangles", grouped(report.triangles)});
     table.row({"closed", report.closed ? "yes" : "no"});
@@ -113,6 +114,8 @@ std::string findings_table(const std::vector<Finding>& findings, bool sound) {
 Json check_json(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {
     Json json = json_report("check");
     json["file"] = json_text(command.surface);
+    json["more_files"] = Json::array();
+    for (const std::string& more : command.more) json["more_files"].push_back(json_text(more));
     json["format"] = file.format;
     json["vertices"] = report.vertices;
     json["triangles"] = report.triangles;
@@ -144,18 +147,33 @@ Json check_json(const SurfaceReport& report, const SurfaceFile& file, const Chec
     return json;
 }
 
+/// All surfaces as one, of the format of the first.
+Result<SurfaceFile> read_surfaces(const CheckCommand& command, Console& console) {
+    std::vector<std::string> inputs{command.surface, command.grid.file};
+    inputs.insert(inputs.end(), command.more.begin(), command.more.end());
+    if (Result<void> paths = check_output_paths(inputs, {command.common.json}); !paths) return paths.error();
+    Result<SurfaceFile> file = read_surface(command.surface, {command.format}, console.run());
+    if (!file || command.more.empty()) return file;
+    std::vector<Surface> parts{std::move(file->surface)};
+    for (const std::string& more : command.more) {
+        Result<SurfaceFile> other = read_surface(more, {command.format}, console.run());
+        if (!other) return other;
+        parts.push_back(std::move(other->surface));
+    }
+    file->surface = join(parts, {});
+    return file;
+}
+
 } // namespace
 
 Result<ExitCode> run_check(const CheckCommand& command) {
     Console console(command.common);
-    if (Result<void> paths = check_output_paths({command.surface, command.grid.file}, {command.common.json}); !paths)
-        return paths.error();
-    const Result<SurfaceFile> file = read_surface(command.surface, {command.format}, console.run());
+    const Result<SurfaceFile> file = read_surfaces(command, console);
     if (!file) return file.error();
 
     CheckOptions options;
     options.closed = command.closed;
-    options.weld = file->format == "stl"; // the one format without vertex numbers
+    options.weld = file->format == "stl" || !command.more.empty(); // without vertex numbers that say what is the same
     std::optional<Origin> origin;
     if (!command.grid.file.empty()) {
         if (file->surface.edge_ends.empty()) {

@@ -9,6 +9,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/device_grid.hpp>
 #include <isotet/levels.hpp>
+#include <isotet/pieces.hpp>
 #include <isotet/process_memory.hpp>
 #include <isotet/write.hpp>
 #include <isotet/write_file.hpp>
@@ -39,6 +40,7 @@ private:
     Result<void> open_device();
     Result<void> load(std::size_t step);
     Result<Contour> start(ContourInput input);
+    Result<void> take_piece_of(ContourInput& input);
     void predict(const ContourInput& input);
     bool goes_into_one_file() const {
         return !plan_.names.none() && !plan_.names.by_value();
@@ -62,6 +64,7 @@ private:
     Grid grid_;                                    ///< of the step at hand
     Array field_;                                  ///< its values
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
+    std::uint64_t first_cell_ = 0;                 ///< of the piece
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
     std::vector<CollectionEntry> series_;          ///< files so far
@@ -125,7 +128,7 @@ std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
 }
 
 Result<Contour> ExtractRun::start(ContourInput input) {
-    ContourOptions options = plan_.contour;
+    ContourOptions& options = plan_.contour;
     const std::size_t isovalues =
         command_.isovalues.empty() ? std::max<std::uint64_t>(command_.levels, 1) : command_.isovalues.size();
     options.surfaces = isovalues * plan_.steps.size();
@@ -168,6 +171,19 @@ void ExtractRun::predict(const ContourInput& input) {
     numbers_.predicted = estimate(method, work);
 }
 
+/// The piece of --piece, and the frame of the whole.
+Result<void> ExtractRun::take_piece_of(ContourInput& input) {
+    Result<FramedPiece> piece = take_piece(input, *command_.piece, {command_.split_cells}, console_.run());
+    if (!piece) return piece.error();
+    plan_.contour.frame = piece->frame;
+    first_cell_ = piece->first_cell;
+    input = std::move(piece->input);
+    grid_ = input.grid;
+    field_ = input.field.values;
+    numbers_.cells = grid_.cells.count();
+    return {};
+}
+
 /// Reads one step and gives it to the session.
 Result<void> ExtractRun::load(std::size_t step) {
     const Stopwatch reading;
@@ -186,12 +202,16 @@ Result<void> ExtractRun::load(std::size_t step) {
     grid_ = *std::move(grid);
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    if (command_.piece)
+        if (Result<void> taken = take_piece_of(input); !taken) return taken;
     if (!contour_) {
         Result<Contour> started = start(std::move(input));
         if (!started) return started.error();
         contour_ = *std::move(started);
     } else {
-        const Result<ContourUpdate> update = contour_->set(std::move(input), console_.run());
+        const Result<ContourUpdate> update = command_.piece
+                                                 ? contour_->set(std::move(input), plan_.contour, console_.run())
+                                                 : contour_->set(std::move(input), console_.run());
         if (!update) return update.error();
         if (*update != ContourUpdate::grid) console_.detail("the cells are those of the step before: not packed again");
     }
@@ -205,6 +225,11 @@ Result<void> ExtractRun::load(std::size_t step) {
         const Result<FieldReport> range = contour_->field(console_.run());
         if (!range) return range.error();
         numbers_.field = *range;
+        if (plan_.contour.frame) { // levels are those of the whole grid
+            const FieldSurvey& whole = *plan_.contour.frame->find(range->name);
+            numbers_.field.lower = whole.lower;
+            numbers_.field.upper = whole.upper;
+        }
         if (contour_->method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
     }
     if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
@@ -296,7 +321,12 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     coarse_tets_ += result->coarse_tets;
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
-        const Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));
+        Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));
+        if (command_.piece) {
+            Result<Surface> numbered = number_as_whole(surface, grid_.point_numbers, first_cell_);
+            if (!numbered) return numbered.error();
+            surface = *std::move(numbered);
+        }
         SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
         numbers.extract_seconds = seconds;
         if (result->engine == "vulkan") numbers.device = result->work;

@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "command_options.hpp"
 
+#include <charconv>
+
 #include "number_format.hpp"
 
 namespace isotet::cli {
@@ -46,6 +48,10 @@ the same vertices and triangles in a different order. auto chooses by a fixed ru
 (isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the
 same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a note.
 
+Pieces (--piece) have equally many cells, in the order of the file. They are stored as the whole grid is, and edge ends
+and source cells have the numbers of the whole; so surfaces of pieces fit bit for bit. Gradient normals at the rim of a
+piece do not: they are those of its own cells.
+
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
   isotet extract grid.e 'shell-{value}.stl' -f temp -i 300,350,400
@@ -53,6 +59,7 @@ Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i @isovalues.txt --with pressure,velocity
   isotet extract make:kuhn:64:gyroid -i 0
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5 --engine vulkan
+  isotet extract grid.vtu part-2.vtp -f pressure -i 0.5 --piece 2/8
 )";
 
 constexpr const char* check_details = R"(
@@ -69,7 +76,7 @@ triangles on the same corners in opposite directions), touching vertices (triang
 vertices.
 
 STL has no vertex numbers: its vertices are merged by exact coordinates first. What that collapses is counted, and no
-defect.
+defect. So are several surfaces, pieces of one (isotet extract --piece): they are checked as if they were one file.
 )";
 
 constexpr const char* make_details = R"(
@@ -179,6 +186,19 @@ void add_surface_arrays(const Command& command, ExtractCommand& extract) {
                      "Split pyramids, wedges and hexahedra into tets first: 2 to 3 times the triangles");
 }
 
+/// "2/8": the second of eight.
+PieceOf parse_piece(const std::string& text) {
+    PieceOf out;
+    const char* const end = text.data() + text.size();
+    const auto [slash, first] = std::from_chars(text.data(), end, out.piece);
+    const bool divided = first == std::errc{} && slash != end && *slash == '/';
+    const auto [rest, second] = divided ? std::from_chars(slash + 1, end, out.pieces) : std::from_chars_result{end, {}};
+    if (!divided || second != std::errc{} || rest != end || out.piece < 1 || out.piece > out.pieces)
+        refuse_value("--piece", text, "K/N, K from 1 to N");
+    --out.piece;
+    return out;
+}
+
 void add_extract(const Command& program, ExtractCommand& extract) {
     const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
     command.add_file("FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
@@ -191,6 +211,9 @@ void add_extract(const Command& program, ExtractCommand& extract) {
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
     add_surface_arrays(command, extract);
+    command.add_value(
+        "--piece", [&](const std::string& text) { extract.piece = parse_piece(text); }, "K/N",
+        "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
     command.add_flag("--keep-degenerate", extract.keep_degenerate,
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--fail-if-empty", extract.fail_if_empty,
@@ -238,7 +261,16 @@ void add_bench(const Command& program, BenchCommand& bench) {
 
 void add_check(const Command& program, CheckCommand& check) {
     const Command command = program.add_command("check", "Measure a surface and check it for defects");
-    command.add_file("SURFACE", check.surface, "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts")
+    command
+        .add_texts(
+            "SURFACE",
+            [&](const std::vector<std::string>& names) {
+                for (const std::string& name : names)
+                    if (name.empty()) refuse_value("SURFACE", name, "the name of a file");
+                check.surface = names.front();
+                check.more.assign(names.begin() + 1, names.end());
+            },
+            "SURFACE_FILE", "A surface: .vtp, .ply, .stl, .obj, .vtk or .ts; or its pieces, one after another")
         .required();
     command.add_flag("--closed", check.closed, "Report every edge that is used unequally often in the two directions");
     const Option grid = command.add_file("--grid", check.grid.file, "FILE",

@@ -60,7 +60,7 @@ CLI::Option& add_list(CLI::App& app, const std::string& names, const Command::Se
                       const std::string& description) {
     return *app.add_option_function<std::vector<std::string>>(names, set, description)
                 ->type_name(type)
-                ->allow_extra_args(false);
+                ->allow_extra_args(!names.starts_with('-')); // "-f a b" leaves b to what follows
 }
 
 /// "OUT_FILE" is shown as "OUT": the ending only says that it is a file's name.

@@ -13,6 +13,7 @@
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/pieces.hpp>
 #include <isotet/plan.hpp>
 #include <isotet/render.hpp>
 #include <isotet/search.hpp>
@@ -79,6 +80,7 @@ struct ExtractCommand {
     std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
+    std::optional<PieceOf> piece;
 };
 
 /// The opacity of the grid's boundary where none is given.
@@ -153,6 +155,7 @@ struct BenchCommand {
 struct CheckCommand {
     CommonOptions common;
     std::string surface;
+    std::vector<std::string> more; ///< other pieces of the surface
     std::string format;
     bool closed = false;
     bool strict = false;

@@ -46,7 +46,8 @@ struct ContourOptions {
     Normals normals = Normals::none;
     bool edge_ends = false;
     bool source_cells = false;
-    bool split_cells = false; ///< as PackOptions::split_cells
+    bool split_cells = false;        ///< as PackOptions::split_cells
+    std::optional<Frame> frame = {}; ///< as PackOptions::frame; for another field or time step, set() takes another
 };
 
 /// What set() had to do.

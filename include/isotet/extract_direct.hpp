@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct DirectOptions {
     ExtractOptions extract = {};              ///< whatever it asks for can be had: nothing need have been kept for it
     Precision precision = Precision::float32; ///< of positions, values and weights
     bool split_cells = false;                 ///< as PackOptions::split_cells
+    std::optional<Frame> frame = {};          ///< as PackOptions::frame
 };
 
 /// Surfaces from arrays, and what was seen on the way.
@@ -45,7 +47,8 @@ struct DirectExtraction {
 /// Cost         one pass over cells and points for each isovalue, and what its surface takes; gradient normals another
 ///              two. Transient memory: a byte a point; about 50 bytes a triangle where cells that are neighbours are
 ///              near each other in the arrays, 110 where they are shuffled
-/// Errors       invalid_argument when an isovalue is not finite or a field does not fit; invalid_data as survey();
+/// Errors       invalid_argument when an isovalue is not finite or a field does not fit grid or frame; invalid_data
+///              as survey();
 ///              out_of_memory, before memory is taken, with the amount needed and the amount free; cancelled
 /// Threads      safe from many threads on one grid
 /// Method       marching cells over all cells, welded by sorted edges; docs/inside/direct.md

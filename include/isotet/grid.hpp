@@ -44,11 +44,16 @@ struct ISOTET_API Cells {
 ///
 /// `points`        float32 or float64, 3 components
 /// `point_fields`  one tuple a point;  `cell_fields`  one tuple a cell. Names may occur in both.
+/// `point_numbers` empty, or one 32- or 64-bit integer a point, all different: where the order of point numbers decides
+///                 (how cells are split, how quadrilaterals of a tet are cut), these count instead of the indices. For
+///                 pieces of a grid: the numbers in the whole grid (pieces.hpp). Costs a copy of cells and points while
+///                 packing or extracting directly
 struct Grid {
     Array points;
     Cells cells;
     std::vector<Field> point_fields;
     std::vector<Field> cell_fields;
+    Array point_numbers = {};
 };
 
 /// What a grid holds and what is odd about it. Nothing here is an error: errors are returned by survey() itself.

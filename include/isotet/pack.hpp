@@ -8,6 +8,7 @@
 #include <string>
 
 #include <isotet/export.hpp>
+#include <isotet/frame.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -26,6 +27,8 @@ struct PackOptions {
     bool split_cells = false;  ///< store pyramids, wedges and hexahedra as tets: the surface has 2 to 3 times
                                ///< the triangles
     bool gradients = false;    ///< keep a gradient direction at every point (4 bytes a point), for gradient normals
+    std::optional<Frame> frame = {}; ///< the grid is a piece of one that is stored so, perhaps without a cell; kept for
+                                     ///< with_field() and with_points(). It must know the field, and hold its values
 };
 
 /// What packing found and what it costs.
@@ -80,6 +83,13 @@ public:
     std::uint64_t user_point_count() const noexcept; ///< points of the user's grid, unused ones too
     std::uint64_t user_cell_count() const noexcept;
 
+    /// The frame of PackOptions or with_frame(); null: there is none.
+    const Frame* frame() const noexcept;
+
+    /// The same grid with another frame (or none), for the with_field() and with_points() that follow; nothing that is
+    /// stored changes.
+    PackedGrid with_frame(const std::optional<Frame>& frame) const;
+
     /// The packed arrays, for engines; src/core/packed.hpp draws them.
     const core::Packed& data() const noexcept { return *data_; }
     const std::shared_ptr<const core::Packed>& shared_data() const noexcept { return data_; }
@@ -88,14 +98,15 @@ public:
     ///
     /// `field`   one scalar for each point of the user's grid
     /// Cost      one pass over values and tets; 4 bytes a point (8 in double) and 0.1 bytes a tet are allocated
-    /// Errors    invalid_argument when the length or the number of components is wrong; out_of_memory; cancelled
+    /// Errors    invalid_argument when the length or the number of components is wrong, or the frame does not know the
+    ///           field or hold its values; out_of_memory; cancelled
     Result<PackedGrid> with_field(const PointField& field, const Run& run = {}) const;
 
     /// The same grid with other coordinates (a mesh that moves); cells and field are shared.
     ///
     /// `points`  float32 or float64, 3 components, as many as the user's grid has, in the same order
     /// Cost      one pass over points and tets; 12 bytes a point (24 in double) are allocated
-    /// Errors    invalid_argument when the shape or type is wrong; invalid_data when a coordinate is not finite or 2^91
+    /// Errors    invalid_argument when the shape or type is wrong, or points are outside the frame; invalid_data when a coordinate is not finite or 2^91
     ///           or more, or when a tet changes its orientation (pack again); out_of_memory; cancelled
     Result<PackedGrid> with_points(const Array& points, const Run& run = {}) const;
 
@@ -109,8 +120,8 @@ private:
 /// `field`      the field to contour; its length must be the number of points
 /// Guarantees   the packed grid is the same bytes for any thread count
 /// Cost         O(T log T); about 10 to 12 bytes a tet stay, at most 40 bytes a tet beyond the input at the peak
-/// Errors       invalid_data as survey(); invalid_argument when the field does not fit the grid; out_of_memory, before
-///              memory is taken, with the amount needed and the amount free; cancelled
+/// Errors       invalid_data as survey(); invalid_argument when the field does not fit the grid, or either does not fit
+///              the frame; out_of_memory, before memory is taken, with the amount needed and the amount free; cancelled
 /// Threads      safe from many threads
 /// Method       docs/inside/packing.md
 ISOTET_API Result<PackedGrid> pack(const Grid& grid, const PointField& field, const PackOptions& options = {},

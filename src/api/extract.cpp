@@ -24,7 +24,7 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
         request.isovalues.push_back(core::store_isovalue<Real>(isovalue, packed.storage));
     request.ties = options.ties;
     std::vector<core::Storage> storages;
-    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field.values, packed));
+    for (const Field& field : options.point_fields) storages.push_back(core::choose_storage(field, packed));
     if (!reference)
         for (std::size_t i = 0; i < storages.size(); ++i)
             request.fields.push_back({options.point_fields[i].values, storages[i]});

@@ -8,6 +8,9 @@
 #include "core/carry_out.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
+#include "core/frame.hpp"
+#include "core/parallel.hpp"
+#include "core/renumber.hpp"
 #include "cpu/direct/direct.hpp"
 #include "reference/direct.hpp"
 
@@ -35,12 +38,42 @@ Result<void> check_fields(const Grid& grid, const PointField& field, const Extra
     return {};
 }
 
+/// What is extracted from: the user's arrays, or, where points have numbers, copies sorted by these.
+struct DirectArrays {
+    Grid grid;
+    PointField field;
+    std::vector<Field> carried;
+    core::Buffer<std::uint64_t> original; ///< index -> the user's; empty: they are the user's arrays
+};
+
+Result<DirectArrays> arrays_by_number(const Grid& grid, const core::CellReader& cells, const PointField& field,
+                                      const std::vector<Field>& carried, const Progress& progress) {
+    if (grid.point_numbers.empty()) return DirectArrays{grid, field, carried, {}};
+    if (auto ok = core::check_cells(grid, cells, progress); !ok) return ok.error();
+    auto sorted = core::sort_points_by_number(grid);
+    if (!sorted) return sorted.error();
+    DirectArrays out{std::move(sorted->grid), field, carried, std::move(sorted->original)};
+    out.field.values = core::in_order(field.values, out.original);
+    for (Field& other : out.carried) other.values = core::in_order(other.values, out.original);
+    return out;
+}
+
+Array user_ends(const Array& ends, const core::Buffer<std::uint64_t>& original) {
+    const auto sorted = ends.as<std::int64_t>();
+    core::Buffer<std::int64_t> out(sorted.size());
+    core::parallel_each(sorted.size(), 1 << 16, [&](std::size_t i) {
+        out[i] = static_cast<std::int64_t>(original[static_cast<std::size_t>(sorted[i])]);
+    });
+    return std::move(out).to_array(2);
+}
+
 template <class Real>
-Result<DirectExtraction> extract_as(const ops::DirectInput& input, std::span<const double> isovalues,
-                                    const ExtractOptions& options, bool split_cells, bool reference,
+Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::Buffer<std::uint64_t>& original,
+                                    std::span<const double> isovalues, const DirectOptions& direct, bool reference,
                                     const Progress& progress) {
+    const ExtractOptions& options = direct.extract;
     ops::DirectRequest request;
-    request.split_cells = split_cells;
+    request.split_cells = direct.split_cells;
     request.isovalues = isovalues;
     request.ties = options.ties;
     request.ends = options.edge_ends || !options.point_fields.empty();
@@ -57,6 +90,7 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, std::span<con
     for (ops::DirectSurface& surface : result->surfaces) {
         Extraction& extraction = out.surfaces.emplace_back();
         ExtractReport& report = extraction.report;
+        if (!original.empty() && !surface.raw.ends.empty()) surface.raw.ends = user_ends(surface.raw.ends, original);
         extraction.surface = api::finish<Real>(result->origin, options, result->carried, surface.raw);
         report.tied_points = surface.raw.tied_points;
         report.false_ties = surface.false_ties;
@@ -79,10 +113,18 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
         if (auto ok = check_fields(grid, field, options.extract); !ok) return ok.error();
-        const ops::DirectInput input{grid, *cells, field, options.extract.point_fields};
+        if (auto ok = core::find_in_frame(options.frame, field.name, field.values.type()); !ok) return ok.error();
+        if (options.frame)
+            if (auto ok = core::check_point_type(*options.frame, grid.points.type()); !ok) return ok.error();
+        const auto arrays = arrays_by_number(grid, *cells, field, options.extract.point_fields, progress);
+        if (!arrays) return arrays.error();
+        const auto reader = core::CellReader::open(arrays->grid);
+        if (!reader) return reader.error();
+        const ops::DirectInput input{arrays->grid, *reader, arrays->field, arrays->carried,
+                                     options.frame ? &*options.frame : nullptr};
         return options.precision == Precision::float32
-                   ? extract_as<float>(input, isovalues, options.extract, options.split_cells, reference, progress)
-                   : extract_as<double>(input, isovalues, options.extract, options.split_cells, reference, progress);
+                   ? extract_as<float>(input, arrays->original, isovalues, options, reference, progress)
+                   : extract_as<double>(input, arrays->original, isovalues, options, reference, progress);
     });
 }
 

@@ -152,8 +152,9 @@ Error cancelled() { return Error{ErrorCode::cancelled, "packing was cancelled"};
 } // namespace
 
 template <class Item>
-Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, CellCounts counts, bool keep_origins,
-                                   const Progress& progress) {
+Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, CellCounts counts,
+                                   const CellOrderOptions& options, const Progress& progress) {
+    const bool keep_origins = options.keep_origins;
     const PointReader points(grid.points);
     auto ranks = rank_points(points, counts.used);
     if (!ranks) return ranks.error();
@@ -196,22 +197,23 @@ Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, Ce
         balance += bucket.balance;
         for (std::size_t k = 0; k < cell_kind_count; ++k) order.kinds[k] += bucket.kinds[k];
     }
-    if (balance < 0) // in the canonical order, mirroring is an exchange of the last two corners
+    const bool mostly_negative = options.mostly_negative.value_or(balance < 0);
+    if (mostly_negative) // in the canonical order, mirroring is an exchange of the last two corners
         for (std::size_t bucket = 0; bucket < sorted.size(); ++bucket)
             for (const std::size_t i : sorted[bucket].flat) {
                 auto& corners = corners_of_item(order.cells.sorted(bucket, i));
                 std::swap(corners[2], corners[3]);
             }
-    order.inverted = order.orientation.inverted(balance < 0);
+    order.inverted = order.orientation.inverted(mostly_negative);
     if (!keep_origins) order.cells.drop_origins();
     order.cells.number();
     progress("pack", 0.3);
     return order;
 }
 
-template Result<CellOrder<RankedTet>> sort_cells<RankedTet>(const Grid&, const CellReader&, CellCounts, bool,
-                                                            const Progress&);
-template Result<CellOrder<RankedCell>> sort_cells<RankedCell>(const Grid&, const CellReader&, CellCounts, bool,
-                                                              const Progress&);
+template Result<CellOrder<RankedTet>> sort_cells<RankedTet>(const Grid&, const CellReader&, CellCounts,
+                                                            const CellOrderOptions&, const Progress&);
+template Result<CellOrder<RankedCell>> sort_cells<RankedCell>(const Grid&, const CellReader&, CellCounts,
+                                                              const CellOrderOptions&, const Progress&);
 
 } // namespace isotet::core

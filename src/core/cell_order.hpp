@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
@@ -27,6 +28,11 @@ struct CellOrder {
     std::array<std::uint64_t, cell_kind_count> kinds{};
 };
 
+struct CellOrderOptions {
+    bool keep_origins = false;
+    std::optional<bool> mostly_negative = {}; ///< of tetrahedra: how flat ones are turned; nothing: by majority
+};
+
 /// Sorts the points along a Hilbert curve, and what will be stored by its lowest point. Points are gathered from the
 /// user's arrays along the curve, so that their order there matters little.
 ///
@@ -35,7 +41,7 @@ struct CellOrder {
 ///          (44 of float64)
 /// Errors   invalid_data when cells use 2^32 points or more; cancelled
 template <class Item>
-Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, CellCounts counts, bool keep_origins,
-                                   const Progress& progress);
+Result<CellOrder<Item>> sort_cells(const Grid& grid, const CellReader& cells, CellCounts counts,
+                                   const CellOrderOptions& options, const Progress& progress);
 
 } // namespace isotet::core

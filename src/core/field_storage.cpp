@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include "core/frame.hpp"
 #include "core/value_summary.hpp"
 
 namespace isotet::core {
@@ -143,12 +144,15 @@ FieldStorage choose_and_store(const Array& values, const Packed& packed, const P
 } // namespace
 
 template <class Real>
-FieldStorage store_field_values(const Array& values, const Packed& packed, const Progress& progress, Real* out) {
-    return choose_and_store(values, packed, progress, out);
+FieldStorage store_field_values(const Array& values, const Packed& packed, const Progress& progress, Real* out,
+                                const Storage* chosen) {
+    if (!chosen) return choose_and_store(values, packed, progress, out);
+    const Pass pass = pass_over(values, packed, *chosen, progress, out);
+    return {*chosen, pass.summary.statistics, pass.flushed};
 }
 
-template FieldStorage store_field_values<float>(const Array&, const Packed&, const Progress&, float*);
-template FieldStorage store_field_values<double>(const Array&, const Packed&, const Progress&, double*);
+template FieldStorage store_field_values<float>(const Array&, const Packed&, const Progress&, float*, const Storage*);
+template FieldStorage store_field_values<double>(const Array&, const Packed&, const Progress&, double*, const Storage*);
 
 std::optional<Storage> StorageCache::find(const Array& values) const {
     const std::lock_guard lock(mutex_);
@@ -165,12 +169,25 @@ void StorageCache::add(const Array& values, const Storage& storage) {
     entries_.push_back({array, storage});
 }
 
-Storage choose_storage(const Array& values, const Packed& packed) {
+namespace {
+
+Storage choose_storage(const Array& values, const Packed& packed, const FieldSurvey* framed) {
     if (const auto known = packed.storage_cache->find(values)) return *known;
-    const Storage storage = packed.single() ? choose_and_store<float>(values, packed, {}, nullptr).storage
-                                            : choose_and_store<double>(values, packed, {}, nullptr).storage;
+    const FieldStorage local = packed.single() ? choose_and_store<float>(values, packed, {}, nullptr)
+                                               : choose_and_store<double>(values, packed, {}, nullptr);
+    const bool fits = framed && framed->type == values.type() && check_range(*framed, "", local.statistics);
+    const Precision precision = packed.single() ? Precision::float32 : Precision::float64;
+    const Storage storage = fits ? storage_in(*framed, precision) : local.storage;
     packed.storage_cache->add(values, storage);
     return storage;
+}
+
+} // namespace
+
+Storage choose_storage(const Array& values, const Packed& packed) { return choose_storage(values, packed, nullptr); }
+
+Storage choose_storage(const Field& field, const Packed& packed) {
+    return choose_storage(field.values, packed, packed.frame ? packed.frame->find(field.name) : nullptr);
 }
 
 } // namespace isotet::core

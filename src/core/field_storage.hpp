@@ -25,9 +25,11 @@ struct FieldStorage {
 
 /// Chooses offset and scale for a field of one component, one value for each of the user's points, and stores its
 /// values at the packed points in `out`. When cancelled, what comes back means nothing.
+/// `chosen`   null, or how the field is stored
 /// Cost   parallel; one pass over the packed points, one more for an offset, one more for a scale
 template <class Real>
-FieldStorage store_field_values(const Array& values, const Packed& packed, const Progress& progress, Real* out);
+FieldStorage store_field_values(const Array& values, const Packed& packed, const Progress& progress, Real* out,
+                                const Storage* chosen = nullptr);
 
 /// Storage of fields that were looked at before: so that a field carried onto many surfaces is looked at once. Arrays
 /// are told apart by their memory and its owner; borrowed ones, whose memory may be used again, are not remembered.
@@ -49,5 +51,8 @@ private:
 /// where it can be.
 /// Cost   parallel; one pass over the values at packed points, one more for an offset
 ISOTET_API Storage choose_storage(const Array& values, const Packed& packed);
+
+/// By the frame of the packed grid, where it has one that knows the field and holds its values; else as above.
+ISOTET_API Storage choose_storage(const Field& field, const Packed& packed);
 
 } // namespace isotet::core

@@ -2,17 +2,21 @@
 #include <isotet/pack.hpp>
 
 #include <atomic>
+#include <optional>
+#include <type_traits>
 
 #include <fmt/core.h>
 
 #include "core/block_reuse.hpp"
 #include "core/carry_out.hpp"
 #include "core/field_storage.hpp"
+#include "core/frame.hpp"
 #include "core/memory.hpp"
 #include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
+#include "core/renumber.hpp"
 #include "core/stored_cells.hpp"
 
 namespace isotet {
@@ -48,7 +52,8 @@ void measure(Packed& packed) {
     PackReport& report = packed.report;
     report.points = packed.points();
     report.bytes = packed.headers.bytes() + packed.cells.bytes() + packed.group_ranges.bytes() + packed.links.bytes() +
-                   packed.has_no_data.bytes() + packed.point_ids.bytes() + packed.wide_point_ids.bytes();
+                   packed.has_no_data.bytes() + packed.point_ids.bytes() + packed.wide_point_ids.bytes() +
+                   packed.point_ranks.bytes();
     std::visit(
         [&](const auto& reals) {
             report.bytes += reals.positions.bytes() + reals.values.bytes() + reals.ranges.bytes();
@@ -69,9 +74,22 @@ Result<void> store_field(const PointField& field, Packed& packed, const Progress
     return packed.single() ? store_field<float>(field, packed, progress) : store_field<double>(field, packed, progress);
 }
 
-void store_points(const Array& points, Packed& packed) {
-    if (packed.single()) store_positions<float>(points, packed);
-    else store_positions<double>(points, packed);
+Result<void> store_points(const Array& points, Packed& packed) {
+    return packed.single() ? store_positions<float>(points, packed) : store_positions<double>(points, packed);
+}
+
+/// From points sorted by their numbers back to the user's.
+void restore_point_ids(const Buffer<std::uint64_t>& original, bool keep_ranks, Packed& packed) {
+    if (keep_ranks) packed.point_ranks = SharedBuffer<std::uint64_t>(packed.points());
+    const auto restore = [&](auto& ids) {
+        using Id = std::remove_reference_t<decltype(ids[0])>;
+        parallel_each(ids.size(), 1 << 16, [&](std::size_t i) {
+            if (keep_ranks) packed.point_ranks[i] = ids[i];
+            ids[i] = static_cast<Id>(original[ids[i]]);
+        });
+    };
+    restore(packed.point_ids);
+    restore(packed.wide_point_ids);
 }
 
 /// From counted cells to clusters with their points numbered.
@@ -81,7 +99,9 @@ Result<void> gather(const Grid& grid, const CellReader& cells, CellCounts counts
     const bool origins = options.source_cells || !cells.only_tets();
     if (auto ok = require_memory("packing the grid", packing_memory<Item>(counts.stored, grid, origins)); !ok)
         return ok.error();
-    auto order = sort_cells<Item>(grid, cells, std::move(counts), options.source_cells, progress);
+    std::optional<bool> mostly_negative;
+    if (options.frame) mostly_negative = is_mostly_negative(*options.frame);
+    auto order = sort_cells<Item>(grid, cells, std::move(counts), {options.source_cells, mostly_negative}, progress);
     if (!order) return order.error();
     if (auto ok = form_clusters(*std::move(order), cells.count(), draft, progress); !ok) return ok.error();
     number_points(grid.points.tuples(), draft);
@@ -94,19 +114,31 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
     if (!cells) return cells.error();
     if (auto ok = check_field(field, grid.points.tuples()); !ok) return ok.error();
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    if (auto ok = find_in_frame(options.frame, field.name, field.values.type()); !ok) return ok.error();
+    std::optional<Renumbered> sorted;
+    if (!grid.point_numbers.empty()) {
+        auto by_number = sort_points_by_number(grid);
+        if (!by_number) return by_number.error();
+        sorted = *std::move(by_number);
+        cells = CellReader::open(sorted->grid);
+        if (!cells) return cells.error();
+    }
+    const Grid& numbered = sorted ? sorted->grid : grid;
     const bool native = !cells->only_tets() && !options.split_cells;
     CellCounts counts = native ? count_native_cells(*cells) : count_tets(*cells);
-    if (counts.stored == 0) return nothing_to_contour(grid, *cells);
+    if (counts.stored == 0 && !options.frame) return nothing_to_contour(grid, *cells); // a piece may be empty
 
     const BlockReuse reuse;
     const std::uint64_t left_out = counts.left_out, collapsed = counts.collapsed, split = counts.split;
     Draft draft;
     if (options.precision == Precision::float64) draft.packed.reals = Values<double>{};
-    const auto gathered = native ? gather<RankedCell>(grid, *cells, std::move(counts), options, draft, progress)
-                                 : gather<RankedTet>(grid, *cells, std::move(counts), options, draft, progress);
-    if (!gathered) return gathered.error();
-    progress("pack", 0.7);
-    if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
+    if (counts.stored > 0) {
+        const auto gathered = native ? gather<RankedCell>(numbered, *cells, std::move(counts), options, draft, progress)
+                                     : gather<RankedTet>(numbered, *cells, std::move(counts), options, draft, progress);
+        if (!gathered) return gathered.error();
+        progress("pack", 0.7);
+        if (auto ok = link_clusters(draft, progress); !ok) return ok.error();
+    }
     draft.locals.release();
     draft.point_of.release();
 
@@ -117,7 +149,10 @@ Result<std::shared_ptr<const Packed>> pack(const Grid& grid, const PointField& f
     packed->report.cells_left_out = left_out;
     packed->report.collapsed_tets = collapsed;
     packed->report.split_cells = split;
-    store_points(grid.points, *packed);
+    packed->frame = options.frame;
+    if (sorted) restore_point_ids(sorted->original, native, *packed);
+    sorted.reset();
+    if (auto ok = store_points(grid.points, *packed); !ok) return ok.error();
     if (auto ok = store_field(field, *packed, progress); !ok) return ok.error();
     if (options.gradients) store_gradients(*packed);
     measure(*packed);
@@ -142,8 +177,8 @@ Result<void> check_moved_points(const Packed& packed, const Array& points) {
             turned += orientation_sign(positions[v[0]], positions[v[1]], positions[v[2]], positions[v[3]]) < 0;
         }
         packed.for_other_cells(c, [&](const StoredCell& cell) {
-            const WholeCell user = user_cell(packed, locals, cell);
-            turned += turn_of(user, [&](std::size_t k) { return positions[cell.corners[k]]; }).is_mirrored();
+            const WholeCell ranked = ranked_cell(packed, locals, cell);
+            turned += turn_of(ranked, [&](std::size_t k) { return positions[cell.corners[k]]; }).is_mirrored();
         });
     });
     if (outside)
@@ -174,6 +209,15 @@ Precision PackedGrid::precision() const noexcept { return data_->single() ? Prec
 std::uint64_t PackedGrid::user_point_count() const noexcept { return data_->user_points; }
 std::uint64_t PackedGrid::user_cell_count() const noexcept { return data_->user_cells; }
 
+const Frame* PackedGrid::frame() const noexcept { return data_->frame ? &*data_->frame : nullptr; }
+
+PackedGrid PackedGrid::with_frame(const std::optional<Frame>& frame) const {
+    const auto next = std::make_shared<core::Packed>(*data_);
+    next->frame = frame;
+    next->storage_cache = std::make_shared<core::StorageCache>();
+    return PackedGrid(next);
+}
+
 Result<PackedGrid> PackedGrid::with_field(const PointField& field, const Run& run) const {
     return core::carry_out("setting the field", run, [&](const Progress& progress) -> Result<PackedGrid> {
         if (auto ok = core::check_field(field, data_->user_points); !ok) return ok.error();
@@ -192,7 +236,7 @@ Result<PackedGrid> PackedGrid::with_points(const Array& points, const Run& run) 
                                      points.tuples(), points.components(), name_of(points.type()), data_->user_points)};
         const auto next = std::make_shared<core::Packed>(*data_);
         if (auto checked = core::check_moved_points(*next, points); !checked) return checked.error();
-        core::store_points(points, *next);
+        if (auto stored = core::store_points(points, *next); !stored) return stored.error();
         if (!next->gradients.empty()) core::store_gradients(*next);
         progress("pack", 1);
         return PackedGrid(next);

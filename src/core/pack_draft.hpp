@@ -57,7 +57,8 @@ void number_points(std::uint64_t user_points, Draft& draft);
 Result<void> link_clusters(Draft& draft, const Progress& progress);
 
 /// Stores the coordinates; fills positions, origin and what of it goes into the report.
+/// Errors   invalid_argument when they do not fit the frame
 template <class Real>
-void store_positions(const Array& points, Packed& packed);
+Result<void> store_positions(const Array& points, Packed& packed);
 
 } // namespace isotet::core

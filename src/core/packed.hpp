@@ -29,10 +29,12 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <variant>
 
+#include <isotet/frame.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 
@@ -169,6 +171,10 @@ struct Packed {
     SharedBuffer<std::uint32_t> gradients; ///< octahedral code a point, on request (normal_code.hpp)
     std::variant<Values<float>, Values<double>> reals;
 
+    SharedBuffer<std::uint64_t> point_ranks; ///< by Grid::point_numbers, of grids with other cells than tets: how these
+                                             ///< are split
+    std::optional<Frame> frame;
+
     std::array<double, 3> origin{};
     Storage storage;
     std::shared_ptr<StorageCache> storage_cache; ///< of fields carried onto surfaces (field_storage.hpp)
@@ -192,6 +198,10 @@ struct Packed {
 
     std::uint64_t user_point(std::uint64_t packed_point) const {
         return wide_point_ids.empty() ? point_ids[packed_point] : wide_point_ids[packed_point];
+    }
+    /// What decides how a cell with this point is split.
+    std::uint64_t rank_of_point(std::uint64_t packed_point) const {
+        return point_ranks.empty() ? user_point(packed_point) : point_ranks[packed_point];
     }
     bool has_cell_ids() const { return !cell_ids.empty() || !wide_cell_ids.empty(); }
     std::uint64_t user_cell(std::uint64_t word) const {

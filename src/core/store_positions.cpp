@@ -7,6 +7,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include "core/bounds.hpp"
+#include "core/frame.hpp"
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
@@ -61,14 +62,21 @@ bool is_coarse(const PointReader& points, const Packed& packed, std::size_t clus
 } // namespace
 
 template <class Real>
-void store_positions(const Array& array, Packed& packed) {
+Result<void> store_positions(const Array& array, Packed& packed) {
     const PointReader points(array);
     const bool unchanged = array.type() == ScalarType::float32 || sizeof(Real) == sizeof(double);
     packed.origin = {};
+    if (packed.frame)
+        if (auto ok = check_point_type(*packed.frame, array.type()); !ok) return ok;
     if (!unchanged) {
         const Bounds bounds = bounds_of(points, packed);
-        for (std::size_t axis = 0; axis < 3 && packed.points(); ++axis)
-            packed.origin[axis] = rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
+        if (packed.frame) {
+            if (auto ok = check_bounds(*packed.frame, bounds.lower, bounds.upper); !ok) return ok;
+            packed.origin = origin_in(packed.frame->whole);
+        } else
+            for (std::size_t axis = 0; axis < 3 && packed.points(); ++axis)
+                packed.origin[axis] =
+                    rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
     }
     SharedBuffer<Real>& positions = packed.as<Real>().positions;
     positions = SharedBuffer<Real>(3 * packed.points());
@@ -91,9 +99,10 @@ void store_positions(const Array& array, Packed& packed) {
         parallel_each(packed.clusters(), 64, [&](std::size_t c) { coarse += is_coarse<Real>(points, packed, c); });
     packed.report.flushed_coordinates = flushed;
     packed.report.coarse_clusters = coarse;
+    return {};
 }
 
-template void store_positions<float>(const Array&, Packed&);
-template void store_positions<double>(const Array&, Packed&);
+template Result<void> store_positions<float>(const Array&, Packed&);
+template Result<void> store_positions<double>(const Array&, Packed&);
 
 } // namespace isotet::core

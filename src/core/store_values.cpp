@@ -2,21 +2,30 @@
 #include "core/set_field.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/field_storage.hpp"
+#include "core/frame.hpp"
 
 namespace isotet::core {
 
 template <class Real>
 Result<void> store_values(const PointField& field, Packed& packed, const Progress& progress) {
+    const auto framed = find_in_frame(packed.frame, field.name, field.values.type());
+    if (!framed) return framed.error();
+    std::optional<Storage> in_frame;
+    if (*framed) in_frame = storage_in(**framed, packed.single() ? Precision::float32 : Precision::float64);
     Values<Real>& reals = packed.as<Real>();
     reals.values = SharedBuffer<Real>(packed.points());
     reals.ranges = SharedBuffer<Range<Real>>(packed.clusters());
     packed.group_ranges = SharedBuffer<GroupRange>(packed.cells.size() / group_size);
     packed.has_no_data = SharedBuffer<std::uint8_t>(packed.clusters());
     std::fill(packed.has_no_data.begin(), packed.has_no_data.end(), std::uint8_t{0});
-    const FieldStorage stored = store_field_values(field.values, packed, progress, reals.values.data());
+    const FieldStorage stored =
+        store_field_values(field.values, packed, progress, reals.values.data(), in_frame ? &*in_frame : nullptr);
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "storing the field was cancelled"};
+    if (*framed)
+        if (auto ok = check_range(**framed, field.name, stored.statistics); !ok) return ok;
 
     const Storage& chosen = stored.storage;
     const ValueStatistics& statistics = stored.statistics;

@@ -11,11 +11,12 @@
 
 namespace isotet::core {
 
-/// A stored cell by the user's point numbers.
+/// A stored cell by numbers of its points that split it as the user's grid has it.
 /// `locals`   of its cluster, as local_points() gives them
-inline WholeCell user_cell(const Packed& packed, const std::uint64_t* locals, const StoredCell& cell) {
+inline WholeCell ranked_cell(const Packed& packed, const std::uint64_t* locals, const StoredCell& cell) {
     WholeCell out{cell.kind, {}};
-    for (std::size_t k = 0; k < cell.corners.size(); ++k) out.corners[k] = packed.user_point(locals[cell.corners[k]]);
+    for (std::size_t k = 0; k < cell.corners.size(); ++k)
+        out.corners[k] = packed.rank_of_point(locals[cell.corners[k]]);
     return out;
 }
 
@@ -29,7 +30,7 @@ void for_tets(const Packed& packed, std::size_t cluster, const F& f) {
     std::array<std::uint64_t, max_cluster_points> locals;
     local_points(packed, cluster, locals.data());
     packed.for_other_cells(cluster, [&](const StoredCell& cell) {
-        for (const auto& tet : split_locally(user_cell(packed, locals.data(), cell)))
+        for (const auto& tet : split_locally(ranked_cell(packed, locals.data(), cell)))
             f(std::array<std::uint8_t, 4>{cell.corners[tet[0]], cell.corners[tet[1]], cell.corners[tet[2]],
                                           cell.corners[tet[3]]},
               cell.word);

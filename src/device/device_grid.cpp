@@ -140,8 +140,7 @@ Result<Extraction> DeviceSurface::Data::download() const {
     without_normals.normals = Normals::none;
     std::vector<core::Storage> stored_as = storages;
     if (!fields_are_there)
-        for (const Field& field : options.point_fields)
-            stored_as.push_back(core::choose_storage(field.values, *packed));
+        for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field, *packed));
     Extraction out;
     out.surface = api::finish<float>(packed->origin, without_normals, stored_as, *raw);
     out.surface.normals_kind = options.normals;

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include <isotet/frame.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
@@ -32,6 +33,7 @@ struct DirectInput {
     const core::CellReader& cells;
     const PointField& field;
     std::span<const Field> carried; ///< point fields whose storage is to be told
+    const Frame* frame = nullptr;   ///< how the grid is stored of which this is a piece; it knows the field
 };
 
 struct DirectRequest {

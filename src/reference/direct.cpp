@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "core/arithmetic.hpp"
+#include "core/bounds.hpp"
+#include "core/frame.hpp"
 #include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/storage.hpp"
@@ -35,7 +37,10 @@ struct UserCell {
     std::size_t cell;
 };
 
-bool mostly_negative(const PointReader& points, const core::CellReader& cells) {
+bool mostly_negative(const ops::DirectInput& input) {
+    if (input.frame) return core::is_mostly_negative(*input.frame);
+    const PointReader points(input.grid.points);
+    const core::CellReader& cells = input.cells;
     std::int64_t balance = 0;
     for (std::size_t cell = 0; cell < cells.count(); ++cell)
         if (cells.type(cell) == static_cast<std::uint8_t>(CellType::tetrahedron))
@@ -43,9 +48,10 @@ bool mostly_negative(const PointReader& points, const core::CellReader& cells) {
     return balance < 0;
 }
 
-std::vector<UserCell> native_cells(const Grid& grid, const core::CellReader& cells) {
-    const PointReader points(grid.points);
-    const core::Orienter orienter(grid.points, mostly_negative(points, cells));
+std::vector<UserCell> native_cells(const ops::DirectInput& input) {
+    const core::CellReader& cells = input.cells;
+    const PointReader points(input.grid.points);
+    const core::Orienter orienter(input.grid.points, mostly_negative(input));
     core::Orienter::Counts counts;
     std::vector<UserCell> out;
     for (std::size_t cell = 0; cell < cells.count(); ++cell) {
@@ -73,9 +79,9 @@ std::vector<UserCell> as_cells(const std::vector<UserTet>& tets) {
     return out;
 }
 
-std::vector<UserTet> all_tets(const Grid& grid, const core::CellReader& cells) {
-    const PointReader points(grid.points);
-    const core::Orienter orienter(grid.points, mostly_negative(points, cells));
+std::vector<UserTet> all_tets(const ops::DirectInput& input) {
+    const core::CellReader& cells = input.cells;
+    const core::Orienter orienter(input.grid.points, mostly_negative(input));
     std::vector<UserTet> tets;
     core::Orienter::Counts counts;
     for (std::size_t cell = 0; cell < cells.count(); ++cell) {
@@ -92,13 +98,19 @@ struct Looked {
     core::Storage storage;
 };
 
-Looked look_at(const Array& values, const std::set<std::uint64_t>& used, Precision precision) {
+/// `framed`   null, or what a frame knows of the field
+Looked look_at(const Array& values, const std::set<std::uint64_t>& used, Precision precision,
+               const FieldSurvey* framed) {
     Looked out;
     const auto for_values = [&](const auto& f) {
         for (const std::uint64_t point : used)
             for (std::size_t k = 0; k < values.components(); ++k) f(values.at(point, k));
     };
     for_values([&](double value) { out.statistics.add(value); });
+    if (framed && framed->type == values.type() && core::check_range(*framed, "", out.statistics)) {
+        out.storage = core::storage_in(*framed, precision);
+        return out;
+    }
     out.storage = core::choose_offset(values.type(), out.statistics, precision);
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for_values([&](double value) {
@@ -142,19 +154,20 @@ template <class Real>
 class StoredGrid {
 public:
     StoredGrid(const ops::DirectInput& input, bool split_cells, ops::DirectResult& result)
-        : tets_(all_tets(input.grid, input.cells)),
-          cells_(split_cells ? as_cells(tets_) : native_cells(input.grid, input.cells)),
+        : tets_(all_tets(input)),
+          cells_(split_cells ? as_cells(tets_) : native_cells(input)),
           field_(input.field.values),
           points_(input.grid.points) {
         for (const UserCell& cell : cells_) used_.insert(cell.corners.begin(), cell.corners.end());
         const Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
-        const Looked looked = look_at(field_, used_, precision);
+        const auto in_frame = [&](const std::string& name) { return input.frame ? input.frame->find(name) : nullptr; };
+        const Looked looked = look_at(field_, used_, precision, in_frame(input.field.name));
         storage_ = looked.storage;
         result.field = report_on(input.field, looked);
         for (const Field& field : input.carried)
-            result.carried.push_back(look_at(field.values, used_, precision).storage);
+            result.carried.push_back(look_at(field.values, used_, precision, in_frame(field.name)).storage);
         rounds_ = input.grid.points.type() == ScalarType::float64 && precision == Precision::float32;
-        if (rounds_) origin_ = origin_of(points_, used_);
+        if (rounds_) origin_ = input.frame ? core::origin_in(input.frame->whole) : origin_of(points_, used_);
         result.origin = origin_;
         for (const std::uint64_t point : used_) {
             values_[point] = core::store_value<Real>(field_.at(point), storage_);
@@ -162,6 +175,8 @@ public:
         }
     }
 
+    /// Errors   invalid_argument when the frame does not hold the field or the points
+    Result<void> check_fit(const ops::DirectInput& input) const;
     ops::DirectSurface extract(double isovalue, const ops::DirectRequest& request);
 
 private:
@@ -193,6 +208,20 @@ private:
     std::array<double, 3> origin_{};
     std::map<std::uint64_t, Real> values_; ///< stored ones, of the used points
 };
+
+template <class Real>
+Result<void> StoredGrid<Real>::check_fit(const ops::DirectInput& input) const {
+    if (!input.frame) return {};
+    core::Bounds bounds;
+    core::ValueStatistics statistics;
+    for (const std::uint64_t point : used_) {
+        bounds.add(points_[point]);
+        statistics.add(field_.at(point));
+    }
+    if (rounds_)
+        if (auto ok = core::check_bounds(*input.frame, bounds.lower, bounds.upper); !ok) return ok;
+    return core::check_range(*input.frame->find(input.field.name), input.field.name, statistics);
+}
 
 template <class Real>
 bool StoredGrid<Real>::is_coarse(const UserCell& cell) const {
@@ -330,11 +359,12 @@ template <class Real>
 Result<ops::DirectResult> extract_direct(const ops::DirectInput& input, const ops::DirectRequest& request,
                                          const Progress& progress) {
     if (auto ok = core::check_cells(input.grid, input.cells, progress); !ok) return ok.error();
-    if (all_tets(input.grid, input.cells).empty()) return core::nothing_to_contour(input.grid, input.cells);
+    if (!input.frame && all_tets(input).empty()) return core::nothing_to_contour(input.grid, input.cells);
     ops::DirectResult result;
     for (std::size_t cell = 0; cell < input.cells.count(); ++cell)
         result.cells_left_out += !core::is_contoured(input.cells.type(cell));
     StoredGrid<Real> stored(input, request.split_cells, result);
+    if (auto ok = stored.check_fit(input); !ok) return ok.error();
     for (const double isovalue : request.isovalues) {
         if (progress.cancelled()) return Error{ErrorCode::cancelled, "extraction was cancelled"};
         result.surfaces.push_back(stored.extract(isovalue, request));

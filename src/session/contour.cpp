@@ -11,8 +11,10 @@
 
 #include "core/array_identity.hpp"
 #include "core/errors.hpp"
+#include "core/frame.hpp"
 #include "core/guard.hpp"
 #include "core/memory.hpp"
+#include "core/packed.hpp"
 #include "core/parallel.hpp"
 #include "session/fingerprint.hpp"
 
@@ -30,18 +32,23 @@ bool is_same(const core::ArrayIdentity& before, const Array& now) {
 
 /// Cells as they were when the grid was packed.
 struct CellsMark {
-    core::ArrayIdentity connectivity, offsets, types;
+    core::ArrayIdentity connectivity, offsets, types, numbers;
     CellType uniform_type;
-    session::Fingerprint print;
+    session::Fingerprint print, numbers_print;
 
-    explicit CellsMark(const Cells& cells)
-        : connectivity(cells.connectivity),
-          offsets(cells.offsets),
-          types(cells.types),
-          uniform_type(cells.uniform_type),
-          print(session::fingerprint(cells)) {}
+    explicit CellsMark(const Grid& grid)
+        : connectivity(grid.cells.connectivity),
+          offsets(grid.cells.offsets),
+          types(grid.cells.types),
+          numbers(grid.point_numbers),
+          uniform_type(grid.cells.uniform_type),
+          print(session::fingerprint(grid.cells)),
+          numbers_print(session::fingerprint(grid.point_numbers)) {}
 
-    bool is(const Cells& cells) const {
+    bool is(const Grid& grid) const {
+        const Cells& cells = grid.cells;
+        if (!is_same(numbers, grid.point_numbers) && numbers_print != session::fingerprint(grid.point_numbers))
+            return false;
         const bool same_memory = is_same(connectivity, cells.connectivity) && is_same(offsets, cells.offsets) &&
                                  is_same(types, cells.types) && uniform_type == cells.uniform_type;
         return same_memory || print == session::fingerprint(cells);
@@ -84,6 +91,16 @@ bool has_what_is_needed(const PackedGrid& packed, const ContourOptions& options,
            (!needs_gradients || packed.report().gradient_bytes > 0);
 }
 
+/// What must be stored again for another frame.
+ContourUpdate update_for(const std::optional<Frame>& before, const std::optional<Frame>& now) {
+    if (before == now) return ContourUpdate::nothing;
+    if (!before || !now || core::is_mostly_negative(*before) != core::is_mostly_negative(*now))
+        return ContourUpdate::grid;
+    const Survey &a = before->whole, &b = now->whole;
+    const bool same_points = a.lower == b.lower && a.upper == b.upper && a.points == b.points;
+    return same_points ? ContourUpdate::field : ContourUpdate::points;
+}
+
 } // namespace
 
 struct Contour::Data {
@@ -117,9 +134,9 @@ namespace {
 
 Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
                                        std::span<const double> isovalues, const Run& run) {
-    Result<DirectExtraction> direct =
-        options.engine->extract_direct(input.grid, input.field, isovalues,
-                                       {extract_options(options, input), options.precision, options.split_cells}, run);
+    Result<DirectExtraction> direct = options.engine->extract_direct(
+        input.grid, input.field, isovalues,
+        {extract_options(options, input), options.precision, options.split_cells, options.frame}, run);
     if (!direct) return std::move(direct).error();
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
@@ -166,11 +183,12 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
     pack_options.source_cells = options.source_cells || !input.cell_fields.empty();
     pack_options.split_cells = options.split_cells;
     pack_options.gradients = options.normals == Normals::gradient;
+    pack_options.frame = options.frame;
     Result<PackedGrid> made = pack(input.grid, input.field, pack_options, run);
     if (!made) return made.error();
     packed = *made;
     core::with_threads(run.threads, [&] {
-        cells.emplace(input.grid.cells);
+        cells.emplace(input.grid);
         points.emplace(input.grid.points);
     });
     return {};
@@ -210,6 +228,10 @@ Result<void> Contour::Data::change_field(const Run& run) {
 /// Packs, or stores what has changed since.
 Result<void> Contour::Data::bring_up_to_date(const Run& run) {
     const auto start = std::chrono::steady_clock::now();
+    if (packed && behind != ContourUpdate::grid && packed->data().frame != options.frame) {
+        packed = packed->with_frame(options.frame);
+        grid.reset(); // it has the frame from before
+    }
     if (packed && behind == ContourUpdate::points) {
         const Result<void> moved = change_points(run);
         // A tet that turned over, or coordinates that packing has more to say about.
@@ -302,12 +324,14 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
                             data.packed->user_point_count() == input.grid.points.tuples();
         if (usable && data.behind != ContourUpdate::grid) {
             core::with_threads(run.threads, [&] {
-                if (!data.cells->is(input.grid.cells)) return;
+                if (!data.cells->is(input.grid)) return;
                 if (!data.points->is(input.grid.points)) update = ContourUpdate::points;
                 else if (data.behind != ContourUpdate::nothing || !data.field->is(input.field.values) ||
                          data.packed->field().name != input.field.name)
                     update = ContourUpdate::field;
                 else update = ContourUpdate::nothing;
+                update = std::max(update, update_for(data.packed->data().frame, options.frame));
+                if (options.frame) update = std::max(update, data.behind); // what an error left behind
             });
         }
         if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "setting another grid was cancelled"};

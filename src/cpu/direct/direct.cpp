@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "core/frame.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/tet_survey.hpp"
@@ -52,12 +53,15 @@ template <class Real>
 class DirectRun {
 public:
     DirectRun(const ops::DirectInput& input, const ops::DirectRequest& request)
-        : input_(input), request_(request), wide_(input.grid.points.tuples() >= wide_points_from) {}
+        : input_(input), request_(request), wide_(input.grid.points.tuples() >= wide_points_from) {
+        if (input.frame) mostly_negative_ = core::is_mostly_negative(*input.frame);
+    }
 
     Result<ops::DirectResult> run(const Progress& progress) {
         if (auto ok = require_if_much("extraction", std::bit_ceil(input_.grid.points.tuples())); !ok) return ok.error();
         sides_ = Sides(input_.grid.points.tuples());
         if (auto ok = request_.isovalues.empty() ? look_only(progress) : extract_all(progress); !ok) return ok.error();
+        if (auto ok = require_fit(); !ok) return ok.error();
         result_.origin = survey_.origin;
         result_.field = survey_.report(input_.field.name);
         for (const StoredField& field : survey_.carried) result_.carried.push_back(field.storage);
@@ -213,7 +217,16 @@ private:
         settled_ = true;
     }
 
+    /// The survey is that of the used points by now.
+    Result<void> require_fit() const {
+        if (!input_.frame) return {};
+        if (survey_.rounds_coordinates)
+            if (auto ok = core::check_bounds(*input_.frame, survey_.lower, survey_.upper); !ok) return ok;
+        return core::check_range(*input_.frame->find(input_.field.name), input_.field.name, survey_.field.statistics);
+    }
+
     Result<void> require_a_tet() const {
+        if (input_.frame) return {}; // a piece may be empty
         for (std::size_t cell = 0; cell < input_.cells.count(); ++cell)
             if (input_.cells.tets(cell).count) return {};
         return core::nothing_to_contour(input_.grid, input_.cells);

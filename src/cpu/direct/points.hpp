@@ -86,6 +86,7 @@ struct PointSurvey {
     bool rounds_coordinates = false; ///< float64 ones to float32
     core::Point lower{}, upper{};    ///< bounds, where coordinates are rounded
     std::array<double, 3> origin{};
+    bool framed = false;      ///< storage and origin are those of a frame
     bool has_unsound = false; ///< points that no cell may use, used or not
 
     /// True when both store everything alike and find the same range.

@@ -10,6 +10,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include "core/bounds.hpp"
+#include "core/frame.hpp"
 #include "core/orientation.hpp"
 #include "core/value_summary.hpp"
 #include "cpu/direct/points.hpp"
@@ -77,13 +78,25 @@ std::uint64_t count_flushed(const Array& values, const Sides* seen, const core::
     });
 }
 
-StoredField survey_field(const Array& values, const Sides* seen, Precision precision) {
+/// `framed`   null, or what the frame knows of the field
+StoredField survey_field(const Array& values, const Sides* seen, Precision precision, const FieldSurvey* framed) {
     core::ValueSummary summary = summarize(values, seen, 0);
     StoredField out{summary.statistics, core::choose_offset(values.type(), summary.statistics, precision), 0};
+    if (framed) out.storage = core::storage_in(*framed, precision);
     if (out.storage.offset != 0) summary = summarize(values, seen, out.storage.offset);
-    core::choose_scale(out.storage, summary.smallest, summary.largest);
+    if (!framed) core::choose_scale(out.storage, summary.smallest, summary.largest);
     out.smallest = summary.smallest * out.storage.scale;
     return out;
+}
+
+/// One that the frame does not know, or whose values it does not hold, is stored as without it.
+StoredField survey_carried(const Field& field, const Sides* seen, Precision precision, const Frame* frame) {
+    const FieldSurvey* const framed = frame ? frame->find(field.name) : nullptr;
+    if (!framed || framed->type != field.values.type()) return survey_field(field.values, seen, precision, nullptr);
+    const StoredField stored = survey_field(field.values, seen, precision, framed);
+    return core::check_range(*framed, field.name, stored.statistics)
+               ? stored
+               : survey_field(field.values, seen, precision, nullptr);
 }
 
 /// Bounds of sound points, and whether there are others.
@@ -133,9 +146,11 @@ template <class Real>
 PointSurvey survey_points(const ops::DirectInput& input, const Sides* seen) {
     constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
     PointSurvey out;
-    out.field = survey_field(input.field.values, seen, precision);
+    out.framed = input.frame != nullptr;
+    out.field =
+        survey_field(input.field.values, seen, precision, input.frame ? input.frame->find(input.field.name) : nullptr);
     if (out.field.may_flush()) out.flushed = count_flushed<Real>(input.field.values, seen, out.field.storage);
-    for (const Field& field : input.carried) out.carried.push_back(survey_field(field.values, seen, precision));
+    for (const Field& field : input.carried) out.carried.push_back(survey_carried(field, seen, precision, input.frame));
 
     const Array& points = input.grid.points;
     out.rounds_coordinates = points.type() == ScalarType::float64 && precision == Precision::float32;
@@ -147,6 +162,7 @@ PointSurvey survey_points(const ops::DirectInput& input, const Sides* seen) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             out.origin[axis] =
                 core::rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
+        if (input.frame) out.origin = core::origin_in(input.frame->whole);
     }
     return out;
 }
@@ -165,6 +181,7 @@ bool same_storage(const core::Storage& a, const core::Storage& b) {
 bool PointSurvey::decides_as(const PointSurvey& other) const {
     return same_storage(field.storage, other.field.storage) && field.statistics.lower == other.field.statistics.lower &&
            field.statistics.upper == other.field.statistics.upper && origin == other.origin &&
+           (!framed || (lower == other.lower && upper == other.upper)) &&
            std::equal(carried.begin(), carried.end(), other.carried.begin(),
                       [](const StoredField& a, const StoredField& b) { return same_storage(a.storage, b.storage); });
 }

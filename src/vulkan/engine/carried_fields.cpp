@@ -29,10 +29,11 @@ void store(const Array& values, const core::Packed& packed, const core::Storage&
     });
 }
 
-Result<CarriedField> upload(Context& context, const core::Packed& packed, const Array& values) {
+Result<CarriedField> upload(Context& context, const core::Packed& packed, const Field& carried) {
+    const Array& values = carried.values;
     CarriedField field;
     field.components = static_cast<std::uint32_t>(values.components());
-    field.storage = core::choose_storage(values, packed);
+    field.storage = core::choose_storage(carried, packed);
     const std::uint64_t point_bytes = sizeof(float) * values.components();
     auto taken = context.memory().take(packed.points() * point_bytes, Where::device, "carried field");
     if (!taken) return std::move(taken).error();
@@ -56,7 +57,7 @@ Result<std::shared_ptr<const CarriedField>> CarriedFields::get(Context& context,
     std::erase_if(entries_, [](const Entry& entry) { return entry.array.expired(); });
     for (const Entry& entry : entries_)
         if (entry.array.is(values)) return entry.field;
-    auto uploaded = upload(context, packed, values);
+    auto uploaded = upload(context, packed, field);
     if (!uploaded) return std::move(uploaded).error();
     auto shared = std::make_shared<const CarriedField>(*std::move(uploaded));
     if (const core::ArrayIdentity array(values); !array.expired()) entries_.push_back({array, shared});

@@ -1,0 +1,74 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/pieces.hpp>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/errors.hpp"
+#include "core/guard.hpp"
+
+namespace isotet {
+
+namespace {
+
+/// The field that is contoured, then the others, each name once.
+std::vector<Field> framed_fields(const ContourInput& whole) {
+    std::vector<Field> fields{{whole.field.name, whole.field.values}};
+    for (const Field& field : whole.point_fields)
+        if (field.name != whole.field.name && fields.size() < Survey::max_fields) fields.push_back(field);
+    return fields;
+}
+
+} // namespace
+
+Result<FramedPiece> take_piece(const ContourInput& whole, const PieceOf& which, const SurveyPieceOptions& options,
+                               const Run& run) {
+    const auto survey = survey_piece(whole.grid, framed_fields(whole), options, run);
+    if (!survey) return survey.error();
+    const auto frame = make_frame({&*survey, 1});
+    if (!frame) return frame.error();
+    Grid grid = whole.grid;
+    grid.point_fields = whole.point_fields;
+    grid.point_fields.push_back({whole.field.name, whole.field.values});
+    grid.cell_fields = whole.cell_fields;
+    Result<Grid> taken = take_piece(grid, which, run);
+    if (!taken) return taken.error();
+    FramedPiece out;
+    out.frame = *frame;
+    out.first_cell = first_cell_of(grid, which);
+    out.input.field = whole.field;
+    out.input.field.values = taken->point_fields.back().values;
+    taken->point_fields.pop_back();
+    out.input.point_fields = std::exchange(taken->point_fields, {});
+    out.input.cell_fields = std::exchange(taken->cell_fields, {});
+    out.input.grid = *std::move(taken);
+    return out;
+}
+
+Result<Surface> number_as_whole(const Surface& surface, const Array& point_numbers, std::uint64_t first_cell) {
+    return core::guarded("numbering the surface", [&]() -> Result<Surface> {
+        Surface out = surface;
+        if (!surface.source_cells.empty()) {
+            std::vector<std::int64_t> cells;
+            for (const std::int64_t cell : surface.source_cells.as<std::int64_t>())
+                cells.push_back(cell + static_cast<std::int64_t>(first_cell));
+            out.source_cells = Array::own(std::move(cells));
+        }
+        if (surface.edge_ends.empty() || point_numbers.empty()) return out;
+        std::vector<std::int64_t> ends;
+        for (const std::int64_t end : surface.edge_ends.as<std::int64_t>()) {
+            if (static_cast<std::uint64_t>(end) >= point_numbers.tuples())
+                return invalid_argument(fmt::format("the surface has an end in point {}, but {} points have numbers",
+                                                    end, point_numbers.tuples()));
+            ends.push_back(point_numbers.visit(
+                [&](auto numbers) { return static_cast<std::int64_t>(numbers[static_cast<std::size_t>(end)]); }));
+        }
+        out.edge_ends = Array::own(std::move(ends), 2);
+        return out;
+    });
+}
+
+} // namespace isotet
