@@ -42,19 +42,34 @@ function dressed() {
   });
 }
 
+/** While something moves, a picture that takes long has half the pixels each way; in full when all rests. */
+let slow = false, sharpTimer = 0;
+function chooseScale() {
+  clearTimeout(sharpTimer);
+  if (slow && !resting) {
+    scene.scale = 0.5;
+    sharpTimer = setTimeout(() => { resting = true; drawSoon(); }, 250);
+  } else scene.scale = 1;
+  resting = false;
+}
+let resting = false;
+
 function draw() {
   drawPlanned = false;
   if (!scene || !grid?.lower) return;
+  chooseScale();
   const pad = grid.upper.map((u, i) => (u - grid.lower[i]) * 0.001);
   const start = performance.now();
   scene.draw(camera, dressed(), {background: css('scene'), lower: grid.lower.map((v, i) => v - pad[i]),
     upper: grid.upper.map((v, i) => v + pad[i]), boxLower: grid.lower, boxUpper: grid.upper, outline: state.outline,
     edges: state.edges, mapped: !!state.colorBy, noData: frame?.scale?.no_data, line: css('soft')});
   drawAxes();
+  scene.finish();
+  const took = performance.now() - start;
+  if (scene.scale === 1) slow = took > 50;
   if (frame && !frame.acknowledged) {
-    scene.finish();
     frame.acknowledged = true;
-    frame.draw_ms = performance.now() - start;
+    frame.draw_ms = took;
     frame.age_ms = performance.now() - (sentAt.get(frame.number) ?? start);
     for (const old of sentAt.keys()) if (old <= frame.number) sentAt.delete(old);
     link.send({do: 'shown', number: frame.number});
