@@ -62,8 +62,7 @@ Result<Chart> chart_of(const Grid& grid, const PointField& field, const Run& run
     const Result<FieldSample> sample = FieldSample::create(grid, field);
     if (!sample) return sample.error();
     for (std::size_t i = 0; i < Chart::bins; ++i)
-        chart.triangles[i] =
-            sample->triangles(place_in_chart((static_cast<double>(i) + 0.5) / Chart::bins, chart));
+        chart.triangles[i] = sample->triangles(place_in_chart((static_cast<double>(i) + 0.5) / Chart::bins, chart));
     chart.first = first_isovalue(chart);
     return chart;
 }

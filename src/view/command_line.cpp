@@ -20,8 +20,7 @@ void add_option(std::vector<std::string>& words, const std::string& name, const 
 
 void add_surfaces(std::vector<std::string>& words, const ViewState& state) {
     if (!state.field.empty()) add_option(words, "--field", state.field);
-    if (!state.isovalues.empty())
-        add_option(words, "--isovalue", fmt::format("{}", fmt::join(state.isovalues, ",")));
+    if (!state.isovalues.empty()) add_option(words, "--isovalue", fmt::format("{}", fmt::join(state.isovalues, ",")));
 }
 
 std::vector<std::string> first_words(const char* command, const std::string& file,

@@ -27,8 +27,8 @@ std::vector<OfferedField> offered_fields(const Grid& grid);
 
 struct GridViewOptions {
     std::size_t preview_triangles = 150'000; ///< of a surface while a hand moves
-    std::size_t max_triangles = 8'000'000;   ///< of a surface that a page is sent; larger ones are previews of that size
-    int threads = 0;                         ///< at most; 0: all
+    std::size_t max_triangles = 8'000'000; ///< of a surface that a page is sent; larger ones are previews of that size
+    int threads = 0;                       ///< at most; 0: all
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.

@@ -31,6 +31,8 @@ std::optional<std::uint64_t> whole_number(const Json& value) {
     return value.get<std::uint64_t>();
 }
 
-const std::string* text(const Json& value) { return value.is_string() ? &value.get_ref<const std::string&>() : nullptr; }
+const std::string* text(const Json& value) {
+    return value.is_string() ? &value.get_ref<const std::string&>() : nullptr;
+}
 
 } // namespace isotet::view

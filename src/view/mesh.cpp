@@ -63,8 +63,7 @@ std::vector<bool> place_vertices(std::span<const Scalar> positions, Mesh& mesh) 
     }
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double place =
-                (static_cast<double>(positions[3 * i + axis]) - mesh.box.lower[axis]) * scale[axis];
+            const double place = (static_cast<double>(positions[3 * i + axis]) - mesh.box.lower[axis]) * scale[axis];
             if (place >= 0 && place <= max_place + 0.5)
                 mesh.vertices[i].place[axis] = static_cast<std::uint16_t>(std::min(place + 0.5, max_place));
             else finite[i] = false;
@@ -115,8 +114,7 @@ Result<Mesh> made_mesh(const Surface& surface, const SurfaceColors* colors, cons
         return place_vertices(positions, mesh);
     });
     const auto directions = normals->as<float>();
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-        mesh.vertices[i].normal = on_octahedron(&directions[3 * i]);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i].normal = on_octahedron(&directions[3 * i]);
     std::vector<std::size_t> triangles;
     take_corners(surface, finite, mesh, flat ? &triangles : nullptr);
     if (flat) take_apart(mesh, triangles, map_places(*colors));

@@ -30,10 +30,10 @@ inline constexpr std::uint16_t max_map_place = 65534; ///< the upper end of the 
 
 /// V vertices, F triangles.
 struct Mesh {
-    Box box;                           ///< of the vertices; empty where there is none
-    std::vector<MeshVertex> vertices;  ///< V
+    Box box;                            ///< of the vertices; empty where there is none
+    std::vector<MeshVertex> vertices;   ///< V
     std::vector<std::uint32_t> corners; ///< 3 F, counter-clockwise seen from the side of higher values
-    std::vector<std::uint16_t> colors; ///< empty, or V places in the colour map, 65534ths
+    std::vector<std::uint16_t> colors;  ///< empty, or V places in the colour map, 65534ths
     bool flat = false; ///< triangles have a colour each: no vertex is shared, and `corners` count from 0 on
 
     std::size_t triangle_count() const noexcept { return corners.size() / 3; }

@@ -87,7 +87,8 @@ Json surface_json(const FrameSurface& surface, Blocks& blocks) {
     const Mesh& mesh = *surface.mesh;
     const MeshPlaces places = add_mesh(mesh, blocks);
     Json& drawn = json["mesh"];
-    drawn = {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangle_count()}, {"vertices_at", places.vertices}};
+    drawn = {
+        {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangle_count()}, {"vertices_at", places.vertices}};
     if (!mesh.flat) drawn["corners_at"] = places.corners;
     drawn["wide"] = places.wide;
     if (places.colors) drawn["colors_at"] = *places.colors;

@@ -49,8 +49,7 @@ struct PasteMessage {
     std::string text;
 };
 
-using PageMessage =
-    std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage>;
+using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage>;
 
 /// Any bytes from a page. Errors   invalid_argument
 Result<PageMessage> parse_page_message(std::string_view text);
@@ -59,7 +58,7 @@ Result<PageMessage> parse_page_message(std::string_view text);
 struct FrameSurface {
     std::string key; ///< the same for the same mesh
     double isovalue = 0;
-    Color color;             ///< that isotet render would give it
+    Color color; ///< that isotet render would give it
     const Mesh* mesh = nullptr;
     std::uint64_t triangles = 0; ///< of the surface, also where the mesh is a preview
 };

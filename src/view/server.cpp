@@ -242,13 +242,14 @@ void Connection::send(std::shared_ptr<const std::string> message, bool text) {
 void Connection::write_next() {
     const Outgoing& next = waiting_.front();
     socket_->text(next.text);
-    socket_->async_write(asio::buffer(*next.message), [self = shared_from_this()](beast::error_code error, std::size_t) {
-        if (error) return self->finish();
-        self->waiting_.pop_front();
-        if (!self->waiting_.empty()) return self->write_next();
-        if (self->closing_) return self->finish();
-        self->read_next();
-    });
+    socket_->async_write(asio::buffer(*next.message),
+                         [self = shared_from_this()](beast::error_code error, std::size_t) {
+                             if (error) return self->finish();
+                             self->waiting_.pop_front();
+                             if (!self->waiting_.empty()) return self->write_next();
+                             if (self->closing_) return self->finish();
+                             self->read_next();
+                         });
 }
 
 void Connection::close_when_sent() {
@@ -327,8 +328,8 @@ Result<Server> Server::open(ServerOptions options, ServerEvents events) {
     if (!error) data->acceptor.bind(endpoint, error);
     if (!error) data->acceptor.listen(16, error);
     if (error)
-        return Error{ErrorCode::system, fmt::format("port {} of 127.0.0.1 cannot be had: {}", data->options.port,
-                                                    error.message())};
+        return Error{ErrorCode::system,
+                     fmt::format("port {} of 127.0.0.1 cannot be had: {}", data->options.port, error.message())};
     data->port = data->acceptor.local_endpoint(error).port();
     return Server(std::move(data));
 }

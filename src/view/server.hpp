@@ -23,14 +23,14 @@ struct ServedFile {
 };
 
 struct ServerOptions {
-    std::uint16_t port = 0;             ///< of 127.0.0.1; 0: a free one
-    std::vector<std::string> hosts;     ///< names besides localhost and 127.0.0.1 that a browser may have reached it by
-    std::vector<ServedFile> files;      ///< must outlive the server
-    std::size_t max_connections = 32;   ///< at once; more are closed
-    std::size_t max_message = 65'536;   ///< bytes from a page; a larger one ends its connection
-    std::size_t max_waiting = 8;        ///< messages to a page that wait: until they are sent, none of it is read
-    double request_seconds = 10;        ///< within which a request must be there
-    double idle_seconds = 40;           ///< a page that answers no ping for so long is gone; pings after half of it
+    std::uint16_t port = 0;           ///< of 127.0.0.1; 0: a free one
+    std::vector<std::string> hosts;   ///< names besides localhost and 127.0.0.1 that a browser may have reached it by
+    std::vector<ServedFile> files;    ///< must outlive the server
+    std::size_t max_connections = 32; ///< at once; more are closed
+    std::size_t max_message = 65'536; ///< bytes from a page; a larger one ends its connection
+    std::size_t max_waiting = 8;      ///< messages to a page that wait: until they are sent, none of it is read
+    double request_seconds = 10;      ///< within which a request must be there
+    double idle_seconds = 40;         ///< a page that answers no ping for so long is gone; pings after half of it
 };
 
 /// What the server tells. Called by the thread of run().

@@ -66,12 +66,8 @@ bool operator==(const ViewState& a, const ViewState& b) {
 }
 
 Json to_json(const ViewState& state) {
-    Json json = {{"field", state.field},
-                 {"isovalues", state.isovalues},
-                 {"color_by", state.color_by},
-                 {"map", name_of(state.map)},
-                 {"logarithmic", state.logarithmic},
-                 {"outline", state.outline}};
+    Json json = {{"field", state.field},      {"isovalues", state.isovalues},     {"color_by", state.color_by},
+                 {"map", name_of(state.map)}, {"logarithmic", state.logarithmic}, {"outline", state.outline}};
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
     if (state.opacity) json["opacity"] = *state.opacity;
     if (state.camera) json["camera"] = to_text(*state.camera);

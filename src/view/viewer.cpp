@@ -129,7 +129,7 @@ void Viewer::Data::set_grid(const ViewerInput& input) {
     Json fields = Json::array();
     for (const OfferedField& field : view->fields())
         fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
-    Json grid = {{"say", "grid"},         {"file", options.file},          {"points", view->points()},
+    Json grid = {{"say", "grid"},          {"file", options.file},        {"points", view->points()},
                  {"cells", view->cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
                  {"notes", input.notes}};
     const Box& box = view->bounds();
@@ -171,9 +171,10 @@ void Viewer::Data::read_and_pack() {
 }
 
 void Viewer::Data::start() {
-    worker.emplace(WorkerOutput{[this](PageNumber page, std::string bytes) { server->send_bytes(page, std::move(bytes)); },
-                                [this](PageNumber page, std::string text) { server->send_text(page, std::move(text)); }},
-                   now_seconds);
+    worker.emplace(
+        WorkerOutput{[this](PageNumber page, std::string bytes) { server->send_bytes(page, std::move(bytes)); },
+                     [this](PageNumber page, std::string text) { server->send_text(page, std::move(text)); }},
+        now_seconds);
     reader = std::thread([this] { read_and_pack(); });
 }
 
@@ -195,10 +196,9 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
     pages[from].admitted = true;
     alone_since.reset();
     worker->add_page(from);
-    server->send_text(from, text_of({{"say", "welcome"},
-                                     {"version", options.version},
-                                     {"file", options.file},
-                                     {"maps", maps_json()}}));
+    server->send_text(
+        from,
+        text_of({{"say", "welcome"}, {"version", options.version}, {"file", options.file}, {"maps", maps_json()}}));
     const std::lock_guard lock(news_mutex);
     if (!grid_text.empty()) server->send_text(from, grid_text);
     if (!progress.empty()) server->send_text(from, progress);

@@ -25,16 +25,16 @@ struct ViewerInput {
 };
 
 struct ViewerOptions {
-    std::string file;                 ///< as the command line names it
-    std::vector<std::string> reading; ///< options of the command line that say how it is read
-    std::uint16_t port = 0;           ///< 0: a free one
-    std::vector<std::string> hosts;   ///< as ServerOptions::hosts
-    std::string version;              ///< shown by the page
-    std::string token;                ///< empty: 128 bits of the system's random numbers
-    bool keep = false;                ///< goes on when the last page was closed
-    double linger_seconds = 60;       ///< after the last page was closed, without `keep`
-    std::size_t max_pages = 4;        ///< at once
-    int threads = 0;                  ///< at most; 0: all
+    std::string file;                                    ///< as the command line names it
+    std::vector<std::string> reading;                    ///< options of the command line that say how it is read
+    std::uint16_t port = 0;                              ///< 0: a free one
+    std::vector<std::string> hosts;                      ///< as ServerOptions::hosts
+    std::string version;                                 ///< shown by the page
+    std::string token;                                   ///< empty: 128 bits of the system's random numbers
+    bool keep = false;                                   ///< goes on when the last page was closed
+    double linger_seconds = 60;                          ///< after the last page was closed, without `keep`
+    std::size_t max_pages = 4;                           ///< at once
+    int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
 };
 

@@ -11,8 +11,8 @@ namespace {
 using namespace view;
 
 TEST(ShellText, IsReadBackWordByWord) {
-    const std::vector<std::string> words{"isotet", "a b", "", "it's", "\"quoted\"", "back\\slash", "new\nline", "$HOME;rm",
-                                         "~", "é", "*", "'"};
+    const std::vector<std::string> words{"isotet",    "a b",      "",  "it's", "\"quoted\"", "back\\slash",
+                                         "new\nline", "$HOME;rm", "~", "é",    "*",          "'"};
     const auto back = shell_words(shell_text(words));
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(*back, words);

@@ -40,7 +40,7 @@ public:
             return input;
         };
         viewer_ = Viewer::open(std::move(options)).value();
-        thread_ = std::thread([this] { viewer_->run(stop_); });
+        thread_ = std::thread([this] { (void)viewer_->run(stop_); });
     }
     ~RunningViewer() {
         stop_ = true;
@@ -95,7 +95,8 @@ TEST(Server, GivesThePageAndItsFilesAndNothingElse) {
                                "/socket", "/main.js%00", "http://127.0.0.1/passwd"}) {
         const std::string answer = answer_to(viewer, "GET " + std::string(target) + " HTTP/1.1\r\n" + host);
         EXPECT_EQ(answer.find("root:"), std::string::npos) << target;
-        EXPECT_TRUE(answer.starts_with("HTTP/1.1 404") || answer.find("<!doctype html>") != std::string::npos) << target;
+        EXPECT_TRUE(answer.starts_with("HTTP/1.1 404") || answer.find("<!doctype html>") != std::string::npos)
+            << target;
     }
     EXPECT_TRUE(answer_to(viewer, "POST / HTTP/1.1\r\nContent-Length: 0\r\n" + host).starts_with("HTTP/1.1 405"));
     EXPECT_EQ(answer_to(viewer, "HEAD /main.js HTTP/1.1\r\n" + host).find("import"), std::string::npos);
@@ -114,12 +115,13 @@ TEST(Server, ThePageIsSmallAndNeedsNothingFromElsewhere) {
 TEST(Server, AnswersOnlyToNamesOfThisMachine) {
     const RunningViewer viewer;
     for (const char* host : {"localhost", "127.0.0.1:1", "[::1]:8123", "hub.example.org"})
-        EXPECT_TRUE(answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n")
-                        .starts_with("HTTP/1.1 200"))
+        EXPECT_TRUE(
+            answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").starts_with("HTTP/1.1 200"))
             << host;
-    for (const char* host : {"evil.example.org", "localhost.evil.org", "127.0.0.1.evil.org", "", "[::1", "evil:127.0.0.1"})
-        EXPECT_TRUE(answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n")
-                        .starts_with("HTTP/1.1 403"))
+    for (const char* host :
+         {"evil.example.org", "localhost.evil.org", "127.0.0.1.evil.org", "", "[::1", "evil:127.0.0.1"})
+        EXPECT_TRUE(
+            answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").starts_with("HTTP/1.1 403"))
             << host;
     EXPECT_FALSE(answer_to(viewer, "GET / HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 200")) << "without Host";
 }
@@ -127,11 +129,12 @@ TEST(Server, AnswersOnlyToNamesOfThisMachine) {
 TEST(Server, OpensItsSocketToItsOwnPagesOnly) {
     const RunningViewer viewer;
     const std::string own = "127.0.0.1:" + std::to_string(viewer.port());
-    for (const std::string& origin : {"http://" + own, std::string("https://hub.example.org")})
+    for (const std::string& origin : std::vector<std::string>{"http://" + own, "https://hub.example.org"})
         EXPECT_TRUE(RawPage(viewer.port()).open_socket(origin, own)) << origin;
-    for (const std::string& origin : {std::string(), std::string("null"), std::string("http://evil.example.org"),
-                                      std::string("http://localhost:1"), "http://" + own + ".evil.org", "file://" + own,
-                                      "http://127.0.0.1", own})
+    for (const std::string& origin :
+         std::vector<std::string>{std::string(), std::string("null"), std::string("http://evil.example.org"),
+                                  std::string("http://localhost:1"), "http://" + own + ".evil.org", "file://" + own,
+                                  "http://127.0.0.1", own})
         EXPECT_FALSE(RawPage(viewer.port()).open_socket(origin, own)) << origin;
     EXPECT_FALSE(RawPage(viewer.port()).open_socket("http://evil.org", "evil.org"));
     EXPECT_FALSE(RawPage(viewer.port()).open_socket("http://" + own, own, "/elsewhere"));
@@ -139,8 +142,9 @@ TEST(Server, OpensItsSocketToItsOwnPagesOnly) {
 
 TEST(Server, AWrongTokenIsToldSoAndGetsNothingElse) {
     const RunningViewer viewer;
-    for (const std::string& token : {std::string(), std::string("x"), std::string(right_token) + "0",
-                                     std::string(right_token).substr(1), std::string("00112233445566778899aabbccddeefe")}) {
+    for (const std::string& token :
+         {std::string(), std::string("x"), std::string(right_token) + "0", std::string(right_token).substr(1),
+          std::string("00112233445566778899aabbccddeefe")}) {
         RawPage page(viewer.port());
         ASSERT_TRUE(say_hello(page, token));
         const auto message = page.read_message();
@@ -185,12 +189,12 @@ TEST(Server, ARightPageGetsGridChartFrameAndCommand) {
 TEST(Server, SurvivesBrokenRequests) {
     const RunningViewer viewer;
     const std::string own = "127.0.0.1:" + std::to_string(viewer.port());
-    for (const std::string& bytes :
-         {std::string("\0\0\0\0", 4), std::string("GET"), std::string("\r\n\r\n\r\n"), std::string(1000, 'A'),
-          "GET / HTTP/9.9\r\nHost: " + own + "\r\n\r\n", "GET  HTTP/1.1\r\n\r\n",
-          "GET / HTTP/1.1\r\nHost: " + own + "\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n",
-          "GET / HTTP/1.1\r\nHost: " + own + "\r\nContent-Length: 99999999999\r\n\r\n",
-          "GET / HTTP/1.1\r\nHost: " + own + "\r\nTransfer-Encoding: chunked\r\n\r\nfffffff\r\n"}) {
+    for (const std::string& bytes : std::vector<std::string>{
+             std::string("\0\0\0\0", 4), std::string("GET"), std::string("\r\n\r\n\r\n"), std::string(1000, 'A'),
+             "GET / HTTP/9.9\r\nHost: " + own + "\r\n\r\n", "GET  HTTP/1.1\r\n\r\n",
+             "GET / HTTP/1.1\r\nHost: " + own + "\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n",
+             "GET / HTTP/1.1\r\nHost: " + own + "\r\nContent-Length: 99999999999\r\n\r\n",
+             "GET / HTTP/1.1\r\nHost: " + own + "\r\nTransfer-Encoding: chunked\r\n\r\nfffffff\r\n"}) {
         RawPage page(viewer.port());
         page.send(bytes); // and gone, half-way
     }
@@ -199,15 +203,16 @@ TEST(Server, SurvivesBrokenRequests) {
 
 TEST(Server, SurvivesBrokenMessages) {
     const RunningViewer viewer;
-    const auto frames = {RawPage::frame_head(0x81, 1 << 20),                       // larger than allowed
-                         RawPage::frame_head(0x81, UINT64_MAX / 2),                // than anything
-                         std::string("\x81\x05hello", 7),                          // not masked
-                         std::string("\xff\xff\xff\xff", 4),                       // no frame
-                         RawPage::frame_head(0x80, 3) + "abc",                     // a continuation of nothing
-                         RawPage::frame_head(0x89, 126) + std::string(126, 'x'),   // a ping that is too long
-                         RawPage::frame_head(0x81, 2) + "\xff\xfe",                // not UTF-8
-                         RawPage::frame_head(0x88, 1) + "x",                       // a broken goodbye
-                         RawPage::frame_head(0x01, 10) + "half a mes"};            // and gone
+    const std::vector<std::string> frames = {RawPage::frame_head(0x81, 1 << 20),        // larger than allowed
+                                             RawPage::frame_head(0x81, UINT64_MAX / 2), // than anything
+                                             std::string("\x81\x05hello", 7),           // not masked
+                                             std::string("\xff\xff\xff\xff", 4),        // no frame
+                                             RawPage::frame_head(0x80, 3) + "abc",      // a continuation of nothing
+                                             RawPage::frame_head(0x89, 126) +
+                                                 std::string(126, 'x'),                     // a ping that is too long
+                                             RawPage::frame_head(0x81, 2) + "\xff\xfe",     // not UTF-8
+                                             RawPage::frame_head(0x88, 1) + "x",            // a broken goodbye
+                                             RawPage::frame_head(0x01, 10) + "half a mes"}; // and gone
     for (const std::string& frame : frames) {
         RawPage page(viewer.port());
         ASSERT_TRUE(say_hello(page));
@@ -290,7 +295,7 @@ TEST(Viewer, TheAddressHoldsATokenOfItsOwnEachTime) {
 TEST(Viewer, AFileThatCannotBeReadIsToldToThePageAndToTheCaller) {
     ViewerOptions options;
     options.token = right_token;
-    options.read = [](const Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
+    options.read = [](const isotet::Run&) -> Result<ViewerInput> { return Error{ErrorCode::file, "it is not there"}; };
     const auto viewer = Viewer::open(std::move(options)).value();
     std::atomic<bool> stop{false};
     Result<void> result;

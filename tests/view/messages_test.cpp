@@ -21,16 +21,18 @@ TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(show.state.isovalues, std::vector<double>{0.5});
     EXPECT_EQ(std::get<ShownMessage>(*parse_page_message(R"({"do":"shown","number":7})")).number, 7U);
     EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p"})")).field, "p");
-    EXPECT_EQ(std::get<CommandMessage>(*parse_page_message(R"({"do":"command","state":{"field":"q"}})")).state.field, "q");
+    EXPECT_EQ(std::get<CommandMessage>(*parse_page_message(R"({"do":"command","state":{"field":"q"}})")).state.field,
+              "q");
     EXPECT_EQ(std::get<PasteMessage>(*parse_page_message(R"({"do":"paste","text":"-i 1"})")).text, "-i 1");
 }
 
 TEST(ParsePageMessage, RefusesEverythingElse) {
-    for (const char* text : {"", "x", "[]", "null", "3", "{}", R"({"do":3})", R"({"do":"write"})", R"({"do":"hello"})",
-                             R"({"do":"hello","token":3})", R"({"do":"show"})", R"({"do":"show","number":-1,"state":{}})",
-                             R"({"do":"show","number":1.5,"state":{}})", R"({"do":"show","number":1})",
-                             R"({"do":"show","number":1,"state":[]})", R"({"do":"shown","number":"1"})",
-                             R"({"do":"chart"})", R"({"do":"paste","text":null})", "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
+    for (const char* text :
+         {"", "x", "[]", "null", "3", "{}", R"({"do":3})", R"({"do":"write"})", R"({"do":"hello"})",
+          R"({"do":"hello","token":3})", R"({"do":"show"})", R"({"do":"show","number":-1,"state":{}})",
+          R"({"do":"show","number":1.5,"state":{}})", R"({"do":"show","number":1})",
+          R"({"do":"show","number":1,"state":[]})", R"({"do":"shown","number":"1"})", R"({"do":"chart"})",
+          R"({"do":"paste","text":null})", "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
         const auto message = parse_page_message(text);
         ASSERT_FALSE(message) << text;
         EXPECT_EQ(message.error().code, ErrorCode::invalid_argument) << text;

@@ -31,8 +31,8 @@ TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
         EXPECT_EQ(render.scale.logarithmic, state.logarithmic);
         EXPECT_EQ(render.opacity, state.opacity);
         EXPECT_EQ(render.outline, state.outline);
-        EXPECT_EQ(render.range, state.range ? (std::vector<double>{state.range->lower, state.range->upper})
-                                            : std::vector<double>());
+        EXPECT_EQ(render.range,
+                  state.range ? (std::vector<double>{state.range->lower, state.range->upper}) : std::vector<double>());
         EXPECT_EQ(render.camera ? to_text(*render.camera) : "", state.camera ? to_text(*state.camera) : "");
     }
 }

@@ -32,8 +32,12 @@ public:
     }
     Result<std::string> chart(const std::string& field, const Run&) override { return "chart of " + field; }
 
-    void let_go() { set([&] { ++let_go_; }); }
-    void set_free() { set([&] { free_ = true; }); }
+    void let_go() {
+        set([&] { ++let_go_; });
+    }
+    void set_free() {
+        set([&] { free_ = true; });
+    }
     /// Waits until so many wishes were begun.
     std::vector<std::uint64_t> begun(std::size_t count) {
         std::unique_lock lock(mutex_);
