@@ -187,13 +187,18 @@ Result<std::vector<std::string>> shell_words(std::string_view text) {
             in_word = false;
             continue;
         }
+        if (c == '\\' && quote != '\'' && i + 1 < text.size() && text[i + 1] == '\n') { // the line goes on
+            ++i;
+            continue;
+        }
         in_word = true;
         if (quote == 0 && (c == '\'' || c == '"')) quote = c;
         else if (c == quote && quote != 0) quote = 0;
         else if (c == '\\' && quote != '\'') {
             if (++i == text.size())
                 return Error{ErrorCode::invalid_argument, "the command line ends in \\, which takes another character"};
-            if (text[i] != '\n') word += text[i];
+            if (quote == '"' && std::string_view("$`\"\\").find(text[i]) == std::string_view::npos) word += '\\';
+            word += text[i];
         } else word += c;
     }
     if (quote != 0)

@@ -21,6 +21,7 @@ TEST(ShellText, IsReadBackWordByWord) {
 TEST(ShellWords, AreTakenByTheRulesOfAShell) {
     EXPECT_EQ(*shell_words("a  \"b c\"d 'e\\f' g\\ h \\\n i"),
               (std::vector<std::string>{"a", "b cd", "e\\f", "g h", "i"}));
+    EXPECT_EQ(*shell_words(R"("a\b\"\$")"), (std::vector<std::string>{R"(a\b"$)"}));
     EXPECT_FALSE(shell_words("'open"));
     EXPECT_FALSE(shell_words("\"open"));
     EXPECT_FALSE(shell_words("ends in \\"));

@@ -65,21 +65,13 @@ export function rgb(text) {
   return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
 }
 
-/** Whether the processor draws: several samples a pixel would take several times as long. */
-function isSoftware() {
-  const gl = document.createElement('canvas').getContext('webgl2'), facts = gl?.getExtension('WEBGL_debug_renderer_info');
-  const name = facts ? gl.getParameter(facts.UNMASKED_RENDERER_WEBGL) : '';
-  gl?.getExtension('WEBGL_lose_context')?.loseContext();
-  return /swiftshader|llvmpipe|software/i.test(name);
-}
-
 export class Scene {
   /** Throws where the browser has no WebGL2. */
   constructor(canvas) {
     this.canvas = canvas;
     this.meshes = new Map();
     this.scale = 1;
-    const gl = this.gl = canvas.getContext('webgl2', {antialias: !isSoftware(), alpha: false, powerPreference: 'high-performance'});
+    const gl = this.gl = canvas.getContext('webgl2', {antialias: true, alpha: false, powerPreference: 'high-performance'});
     if (!gl) throw new Error('This browser has no WebGL2, which draws the surfaces.');
     this.start();
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
