@@ -224,6 +224,10 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
     if (!scale) return scale.error();
     Result<Source*> source = source_for(state, run);
     if (!source) return source.error();
+    constexpr std::uint64_t least_of_previews = 10'000;
+    const std::uint64_t preview_limit = std::clamp<std::uint64_t>(
+        message.preview.value_or(options_.preview_triangles),
+        std::min<std::uint64_t>(least_of_previews, options_.preview_triangles), options_.max_triangles);
     FrameFacts facts;
     facts.number = message.number;
     facts.wait_seconds = wait_seconds;
@@ -238,7 +242,7 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
         if (!mesh) return mesh.error();
         FrameSurface surface{key, state.isovalues[i], color_of(state.isovalues, i, state.map), nullptr,
                              (*mesh)->triangle_count()};
-        const std::size_t most = message.moving ? options_.preview_triangles : options_.max_triangles;
+        const std::size_t most = message.moving ? preview_limit : options_.max_triangles;
         const bool has_it_in_full = holds(known, key);
         if (!has_it_in_full && surface.triangles > most && !(*mesh)->flat) {
             facts.preview = true;

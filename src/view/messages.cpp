@@ -40,8 +40,13 @@ Result<PageMessage> parse_show(const Json& json) {
     if (!number) return wrong_message("\"number\" takes a whole number");
     Result<ViewState> state = message_state(json);
     if (!state) return state.error();
+    ShowMessage message;
+    message.number = *number;
+    message.state = *std::move(state);
     const Json* moving = find(json, "moving");
-    return PageMessage(ShowMessage{*number, *std::move(state), moving && moving->is_boolean() && moving->get<bool>()});
+    message.moving = moving && moving->is_boolean() && moving->get<bool>();
+    if (const Json* preview = find(json, "preview")) message.preview = whole_number(*preview);
+    return PageMessage(std::move(message));
 }
 
 Result<PageMessage> parse_known(const std::string& action, const Json& json) {

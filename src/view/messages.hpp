@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -22,11 +23,12 @@ struct HelloMessage {
     std::string token;
 };
 
-/// {"do": "show", "number": n, "state": ..., "moving": true}: what the page wants to see. `number` grows.
+/// {"do": "show", "number": n, "state": ..., "moving": true, "preview": N}: what the page wants to see. `number` grows.
 struct ShowMessage {
     std::uint64_t number = 0;
     ViewState state;
-    bool moving = false; ///< a preview will do
+    bool moving = false;                  ///< a preview will do
+    std::optional<std::uint64_t> preview; ///< triangles that the page draws quickly; nothing: the server's limit
 };
 
 /// {"do": "shown", "number": n}: the page has drawn frame n.

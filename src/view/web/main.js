@@ -142,7 +142,7 @@ function wish(moving) {
   if (!grid || !state.field || state.value === null) return;
   const what = wanted() + (moving ? '' : '|rest');
   if (what === sent || (moving && sent === wanted() + '|rest')) return;
-  const message = {do: 'show', number: number + 1, state: toMessage(state), moving};
+  const message = {do: 'show', number: number + 1, state: toMessage(state), moving, preview: slow ? 100000 : 600000};
   delete message.state.camera;
   if (!link.send(message)) return;
   sent = what;
