@@ -50,15 +50,17 @@ Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSourc
     return input;
 }
 
-/// The address for people, or as JSON for a program, before anything is read.
+/// The address, before anything is read: for people, also with --quiet, or as JSON.
 Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer, Console& console) {
     const std::string address = viewer.address();
-    if (command.common.json == "-") {
+    if (command.common.json.empty()) {
+        if (Result<void> written = write_to_stdout(address + "\n"); !written) return written;
+    } else {
         Json report = json_report("view");
         report["address"] = address;
-        return write_to_stdout(report.dump() + "\n");
+        const Result<ExitCode> told = finish(console, command.common, address + "\n", std::move(report));
+        if (!told) return told.error();
     }
-    if (Result<void> written = write_to_stdout(address + "\n"); !written) return written;
     if (is_over_ssh()) {
         console.note("on the machine with the browser: " + ssh_line(viewer.port()) + "  then open the address there");
     } else if (!command.no_browser && !open_browser(address)) {

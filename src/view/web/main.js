@@ -35,10 +35,14 @@ function renderOpacity(which, boxes) {
 /** Colour and opacity of each surface of the frame: the first is the slider's. */
 function dressed() {
   if (!frame) return [];
+  // A surface that was pinned just now lies where the slider's still is: it is drawn once.
+  const twice = frame.surfaces.slice(1).some((one) => one.isovalue === frame.surfaces[0].isovalue);
   const boxes = frame.surfaces.map(({key}) => { const mesh = scene.meshes.get(key); return mesh?.lower ? [mesh.lower, mesh.upper] : null; });
+  if (twice) boxes.shift();
   return frame.surfaces.map((surface, i) => {
     const own = i === 0 ? state : state.pins[i - 1] || {};
-    return {key: surface.key, color: own.color || surface.color, opacity: own.opacity ?? renderOpacity(i, boxes)};
+    const opacity = own.opacity ?? renderOpacity(Math.max(0, i - (twice ? 1 : 0)), boxes);
+    return {key: surface.key, color: own.color || surface.color, opacity, hidden: twice && i === 0};
   });
 }
 
@@ -60,7 +64,7 @@ function draw() {
   chooseScale();
   const pad = grid.upper.map((u, i) => (u - grid.lower[i]) * 0.001);
   const start = performance.now();
-  scene.draw(camera, dressed(), {background: css('scene'), lower: grid.lower.map((v, i) => v - pad[i]),
+  scene.draw(camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: grid.lower.map((v, i) => v - pad[i]),
     upper: grid.upper.map((v, i) => v + pad[i]), boxLower: grid.lower, boxUpper: grid.upper, outline: state.outline,
     edges: state.edges, mapped: !!state.colorBy, noData: frame?.scale?.no_data, line: css('soft')});
   drawAxes();
@@ -291,7 +295,7 @@ function showSurfaces() {
     const [color, value, opacity] = row.children;
     value.textContent = format.short(one.value);
     if (document.activeElement !== color) color.value = one.color || looks[i]?.color || '#888888';
-    color.disabled = !!state.colorBy;
+    color.hidden = !!state.colorBy;
     if (document.activeElement !== opacity) opacity.value = one.opacity ?? looks[i]?.opacity ?? 1;
     const name = i === 0 ? 'the surface of the slider' : `pin ${format.short(one.value)}`;
     color.setAttribute('aria-label', `Colour of ${name}`);
@@ -406,7 +410,9 @@ for (const kind of ['render', 'extract'])
   id('copy-' + kind).addEventListener('click', () => {
     copying = kind;
     state.camera = camera.text();
-    link.send({do: 'command', state: toMessage(state)});
+    const message = toMessage(state);
+    message.isovalues = [...new Set(message.isovalues)];
+    link.send({do: 'command', state: message});
   });
 
 async function takeCommand(message) {
