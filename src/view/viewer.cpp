@@ -38,21 +38,22 @@ bool is_same_token(const std::string& a, const std::string& b) {
 
 class GridFrames : public FrameMaker {
 public:
-    explicit GridFrames(GridView& view) : view_(view) {}
+    GridFrames(GridView& view, int threads) : view_(view), threads_(threads) {}
     Result<std::string> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                               const Run& run) override {
-        Result<Frame> frame = view_.frame(message, wait_seconds, known, run);
+        Result<Frame> frame = view_.frame(message, wait_seconds, known, {threads_, run.progress});
         if (!frame) return frame.error();
         return std::move(frame->bytes);
     }
     Result<std::string> chart(const std::string& field, const Run& run) override {
-        const Result<Chart> chart = view_.chart(field, run);
+        const Result<Chart> chart = view_.chart(field, {threads_, run.progress});
         if (!chart) return chart.error();
         return chart_text(field, *chart);
     }
 
 private:
     GridView& view_;
+    int threads_;
 };
 
 /// 64 colours of each map, "rrggbb" one after another.
@@ -164,7 +165,7 @@ void Viewer::Data::read_and_pack() {
     if (!made) return set_failure(made.error());
     view = *std::move(made);
     set_grid(*input);
-    worker->start(std::make_shared<GridFrames>(*view));
+    worker->start(std::make_shared<GridFrames>(*view, options.threads));
     tell_progress("pack", 0);
     const Result<void> packed = view->pack(input->state.field, run);
     tell_progress(packed ? "ready" : "not packed: " + packed.error().message, 1);
