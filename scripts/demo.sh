@@ -86,6 +86,7 @@ NEXT
   $program bench $grid -f p
   $program formats
   ./scripts/test.sh quick
+  $program view $grid -f p    # in the browser: the surface follows a slider
 NEXT
 }
 

@@ -104,6 +104,18 @@ cases that are hard to round. Where they differ, surfaces may differ from the CP
 command that uses the device says so.
 )";
 
+constexpr const char* view_details = R"(
+Prints one address, and opens it in the browser if there is one on this machine. The page can be reached from this
+machine only, by whoever has the address; from another one through ssh, by a line that is printed where isotet was
+started over ssh. Ctrl-C ends it. Of the keys and the mouse tells ? in the page.
+
+Examples:
+  isotet view grid.vtu
+  isotet view grid.vtu -f pressure -i 0.5 --color-by temperature
+  isotet view make:kuhn:64:sphere,gyroid
+  isotet view grid.vtu --no-browser --port 8123
+)";
+
 void add_common(const Command& command, CommonOptions& common) {
     command.add_file("--json", common.json, "FILE",
                      "Write the numbers as JSON too; - is standard output, which then has no table");
@@ -251,6 +263,29 @@ void add_render(const Command& program, RenderCommand& render) {
         all_steps.excludes(command.option(name));
 }
 
+void add_view(const Command& program, ViewCommand& view) {
+    const Command command = program.add_command("view", "Look at isosurfaces in the browser, with a slider");
+    command.add_file("FILE", view.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
+    add_field(command, view.field, "The field to begin with; without it the one that varies most");
+    add_isovalues(command, view.isovalues);
+    command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
+    command.add_count(
+        "--port", {1, 65535}, [&](std::uint64_t n) { view.port = n; }, "N",
+        "The port of 127.0.0.1 to serve the page at; without it a free one");
+    command.add_texts(
+        "--allow-host",
+        [&](const std::vector<std::string>& names) {
+            view.hosts.insert(view.hosts.end(), names.begin(), names.end());
+        },
+        "NAME", "A name by which browsers reach the page, of a proxy say, beside localhost; may be repeated");
+    command.add_flag("--keep", view.keep, "Go on when the last page was closed; without it for a minute");
+    command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
+    add_time(command, view.grid);
+    add_reading(command, view.grid, "--format");
+    add_common(command, view.common);
+    command.set_details(view_details);
+}
+
 void add_bench(const Command& program, BenchCommand& bench) {
     const Command command = add_bench_command(program, bench);
     add_machine_and_input(command, bench.device, bench.grid, bench.common);
@@ -374,6 +409,7 @@ void add_commands(const Command& program, CommandLine& line) {
     add_info(program, line.info);
     add_extract(program, line.extract);
     add_render(program, line.render);
+    add_view(program, line.view);
     add_bench(program, line.bench);
     add_check(program, line.check);
     add_make(program, line.make);

@@ -36,8 +36,8 @@ std::string coincident_points_note(const Grid& grid) {
 }
 
 /// Merges points, and notes what that did.
-Result<Grid> merged(const Grid& grid, double tolerance, Console& console) {
-    Result<MergedPoints> result = merge_points(grid, tolerance, console.run());
+Result<Grid> merged(const Grid& grid, double tolerance, Console& console, const Run& run) {
+    Result<MergedPoints> result = merge_points(grid, tolerance, run);
     if (!result && result.error().code == ErrorCode::invalid_argument)
         return Error{result.error().code, "--merge-points: " + result.error().message};
     if (!result) return result.error();
@@ -125,12 +125,12 @@ std::vector<std::string> GridSource::names(Association association) const {
     return names;
 }
 
-Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Console& console) const {
+Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Console& console, const Run& run) const {
     Grid grid;
     if (made_) {
         MakeOptions made = *made_;
         if (fields.point) made.fields = *fields.point;
-        Result<Grid> result = make_grid(made, console.run());
+        Result<Grid> result = make_grid(made, run);
         if (!result) return result.error();
         grid = *std::move(result);
     } else {
@@ -138,12 +138,12 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         read_options.point_fields = fields.point;
         read_options.cell_fields = fields.cell;
         if (!info_.times.empty()) read_options.step = step;
-        Result<ReadResult> result = isotet::read(options_.file, read_options, console.run());
+        Result<ReadResult> result = isotet::read(options_.file, read_options, run);
         if (!result) return result.error();
         console.notes(result->notes);
         grid = std::move(result->grid);
     }
-    if (options_.merge_points) return merged(grid, *options_.merge_points, console);
+    if (options_.merge_points) return merged(grid, *options_.merge_points, console, run);
     console.note(coincident_points_note(grid));
     return grid;
 }

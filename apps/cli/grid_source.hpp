@@ -45,7 +45,10 @@ public:
     Error no_such_field(const std::string& name) const;
 
     /// Reads one time step, merges points if asked to, and notes what the reader reports, and points that coincide.
-    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console) const;
+    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console) const {
+        return read(fields, step, console, console.run());
+    }
+    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console, const Run& run) const;
 
 private:
     GridOptions options_;

@@ -139,6 +139,18 @@ struct RenderCommand {
     DeviceChoice device;
 };
 
+struct ViewCommand {
+    CommonOptions common;
+    GridOptions grid;
+    FieldChoice field;
+    std::vector<double> isovalues; ///< none: the page chooses one
+    std::string color_by;          ///< a field; empty: each isovalue has its colour
+    std::uint64_t port = 0;        ///< 0: a free one
+    std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
+    bool keep = false;
+    bool no_browser = false;
+};
+
 struct BenchCommand {
     CommonOptions common;
     GridOptions grid; ///< `file` is empty with --paper
@@ -196,6 +208,7 @@ struct CommandLine {
     InfoCommand info;
     ExtractCommand extract;
     RenderCommand render;
+    ViewCommand view;
     BenchCommand bench;
     CheckCommand check;
     MakeCommand make;

@@ -48,6 +48,7 @@ Result<ExitCode> run_command(const CommandLine& line, const OptionTree& tree) {
     if (line.command == "info") return run_info(line.info);
     if (line.command == "extract") return run_extract(line.extract);
     if (line.command == "render") return run_render(line.render);
+    if (line.command == "view") return run_view(line.view);
     if (line.command == "bench") return run_bench(line.bench);
     if (line.command == "check") return run_check(line.check);
     if (line.command == "make") return run_make(line.make);

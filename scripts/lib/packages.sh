@@ -1,7 +1,7 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 # The Debian packages that the project needs, and how missing ones get onto a Debian 12. Sourced, never run.
 
-readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libfreetype-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev
+readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libfreetype-dev libpng-dev libwebp-dev libcli11-dev nlohmann-json3-dev libboost-dev
     libpugixml-dev libdeflate-dev liblz4-dev liblzma-dev
     libvtk9-dev libhdf5-dev glslc libvulkan-dev)
 # What the software Vulkan device of software_vulkan.sh is linked with.
@@ -10,7 +10,7 @@ readonly packages_for_software_vulkan=(
     libxcb-sync1 libxcb-xfixes0 libxcb1 libxshmfence1 libzstd1 zlib1g)
 readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers "${packages_for_software_vulkan[@]}")
 readonly packages_for_python=(python3-dev python3-venv)
-readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils)
+readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils chromium)
 
 missing_packages() {
     local package

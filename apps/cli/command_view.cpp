@@ -1,0 +1,101 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// `isotet view`: a grid in the browser.
+#include <fmt/format.h>
+
+#include <isotet/version.hpp>
+
+#include "browser.hpp"
+#include "commands.hpp"
+#include "console.hpp"
+#include "field_choice.hpp"
+#include "grid_source.hpp"
+#include "json_output.hpp"
+#include "number_format.hpp"
+#include "signals.hpp"
+#include "standard_streams.hpp"
+#include "text.hpp"
+#include "view/viewer.hpp"
+
+namespace isotet::cli {
+
+namespace {
+
+/// Options that say how the file is read, for command lines of the page.
+std::vector<std::string> reading_options(const GridOptions& grid) {
+    std::vector<std::string> words;
+    const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
+    if (!grid.format.empty()) add("--format", grid.format);
+    if (grid.time) add("--time", shortest(*grid.time));
+    if (grid.step) add("--step", std::to_string(*grid.step));
+    if (grid.merge_points) add("--merge-points", shortest(*grid.merge_points));
+    if (grid.keep_pieces) words.emplace_back("--keep-pieces");
+    if (grid.allow_outside) words.emplace_back("--allow-outside");
+    if (!grid.displace.empty()) add("--displace", grid.displace);
+    return words;
+}
+
+/// Reads all fields of the step, and finds the one to begin with.
+Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSource& source, std::size_t step,
+                                     Console& console, const Run& run) {
+    Result<Grid> grid = source.read({}, step, console, run);
+    if (!grid) return grid.error();
+    view::ViewerInput input;
+    input.state.field = command.field.name;
+    if (input.state.field.empty()) input.state.field = default_field(*grid).name;
+    if (input.state.field.empty()) input.state.field = "x";
+    input.state.isovalues = command.isovalues;
+    input.state.color_by = command.color_by;
+    input.notes = console.noted();
+    input.grid = *std::move(grid);
+    return input;
+}
+
+/// The address, before anything is read: for people, also with --quiet, or as JSON.
+Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer, Console& console) {
+    const std::string address = viewer.address();
+    if (command.common.json.empty()) {
+        if (Result<void> written = write_to_stdout(address + "\n"); !written) return written;
+    } else {
+        Json report = json_report("view");
+        report["address"] = address;
+        const Result<ExitCode> told = finish(console, command.common, address + "\n", std::move(report));
+        if (!told) return told.error();
+    }
+    if (is_over_ssh()) {
+        console.note("on the machine with the browser: " + ssh_line(viewer.port()) + "  then open the address there");
+    } else if (!command.no_browser && !open_browser(address)) {
+        console.note("there is no browser here that could be opened: open the address in one");
+    }
+    return {};
+}
+
+} // namespace
+
+Result<ExitCode> run_view(const ViewCommand& command) {
+    Console console(command.common);
+    Result<GridSource> source = GridSource::open(command.grid, console);
+    if (!source) return source.error();
+    if (!command.field.name.empty())
+        if (const Result<FoundField> found = choose_field(*source, command.field); !found) return found.error();
+    if (!command.color_by.empty())
+        if (const Result<FoundField> found = choose_field(*source, {command.color_by, false}); !found)
+            return found.error();
+    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
+    if (!steps) return steps.error();
+    view::ViewerOptions options;
+    options.file = valid_utf8(command.grid.file);
+    options.reading = reading_options(command.grid);
+    options.port = static_cast<std::uint16_t>(command.port);
+    options.hosts = command.hosts;
+    options.version = ISOTET_VERSION;
+    options.keep = command.keep;
+    options.threads = command.common.threads;
+    options.read = [&](const Run& run) { return read_input(command, *source, steps->front(), console, run); };
+    auto viewer = view::Viewer::open(std::move(options));
+    if (!viewer) return viewer.error();
+    if (Result<void> told = tell_address(command, **viewer, console); !told) return told.error();
+    if (Result<void> served = (*viewer)->run(stop_requested); !served) return served.error();
+    return ExitCode::done;
+}
+
+} // namespace isotet::cli

@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What stands above the slider: how a field's values are spread, and how large surfaces will be.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <isotet/plan.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::view {
+
+/// `lower`, `upper`   of the finite values; lower > upper where there is none
+/// `points`           values in each of `bins` equal parts of the range, of about a million of them
+/// `triangles`        expected of isovalues at the middles of the parts
+/// `first`            an isovalue to begin with: half of all triangles of the chart are below it; a short decimal
+struct Chart {
+    static constexpr std::size_t bins = 128;
+    double lower = 1, upper = 0;
+    std::vector<std::uint64_t> points;
+    std::vector<double> triangles;
+    double first = 0;
+    std::uint64_t no_data = 0; ///< values that are NaN
+};
+
+/// Cost     one parallel pass over the values, and up to a million of them again
+/// Errors   as statistics_of() and FieldSample::create()
+Result<Chart> chart_of(const Grid& grid, const PointField& field, const Run& run = {});
+
+} // namespace isotet::view

@@ -1,0 +1,231 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/command_line.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace isotet::view {
+
+namespace {
+
+/// "--name", "value"; one word where the value looks like an option itself.
+void add_option(std::vector<std::string>& words, const std::string& name, const std::string& value) {
+    if (value.starts_with('-')) words.push_back(name + "=" + value);
+    else words.insert(words.end(), {name, value});
+}
+
+void add_surfaces(std::vector<std::string>& words, const ViewState& state) {
+    if (!state.field.empty()) add_option(words, "--field", state.field);
+    if (!state.isovalues.empty()) add_option(words, "--isovalue", fmt::format("{}", fmt::join(state.isovalues, ",")));
+}
+
+std::vector<std::string> first_words(const char* command, const std::string& file,
+                                     const std::vector<std::string>& reading) {
+    std::vector<std::string> words{"isotet", command, file.starts_with('-') ? "./" + file : file};
+    words.insert(words.end(), reading.begin(), reading.end());
+    return words;
+}
+
+std::optional<double> number_of(std::string_view text) {
+    double value = 0;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value == 0 ? 0 : value;
+}
+
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+    std::vector<double> numbers;
+    while (true) {
+        const std::size_t comma = text.find(',');
+        const auto number = number_of(text.substr(0, comma));
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+        if (comma == std::string_view::npos) return numbers;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+/// What a value of an option does to a state; false: it is not one that the option takes.
+using SetOption = bool (*)(ViewState& state, const std::string& value);
+
+struct PageOption {
+    std::string_view name, short_name;
+    std::string_view rule;
+    SetOption set;
+};
+
+bool set_isovalues(ViewState& state, const std::string& value) {
+    const auto numbers = numbers_of(value);
+    if (!numbers || state.isovalues.size() + numbers->size() > max_isovalues) return false;
+    state.isovalues.insert(state.isovalues.end(), numbers->begin(), numbers->end());
+    return true;
+}
+
+bool set_range(ViewState& state, const std::string& value) {
+    const auto ends = numbers_of(value);
+    if (!ends || ends->size() != 2 || !((*ends)[0] < (*ends)[1])) return false;
+    state.range = ValueRange{(*ends)[0], (*ends)[1]};
+    return true;
+}
+
+bool set_name(std::string& target, const std::string& value) {
+    if (value.size() > max_name_bytes) return false;
+    target = value;
+    return true;
+}
+
+constexpr PageOption page_options[] = {
+    {"--field", "-f", "a name of at most 4096 bytes",
+     [](ViewState& state, const std::string& value) { return set_name(state.field, value); }},
+    {"--isovalue", "-i", "numbers separated by commas, at most 32 of them", set_isovalues},
+    {"--color-by", "", "a name of at most 4096 bytes",
+     [](ViewState& state, const std::string& value) { return set_name(state.color_by, value); }},
+    {"--colormap", "", "a colour map",
+     [](ViewState& state, const std::string& value) {
+         const auto map = parse_color_map(value);
+         if (map) state.map = *map;
+         return map.has_value();
+     }},
+    {"--range", "", "two numbers, the smaller one first", set_range},
+    {"--opacity", "", "a number from 0 to 1",
+     [](ViewState& state, const std::string& value) {
+         state.opacity = number_of(value);
+         return state.opacity && *state.opacity >= 0 && *state.opacity <= 1;
+     }},
+    {"--camera", "", "a camera as isotet render tells it",
+     [](ViewState& state, const std::string& value) {
+         if (value.size() <= max_name_bytes) state.camera = parse_camera(value);
+         return state.camera.has_value();
+     }},
+};
+
+const PageOption* find_option(std::string_view name) {
+    const auto* found = std::ranges::find_if(page_options, [&](const PageOption& option) {
+        return name == option.name || (!option.short_name.empty() && name == option.short_name);
+    });
+    return found == std::end(page_options) ? nullptr : found;
+}
+
+/// A word with its value: "--range=0,1", "-i0.5", or "--range" with the next word.
+struct GivenOption {
+    const PageOption* option = nullptr;
+    std::optional<std::string> value;
+};
+
+GivenOption option_of(const std::string& word) {
+    if (const PageOption* option = find_option(word)) return {option, std::nullopt};
+    const std::size_t equals = word.find('=');
+    if (word.starts_with("--") && equals != std::string::npos)
+        return {find_option(word.substr(0, equals)), word.substr(equals + 1)};
+    if (word.size() > 2 && word[0] == '-' && word[1] != '-') return {find_option(word.substr(0, 2)), word.substr(2)};
+    return {};
+}
+
+bool is_plain(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("_-+.,:/=@%").find(c) != std::string_view::npos;
+}
+
+} // namespace
+
+std::vector<std::string> extract_words(const ViewState& state, const std::string& file,
+                                       const std::vector<std::string>& reading) {
+    std::vector<std::string> words = first_words("extract", file, reading);
+    add_surfaces(words, state);
+    words.insert(words.end(), {"-o", "surface.vtp"});
+    return words;
+}
+
+std::vector<std::string> render_words(const ViewState& state, const std::string& file,
+                                      const std::vector<std::string>& reading) {
+    std::vector<std::string> words = first_words("render", file, reading);
+    add_surfaces(words, state);
+    if (!state.color_by.empty()) add_option(words, "--color-by", state.color_by);
+    if (state.map != ColorMap::viridis) add_option(words, "--colormap", std::string(name_of(state.map)));
+    if (state.range) add_option(words, "--range", fmt::format("{},{}", state.range->lower, state.range->upper));
+    if (state.logarithmic) words.emplace_back("--log");
+    if (state.opacity) add_option(words, "--opacity", fmt::format("{}", *state.opacity));
+    if (state.outline) words.emplace_back("--outline");
+    if (state.camera) add_option(words, "--camera", to_text(*state.camera));
+    words.insert(words.end(), {"-o", "picture.png"});
+    return words;
+}
+
+std::string shell_text(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) {
+        if (!text.empty()) text += ' ';
+        if (!word.empty() && std::ranges::all_of(word, is_plain)) {
+            text += word;
+            continue;
+        }
+        text += '\'';
+        for (const char c : word) {
+            if (c == '\'') text += "'\\''";
+            else text += c;
+        }
+        text += '\'';
+    }
+    return text;
+}
+
+Result<std::vector<std::string>> shell_words(std::string_view text) {
+    std::vector<std::string> words;
+    std::string word;
+    bool in_word = false;
+    char quote = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quote == 0 && (c == ' ' || c == '\t' || c == '\n' || c == '\r')) {
+            if (in_word) words.push_back(std::move(word));
+            word.clear();
+            in_word = false;
+            continue;
+        }
+        if (c == '\\' && quote != '\'' && i + 1 < text.size() && text[i + 1] == '\n') { // the line goes on
+            ++i;
+            continue;
+        }
+        in_word = true;
+        if (quote == 0 && (c == '\'' || c == '"')) quote = c;
+        else if (c == quote && quote != 0) quote = 0;
+        else if (c == '\\' && quote != '\'') {
+            if (++i == text.size())
+                return Error{ErrorCode::invalid_argument, "the command line ends in \\, which takes another character"};
+            if (quote == '"' && std::string_view("$`\"\\").find(text[i]) == std::string_view::npos) word += '\\';
+            word += text[i];
+        } else word += c;
+    }
+    if (quote != 0)
+        return Error{ErrorCode::invalid_argument, fmt::format("the command line has a {} without its end", quote)};
+    if (in_word) words.push_back(std::move(word));
+    return words;
+}
+
+Result<ViewState> state_of_command(std::string_view text) {
+    const Result<std::vector<std::string>> words = shell_words(text);
+    if (!words) return words.error();
+    ViewState state;
+    for (std::size_t i = 0; i < words->size(); ++i) {
+        const std::string& word = (*words)[i];
+        if (word == "--") break;
+        state.logarithmic = state.logarithmic || word == "--log";
+        state.outline = state.outline || word == "--outline";
+        const auto [option, attached] = option_of(word);
+        if (!option) continue;
+        if (!attached && i + 1 == words->size())
+            return Error{ErrorCode::invalid_argument, fmt::format("{} takes {}", word, option->rule)};
+        const std::string value = attached ? *attached : (*words)[++i];
+        if (!option->set(state, value))
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("{} got '{}', but it takes {}", option->name, value, option->rule)};
+    }
+    return state;
+}
+
+} // namespace isotet::view

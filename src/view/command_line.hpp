@@ -1,0 +1,35 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A state as a command line that gives the same, and back.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/result.hpp>
+
+#include "view/state.hpp"
+
+namespace isotet::view {
+
+/// The words of `isotet render FILE ...`, and of `isotet extract FILE ...`, which has what a surface is made of alone.
+/// `reading`   options that say how the file is read, such as {"--step", "3"}; they stand behind FILE
+std::vector<std::string> render_words(const ViewState& state, const std::string& file,
+                                      const std::vector<std::string>& reading = {});
+std::vector<std::string> extract_words(const ViewState& state, const std::string& file,
+                                       const std::vector<std::string>& reading = {});
+
+/// Words as a shell takes them, quoted where they must be.
+std::string shell_text(const std::vector<std::string>& words);
+
+/// The words of a text by the rules of a shell: blanks, '...', "..." and \. Nothing is expanded.
+/// Errors   invalid_argument when a quotation does not end
+Result<std::vector<std::string>> shell_words(std::string_view text);
+
+/// The state that a command line for render or extract asks for. Options that the page does not have, FILE and OUT are
+/// passed over.
+///
+/// Errors   invalid_argument: an option of the page without its value, or with one that it does not take
+Result<ViewState> state_of_command(std::string_view text);
+
+} // namespace isotet::view

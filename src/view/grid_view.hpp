@@ -1,0 +1,95 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A grid as pages look at it: frames and charts, by the session of the library.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/camera.hpp>
+#include <isotet/contour.hpp>
+
+#include "view/messages.hpp"
+
+namespace isotet::view {
+
+/// A name that find_field() takes, as pages offer it.
+struct OfferedField {
+    std::string name;
+    Association association = Association::point;
+};
+
+/// Scalar fields, components and magnitudes of vectors; the coordinates where there is no field.
+std::vector<OfferedField> offered_fields(const Grid& grid);
+
+struct GridViewOptions {
+    std::size_t preview_triangles = 150'000; ///< of a surface while a hand moves
+    std::size_t max_triangles = 8'000'000; ///< of a surface that a page is sent; larger ones are previews of that size
+    int threads = 0;                       ///< at most; 0: all
+};
+
+/// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
+struct Frame {
+    std::string bytes;
+    bool preview = false;
+};
+
+/// Threads   pack() beside one other call; all else one call at a time
+class GridView {
+public:
+    /// Errors   as statistics_of(); the grid is kept, since other fields need it
+    static Result<std::unique_ptr<GridView>> create(Grid grid, const GridViewOptions& options = {});
+
+    const std::vector<OfferedField>& fields() const noexcept { return fields_; }
+    const Box& bounds() const noexcept { return bounds_; }
+    std::uint64_t points() const noexcept { return grid_.points.tuples(); }
+    std::uint64_t cells() const noexcept { return grid_.cells.count(); }
+
+    /// Packs the grid for `field`. frame() extracts directly until then, and from the packed grid afterwards.
+    /// Errors   as Contour::prepare(); frame() then goes on directly
+    Result<void> pack(const std::string& field, const Run& run);
+
+    /// The surfaces of a state. Those whose keys are in `known` are not sent again; `known` becomes those of this frame.
+    ///
+    /// Errors   as find_field() and Contour::extract(); cancelled. `known` is then as before
+    Result<Frame> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                        const Run& run);
+
+    Result<Chart> chart(const std::string& field, const Run& run);
+
+private:
+    /// A mesh of a surface, in full.
+    struct Kept {
+        std::string key;
+        std::shared_ptr<const Mesh> mesh;
+        bool used = false; ///< by the frame that is made
+    };
+    /// The session that surfaces come from, and what it was set to.
+    struct Source {
+        std::optional<Contour> contour;
+        std::string field, color_by;
+    };
+
+    GridView() = default;
+    Result<PointField> field_of(const std::string& name, const Run& run);
+    Result<ContourInput> input_of(const std::string& field, const std::string& color_by, const Run& run);
+    Result<std::optional<ColorScale>> scale_of(const ViewState& state, const Run& run);
+    Result<Source*> source_for(const ViewState& state, const Run& run);
+    Result<std::shared_ptr<const Mesh>> mesh_at(Source& source, double isovalue, const std::string& key,
+                                                const std::optional<ColorScale>& scale, FrameFacts& facts,
+                                                const Run& run);
+
+    Grid grid_;
+    GridViewOptions options_;
+    std::vector<OfferedField> fields_;
+    Box bounds_;
+    std::map<std::string, PointField> found_; ///< fields that were asked for
+    std::vector<Kept> kept_;                  ///< of the last frame
+    Source direct_, packed_;
+    std::atomic<bool> is_packed_{false};
+};
+
+} // namespace isotet::view

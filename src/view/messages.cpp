@@ -1,0 +1,177 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#include <fmt/format.h>
+
+namespace isotet::view {
+
+namespace {
+
+Error wrong_message(std::string_view sentence) {
+    return {ErrorCode::invalid_argument, fmt::format("a message of the page: {}", sentence)};
+}
+
+/// A text of a message; nothing where it is none or too long.
+std::optional<std::string> message_text(const Json& json, std::string_view key, std::size_t most) {
+    const Json* value = find(json, key);
+    const std::string* found = value ? text(*value) : nullptr;
+    if (!found || found->size() > most) return std::nullopt;
+    return *found;
+}
+
+Result<ViewState> message_state(const Json& json) {
+    const Json* state = find(json, "state");
+    if (!state) return wrong_message("\"state\" is missing");
+    return state_of(*state);
+}
+
+std::optional<std::uint64_t> message_number(const Json& json) {
+    const Json* number = find(json, "number");
+    return number ? whole_number(*number) : std::nullopt;
+}
+
+Result<PageMessage> parse_show(const Json& json) {
+    const auto number = message_number(json);
+    if (!number) return wrong_message("\"number\" takes a whole number");
+    Result<ViewState> state = message_state(json);
+    if (!state) return state.error();
+    ShowMessage message;
+    message.number = *number;
+    message.state = *std::move(state);
+    const Json* moving = find(json, "moving");
+    message.moving = moving && moving->is_boolean() && moving->get<bool>();
+    if (const Json* preview = find(json, "preview")) message.preview = whole_number(*preview);
+    return PageMessage(std::move(message));
+}
+
+Result<PageMessage> parse_known(const std::string& action, const Json& json) {
+    constexpr std::size_t max_command_bytes = 32'768;
+    if (action == "hello") {
+        auto token = message_text(json, "token", 256);
+        if (token) return PageMessage(HelloMessage{*std::move(token)});
+        return wrong_message("\"token\" takes a text");
+    }
+    if (action == "show") return parse_show(json);
+    if (action == "shown") {
+        if (const auto number = message_number(json)) return PageMessage(ShownMessage{*number});
+        return wrong_message("\"number\" takes a whole number");
+    }
+    if (action == "chart") {
+        auto field = message_text(json, "field", max_name_bytes);
+        if (field) return PageMessage(ChartMessage{*std::move(field)});
+        return wrong_message("\"field\" takes a name");
+    }
+    if (action == "command") {
+        Result<ViewState> state = message_state(json);
+        if (!state) return state.error();
+        return PageMessage(CommandMessage{*std::move(state)});
+    }
+    if (action == "paste") {
+        auto command = message_text(json, "text", max_command_bytes);
+        if (command) return PageMessage(PasteMessage{*std::move(command)});
+        return wrong_message("\"text\" takes a command line");
+    }
+    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste");
+}
+
+double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
+
+Json corner_json(const std::array<double, 3>& corner) { return {corner[0], corner[1], corner[2]}; }
+
+Json surface_json(const FrameSurface& surface, Blocks& blocks) {
+    Json json = {{"key", surface.key},
+                 {"isovalue", surface.isovalue},
+                 {"color", color_text(surface.color)},
+                 {"triangles", surface.triangles}};
+    if (!surface.mesh) return json;
+    const Mesh& mesh = *surface.mesh;
+    const MeshPlaces places = add_mesh(mesh, blocks);
+    Json& drawn = json["mesh"];
+    drawn = {
+        {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangle_count()}, {"vertices_at", places.vertices}};
+    if (!mesh.flat) drawn["corners_at"] = places.corners;
+    drawn["wide"] = places.wide;
+    if (places.colors) drawn["colors_at"] = *places.colors;
+    if (!mesh.box.empty()) {
+        drawn["lower"] = corner_json(mesh.box.lower);
+        drawn["upper"] = corner_json(mesh.box.upper);
+    }
+    return json;
+}
+
+} // namespace
+
+Result<PageMessage> parse_page_message(std::string_view message) {
+    try {
+        const std::optional<Json> json = parse_json(message);
+        if (!json) return wrong_message("it is not JSON");
+        const auto action = message_text(*json, "do", 32);
+        if (!action) return wrong_message("\"do\" is missing");
+        return parse_known(*action, *json);
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::out_of_memory, "there is too little memory for a message of the page"};
+    }
+}
+
+std::string color_text(const Color& color) {
+    const auto part = [](float value) { return std::lround(std::clamp(value, 0.0F, 1.0F) * 255); };
+    return fmt::format("#{:02x}{:02x}{:02x}", part(color.red), part(color.green), part(color.blue));
+}
+
+std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>& surfaces) {
+    Blocks blocks;
+    Json head = {{"number", facts.number},
+                 {"preview", facts.preview},
+                 {"method", facts.method},
+                 {"extract_ms", milliseconds(facts.extract_seconds)},
+                 {"mesh_ms", milliseconds(facts.mesh_seconds)},
+                 {"wait_ms", milliseconds(facts.wait_seconds)},
+                 {"notes", facts.notes}};
+    if (facts.scale)
+        head["scale"] = {{"lower", facts.scale->lower},
+                         {"upper", facts.scale->upper},
+                         {"logarithmic", facts.scale->logarithmic},
+                         {"no_data", color_text(facts.scale->no_data)}};
+    Json& list = head["surfaces"] = Json::array();
+    for (const FrameSurface& surface : surfaces) list.push_back(surface_json(surface, blocks));
+    const std::string text = text_of(head);
+    const auto head_bytes = static_cast<std::uint32_t>(text.size());
+    std::string bytes;
+    bytes.reserve(text.size() + blocks.bytes().size() + 16);
+    bytes += "isof";
+    bytes.append(reinterpret_cast<const char*>(&head_bytes), sizeof(head_bytes));
+    bytes += text;
+    bytes.resize((bytes.size() + 7) / 8 * 8);
+    bytes += blocks.bytes();
+    return bytes;
+}
+
+std::string progress_text(std::string_view step, double fraction) {
+    return text_of({{"say", "progress"}, {"step", step}, {"fraction", fraction}});
+}
+
+std::string refusal_text(std::uint64_t number, std::string_view sentence) {
+    return text_of({{"say", "refused"}, {"number", number}, {"sentence", sentence}});
+}
+
+std::string error_text(std::string_view about, std::string_view sentence) {
+    return text_of({{"say", "error"}, {"about", about}, {"sentence", sentence}});
+}
+
+std::string chart_text(const std::string& field, const Chart& chart) {
+    return text_of({{"say", "chart"},
+                    {"field", field},
+                    {"lower", chart.lower},
+                    {"upper", chart.upper},
+                    {"points", chart.points},
+                    {"triangles", chart.triangles},
+                    {"first", chart.first},
+                    {"no_data", chart.no_data}});
+}
+
+} // namespace isotet::view

@@ -1,0 +1,90 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a page and the server say to each other: text in JSON, and frames with surfaces in bytes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <isotet/result.hpp>
+
+#include "view/chart.hpp"
+#include "view/json.hpp"
+#include "view/mesh.hpp"
+#include "view/state.hpp"
+
+namespace isotet::view {
+
+/// {"do": "hello", "token": ...}: the first message of a page.
+struct HelloMessage {
+    std::string token;
+};
+
+/// {"do": "show", "number": n, "state": ..., "moving": true, "preview": N}: what the page wants to see. `number` grows.
+struct ShowMessage {
+    std::uint64_t number = 0;
+    ViewState state;
+    bool moving = false;                  ///< a preview will do
+    std::optional<std::uint64_t> preview; ///< triangles that the page draws quickly; nothing: the server's limit
+};
+
+/// {"do": "shown", "number": n}: the page has drawn frame n.
+struct ShownMessage {
+    std::uint64_t number = 0;
+};
+
+/// {"do": "chart", "field": name}
+struct ChartMessage {
+    std::string field;
+};
+
+/// {"do": "command", "state": ...}: the state as command lines.
+struct CommandMessage {
+    ViewState state;
+};
+
+/// {"do": "paste", "text": ...}: the state of a command line.
+struct PasteMessage {
+    std::string text;
+};
+
+using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage>;
+
+/// Any bytes from a page. Errors   invalid_argument
+Result<PageMessage> parse_page_message(std::string_view text);
+
+/// One surface of a frame. With `mesh` null the page has it from a frame before.
+struct FrameSurface {
+    std::string key; ///< the same for the same mesh
+    double isovalue = 0;
+    Color color; ///< that isotet render would give it
+    const Mesh* mesh = nullptr;
+    std::uint64_t triangles = 0; ///< of the surface, also where the mesh is a preview
+};
+
+/// What a page is told about a frame.
+struct FrameFacts {
+    std::uint64_t number = 0; ///< of the ShowMessage
+    bool preview = false;     ///< of at least one of the meshes
+    std::string method;       ///< "direct" or "clusters"
+    double extract_seconds = 0, mesh_seconds = 0, wait_seconds = 0;
+    std::optional<ColorScale> scale; ///< of values on the surfaces
+    std::vector<std::string> notes;
+};
+
+/// A frame in bytes: "isof", the bytes of its head (uint32), the head (JSON), then from the next multiple of 8 on the blocks
+/// that the head tells of.
+std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>& surfaces);
+
+std::string progress_text(std::string_view step, double fraction);
+std::string refusal_text(std::uint64_t number, std::string_view sentence);
+std::string error_text(std::string_view about, std::string_view sentence);
+std::string chart_text(const std::string& field, const Chart& chart);
+
+/// "#rrggbb"
+std::string color_text(const Color& color);
+
+} // namespace isotet::view

@@ -1,0 +1,112 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/state.hpp"
+
+#include <fmt/format.h>
+
+namespace isotet::view {
+
+namespace {
+
+Error wrong_state(std::string_view key, std::string_view rule) {
+    return {ErrorCode::invalid_argument, fmt::format("\"{}\" of a state takes {}", key, rule)};
+}
+
+/// Reads the keys of one object; the first error stays.
+class StateReader {
+public:
+    explicit StateReader(const Json& json) : json_(json) {}
+
+    void read_text(const char* key, std::string& target) {
+        read(key, "a text of at most 4096 bytes", [&](const Json& value) {
+            const std::string* found = text(value);
+            if (!found || found->size() > max_name_bytes) return false;
+            target = *found;
+            return true;
+        });
+    }
+    void read_flag(const char* key, bool& target) {
+        read(key, "true or false", [&](const Json& value) {
+            if (!value.is_boolean()) return false;
+            target = value.get<bool>();
+            return true;
+        });
+    }
+    template <class Take>
+    void read(const char* key, std::string_view rule, const Take& take) {
+        const Json* value = find(json_, key);
+        if (!error_ && value && !take(*value)) error_ = wrong_state(key, rule);
+    }
+    const std::optional<Error>& error() const { return error_; }
+
+private:
+    const Json& json_;
+    std::optional<Error> error_;
+};
+
+bool take_numbers(const Json& value, std::size_t most, std::vector<double>& numbers) {
+    if (!value.is_array() || value.size() > most) return false;
+    for (const Json& one : value) {
+        const auto number = finite_number(one);
+        if (!number) return false;
+        numbers.push_back(*number == 0 ? 0 : *number); // -0 equals +0, and is called 0
+    }
+    return true;
+}
+
+} // namespace
+
+bool operator==(const ViewState& a, const ViewState& b) {
+    const auto range = [](const ViewState& s) {
+        return s.range ? std::vector<double>{s.range->lower, s.range->upper} : std::vector<double>();
+    };
+    const auto camera = [](const ViewState& s) { return s.camera ? to_text(*s.camera) : std::string(); };
+    return a.field == b.field && a.isovalues == b.isovalues && a.color_by == b.color_by && a.map == b.map &&
+           range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
+           camera(a) == camera(b);
+}
+
+Json to_json(const ViewState& state) {
+    Json json = {{"field", state.field},      {"isovalues", state.isovalues},     {"color_by", state.color_by},
+                 {"map", name_of(state.map)}, {"logarithmic", state.logarithmic}, {"outline", state.outline}};
+    if (state.range) json["range"] = {state.range->lower, state.range->upper};
+    if (state.opacity) json["opacity"] = *state.opacity;
+    if (state.camera) json["camera"] = to_text(*state.camera);
+    return json;
+}
+
+Result<ViewState> state_of(const Json& json) {
+    if (!json.is_object()) return Error{ErrorCode::invalid_argument, "a state is an object"};
+    ViewState state;
+    StateReader reader(json);
+    reader.read_text("field", state.field);
+    reader.read_text("color_by", state.color_by);
+    reader.read_flag("logarithmic", state.logarithmic);
+    reader.read_flag("outline", state.outline);
+    reader.read("isovalues", fmt::format("at most {} finite numbers", max_isovalues),
+                [&](const Json& value) { return take_numbers(value, max_isovalues, state.isovalues); });
+    reader.read("map", "the name of a colour map", [&](const Json& value) {
+        const std::string* name = text(value);
+        const auto map = name ? parse_color_map(*name) : std::nullopt;
+        if (map) state.map = *map;
+        return map.has_value();
+    });
+    reader.read("range", "two numbers, the smaller one first", [&](const Json& value) {
+        std::vector<double> ends;
+        if (!take_numbers(value, 2, ends) || ends.size() != 2 || !(ends[0] < ends[1])) return false;
+        state.range = ValueRange{ends[0], ends[1]};
+        return true;
+    });
+    reader.read("opacity", "a number from 0 to 1", [&](const Json& value) {
+        state.opacity = finite_number(value);
+        return state.opacity && *state.opacity >= 0 && *state.opacity <= 1;
+    });
+    reader.read("camera", "a camera as text", [&](const Json& value) {
+        const std::string* camera = text(value);
+        if (camera && camera->size() <= max_name_bytes) state.camera = parse_camera(*camera);
+        return state.camera.has_value();
+    });
+    if (reader.error()) return *reader.error();
+    return state;
+}
+
+} // namespace isotet::view

@@ -1,0 +1,43 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a page shows: a small value that `isotet render` has options for.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/camera.hpp>
+#include <isotet/field_statistics.hpp>
+#include <isotet/result.hpp>
+#include <isotet/scene.hpp>
+
+#include "view/json.hpp"
+
+namespace isotet::view {
+
+inline constexpr std::size_t max_isovalues = 32;
+inline constexpr std::size_t max_name_bytes = 4096;
+
+struct ViewState {
+    std::string field;             ///< as find_field() takes it
+    std::vector<double> isovalues; ///< the one that the slider moves, then the pinned ones
+    std::string color_by;          ///< a point or cell field; empty: a colour a surface
+    ColorMap map = ColorMap::viridis;
+    std::optional<ValueRange> range; ///< values at the ends of the map, lower < upper; nothing: the field's
+    bool logarithmic = false;
+    std::optional<double> opacity; ///< 0 to 1, of all surfaces; nothing: as render chooses
+    bool outline = false;
+    std::optional<Camera> camera;
+};
+
+bool operator==(const ViewState& a, const ViewState& b);
+
+/// A state as messages hold it, and back. Keys that are left out have the values above.
+///
+/// Errors   invalid_argument: a key of another type, more than `max_isovalues`, a number that is not finite or out of
+///          its range, a text that is too long, a camera or a map that is none
+Json to_json(const ViewState& state);
+Result<ViewState> state_of(const Json& json);
+
+} // namespace isotet::view

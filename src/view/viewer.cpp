@@ -1,0 +1,313 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/viewer.hpp"
+
+#include <array>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include "view/command_line.hpp"
+#include "view/grid_view.hpp"
+#include "view/page.hpp"
+#include "view/server.hpp"
+#include "view/worker.hpp"
+
+namespace isotet::view {
+
+namespace {
+
+constexpr double hello_seconds = 5; ///< within which a page says its token
+
+double now_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Takes the same time wherever they differ.
+bool is_same_token(const std::string& a, const std::string& b) {
+    unsigned different = a.size() == b.size() ? 0 : 1;
+    for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
+        different |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+    return different == 0;
+}
+
+class GridFrames : public FrameMaker {
+public:
+    GridFrames(GridView& view, int threads) : view_(view), threads_(threads) {}
+    Result<std::string> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                              const Run& run) override {
+        Result<Frame> frame = view_.frame(message, wait_seconds, known, {threads_, run.progress});
+        if (!frame) return frame.error();
+        return std::move(frame->bytes);
+    }
+    Result<std::string> chart(const std::string& field, const Run& run) override {
+        const Result<Chart> chart = view_.chart(field, {threads_, run.progress});
+        if (!chart) return chart.error();
+        return chart_text(field, *chart);
+    }
+
+private:
+    GridView& view_;
+    int threads_;
+};
+
+/// 64 colours of each map, "rrggbb" one after another.
+Json maps_json() {
+    constexpr int colors = 64;
+    Json maps = Json::object();
+    for (const ColorMap map :
+         {ColorMap::viridis, ColorMap::cividis, ColorMap::plasma, ColorMap::turbo, ColorMap::cool_warm}) {
+        std::string text;
+        for (int i = 0; i < colors; ++i) text += color_text(color_at(map, i / (colors - 1.0))).substr(1);
+        maps[std::string(name_of(map))] = text;
+    }
+    return maps;
+}
+
+} // namespace
+
+Result<std::string> random_token() {
+    std::array<unsigned char, 16> bytes{};
+    if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+        return Error{ErrorCode::system, "the system gives no random numbers for the token of the page"};
+    std::string token;
+    for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+    return token;
+}
+
+struct Viewer::Data {
+    ViewerOptions options;
+    std::optional<Server> server;
+    std::atomic<bool> stop{false}; ///< of reading and packing
+    const std::atomic<bool>* asked_to_stop = nullptr;
+
+    /// Who is connected: `admitted` once the token was right.
+    struct Page {
+        bool admitted = false;
+        double since = 0;
+    };
+    std::map<ConnectionNumber, Page> pages; ///< of the server's thread
+    std::optional<double> alone_since;      ///< when the last admitted page went; nothing before the first came
+
+    std::mutex news_mutex; ///< of what the reading thread tells
+    std::string progress;
+    bool news = false;
+    std::string grid_text; ///< once it is read
+    bool grid_is_new = false;
+    std::optional<Error> failure;
+    double failed_at = 0;
+
+    std::unique_ptr<GridView> view;
+    std::optional<Worker> worker;
+    std::thread reader;
+
+    void start();
+    void read_and_pack();
+    void tell_progress(std::string_view step, double fraction);
+    void set_grid(const ViewerInput& input);
+    void set_failure(const Error& error);
+
+    void take_message(ConnectionNumber from, std::string_view text);
+    void take_hello(ConnectionNumber from, const HelloMessage& message);
+    void answer(ConnectionNumber from, PageMessage message);
+    void page_closed(ConnectionNumber which);
+    bool tick();
+    std::size_t admitted() const;
+};
+
+void Viewer::Data::tell_progress(std::string_view step, double fraction) {
+    const std::lock_guard lock(news_mutex);
+    progress = progress_text(step, fraction);
+    news = true;
+}
+
+void Viewer::Data::set_grid(const ViewerInput& input) {
+    Json fields = Json::array();
+    for (const OfferedField& field : view->fields())
+        fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
+    Json grid = {{"say", "grid"},          {"file", options.file},        {"points", view->points()},
+                 {"cells", view->cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
+                 {"notes", input.notes}};
+    const Box& box = view->bounds();
+    if (!box.empty()) {
+        grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
+        grid["upper"] = {box.upper[0], box.upper[1], box.upper[2]};
+    }
+    const std::lock_guard lock(news_mutex);
+    grid_text = text_of(grid);
+    grid_is_new = true;
+}
+
+void Viewer::Data::set_failure(const Error& error) {
+    const std::lock_guard lock(news_mutex);
+    failure = error;
+    failed_at = now_seconds();
+    grid_text = error_text("file", error.message);
+    grid_is_new = true;
+}
+
+/// The reading thread: the first surfaces come while it packs.
+void Viewer::Data::read_and_pack() {
+    Run run;
+    run.threads = options.threads;
+    run.progress.cancel = &stop;
+    run.progress.report = [this](std::string_view step, double fraction) { tell_progress(step, fraction); };
+    tell_progress("read", 0);
+    Result<ViewerInput> input = options.read(run);
+    if (!input) return set_failure(input.error());
+    Result<std::unique_ptr<GridView>> made =
+        GridView::create(std::move(input->grid), GridViewOptions{.threads = options.threads});
+    if (!made) return set_failure(made.error());
+    view = *std::move(made);
+    set_grid(*input);
+    worker->start(std::make_shared<GridFrames>(*view, options.threads));
+    tell_progress("pack", 0);
+    const Result<void> packed = view->pack(input->state.field, run);
+    tell_progress(packed ? "ready" : "not packed: " + packed.error().message, 1);
+}
+
+void Viewer::Data::start() {
+    worker.emplace(
+        WorkerOutput{[this](PageNumber page, std::string bytes) { server->send_bytes(page, std::move(bytes)); },
+                     [this](PageNumber page, std::string text) { server->send_text(page, std::move(text)); }},
+        now_seconds);
+    reader = std::thread([this] { read_and_pack(); });
+}
+
+std::size_t Viewer::Data::admitted() const {
+    std::size_t count = 0;
+    for (const auto& [number, page] : pages) count += page.admitted ? 1 : 0;
+    return count;
+}
+
+void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message) {
+    const auto refuse = [&](std::string_view about, std::string_view sentence) {
+        server->send_text(from, error_text(about, sentence));
+        server->close(from);
+    };
+    if (!is_same_token(message.token, options.token))
+        return refuse("token", "This address is of an earlier run: open the one that isotet view printed last.");
+    if (admitted() >= options.max_pages)
+        return refuse("pages", fmt::format("{} pages are open already, which is the limit.", options.max_pages));
+    pages[from].admitted = true;
+    alone_since.reset();
+    worker->add_page(from);
+    server->send_text(
+        from,
+        text_of({{"say", "welcome"}, {"version", options.version}, {"file", options.file}, {"maps", maps_json()}}));
+    const std::lock_guard lock(news_mutex);
+    if (!grid_text.empty()) server->send_text(from, grid_text);
+    if (!progress.empty()) server->send_text(from, progress);
+}
+
+void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
+    if (auto* show = std::get_if<ShowMessage>(&message)) worker->wish(from, std::move(*show));
+    else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
+    else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
+    else if (const auto* command = std::get_if<CommandMessage>(&message)) {
+        server->send_text(
+            from, text_of({{"say", "command"},
+                           {"render", shell_text(render_words(command->state, options.file, options.reading))},
+                           {"extract", shell_text(extract_words(command->state, options.file, options.reading))}}));
+    } else if (const auto* paste = std::get_if<PasteMessage>(&message)) {
+        const Result<ViewState> state = state_of_command(paste->text);
+        server->send_text(from, state ? text_of({{"say", "state"}, {"state", to_json(*state)}})
+                                      : error_text("paste", state.error().message));
+    }
+}
+
+void Viewer::Data::take_message(ConnectionNumber from, std::string_view text) {
+    const auto page = pages.find(from);
+    if (page == pages.end()) return;
+    Result<PageMessage> message = parse_page_message(text);
+    if (!message) {
+        server->send_text(from, error_text("message", message.error().message));
+        if (!page->second.admitted) server->close(from);
+        return;
+    }
+    const auto* hello = std::get_if<HelloMessage>(&*message);
+    if (page->second.admitted) {
+        if (!hello) answer(from, *std::move(message));
+    } else if (hello) take_hello(from, *hello);
+    else server->close(from);
+}
+
+void Viewer::Data::page_closed(ConnectionNumber which) {
+    const auto page = pages.find(which);
+    if (page == pages.end()) return;
+    const bool was_admitted = page->second.admitted;
+    pages.erase(page);
+    if (!was_admitted) return;
+    worker->remove_page(which);
+    if (admitted() == 0) alone_since = now_seconds();
+}
+
+bool Viewer::Data::tick() {
+    worker->look_for_stale_work();
+    constexpr double last_words = 1; // seconds after a failure, for pages to be told
+    const double now = now_seconds();
+    bool failed = false;
+    for (const auto& [number, page] : pages)
+        if (!page.admitted && now - page.since > hello_seconds) server->close(number);
+    {
+        const std::lock_guard lock(news_mutex);
+        failed = failure && now - failed_at > last_words;
+        const bool tell_grid = std::exchange(grid_is_new, false), tell_news = std::exchange(news, false);
+        for (const auto& [number, page] : pages) {
+            if (page.admitted && tell_grid) server->send_text(number, grid_text);
+            if (page.admitted && tell_news) server->send_news(number, progress);
+        }
+    }
+    const bool lingered = alone_since && now - *alone_since > options.linger_seconds && !options.keep;
+    return !*asked_to_stop && !lingered && !failed;
+}
+
+Viewer::Viewer(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Viewer::~Viewer() = default;
+
+Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
+    auto data = std::make_unique<Data>();
+    data->options = std::move(options);
+    if (data->options.token.empty()) {
+        Result<std::string> token = random_token();
+        if (!token) return token.error();
+        data->options.token = *std::move(token);
+    }
+    ServerOptions server_options;
+    server_options.port = data->options.port;
+    server_options.hosts = data->options.hosts;
+    server_options.files = page_files();
+    Data* all = data.get();
+    ServerEvents events;
+    events.opened = [all](ConnectionNumber which) { all->pages[which] = {false, now_seconds()}; };
+    events.message = [all](ConnectionNumber from, std::string_view text) { all->take_message(from, text); };
+    events.closed = [all](ConnectionNumber which) { all->page_closed(which); };
+    events.tick = [all] { return all->tick(); };
+    Result<Server> server = Server::open(std::move(server_options), std::move(events));
+    if (!server) return server.error();
+    data->server = *std::move(server);
+    return std::unique_ptr<Viewer>(new Viewer(std::move(data)));
+}
+
+std::uint16_t Viewer::port() const noexcept { return data_->server->port(); }
+
+std::string Viewer::address() const { return fmt::format("http://127.0.0.1:{}/#{}", port(), data_->options.token); }
+
+Result<void> Viewer::run(const std::atomic<bool>& stop) {
+    data_->asked_to_stop = &stop;
+    data_->start();
+    data_->server->run();
+    data_->stop = true; // of reading and packing
+    data_->reader.join();
+    data_->worker.reset();
+    const std::lock_guard lock(data_->news_mutex);
+    if (data_->failure && data_->failure->code != ErrorCode::cancelled) return *data_->failure;
+    return {};
+}
+
+} // namespace isotet::view

@@ -1,0 +1,65 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A grid in the browser: server, worker and grid together.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+#include "view/state.hpp"
+
+namespace isotet::view {
+
+/// What a page can look at, once it is read.
+struct ViewerInput {
+    Grid grid;
+    ViewState state; ///< to begin with; no isovalues: Chart::first
+    std::vector<std::string> notes;
+};
+
+struct ViewerOptions {
+    std::string file;                                    ///< as the command line names it
+    std::vector<std::string> reading;                    ///< options of the command line that say how it is read
+    std::uint16_t port = 0;                              ///< 0: a free one
+    std::vector<std::string> hosts;                      ///< as ServerOptions::hosts
+    std::string version;                                 ///< shown by the page
+    std::string token;                                   ///< empty: 128 bits of the system's random numbers
+    bool keep = false;                                   ///< goes on when the last page was closed
+    double linger_seconds = 60;                          ///< after the last page was closed, without `keep`
+    std::size_t max_pages = 4;                           ///< at once
+    int threads = 0;                                     ///< at most; 0: all
+    std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
+};
+
+/// 128 random bits as 32 hexadecimal digits. Errors   system
+Result<std::string> random_token();
+
+class Viewer {
+public:
+    /// Opens the port; nothing is read yet. Errors   system
+    static Result<std::unique_ptr<Viewer>> open(ViewerOptions options);
+    ~Viewer();
+
+    /// "http://127.0.0.1:PORT/#TOKEN"
+    std::string address() const;
+    std::uint16_t port() const noexcept;
+
+    /// Serves pages, reads the file and packs it meanwhile, until `stop`, or until the last page is gone for long.
+    ///
+    /// Errors   of reading, which pages were told
+    Result<void> run(const std::atomic<bool>& stop);
+
+private:
+    struct Data;
+    explicit Viewer(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet::view

@@ -1,0 +1,167 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The camera of isotet::Camera: target, direction to the eye, up, distance or height. Vectors are arrays of 3.
+
+export const add = (a, b, t = 1) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => { const l = Math.hypot(...a) || 1; return [a[0] / l, a[1] / l, a[2] / l]; };
+
+function turned(a, axis, angle) {
+  const c = Math.cos(angle), s = Math.sin(angle), k = dot(axis, a) * (1 - c), x = cross(axis, a);
+  return [0, 1, 2].map((i) => a[i] * c + x[i] * s + axis[i] * k);
+}
+
+const views = {
+  front: [[0, -1, 0], [0, 0, 1]], right: [[1, 0, 0], [0, 0, 1]], top: [[0, 0, 1], [0, 1, 0]],
+  oblique: [unit([0.5007, -0.7510, 0.4305]), [0, 0, 1]], // 33.69 degrees to the right, 25.5 upwards
+};
+
+export class Camera {
+  constructor() {
+    this.projection = 'perspective';
+    this.target = [0, 0, 0];
+    this.distance = 1;
+    this.angle = 25;
+    this.height = 1;
+    this.look('oblique');
+  }
+
+  look(name) {
+    const [direction, up] = views[name];
+    this.direction = direction;
+    this.up = unit(add(up, direction, -dot(up, direction)));
+  }
+
+  right() { return cross(this.up, this.direction); }
+
+  /** Half the angle of view, as a tangent. */
+  slope() { return Math.tan(this.angle * Math.PI / 360); }
+
+  /** What the picture shows from its lower to its upper edge, at the depth of a point. */
+  heightAt(point) {
+    if (this.projection === 'parallel') return this.height;
+    const depth = this.distance - dot(add(point, this.target, -1), this.direction);
+    return 2 * Math.max(depth, 1e-6 * this.distance) * this.slope();
+  }
+
+  setProjection(projection) {
+    if (projection === this.projection) return;
+    if (projection === 'parallel') this.height = 2 * this.distance * this.slope();
+    else this.distance = this.height / (2 * this.slope());
+    this.projection = projection;
+  }
+
+  /** Sees all of a box. */
+  fit(lower, upper, aspect, margin = 0.06) {
+    this.target = [0, 1, 2].map((i) => (lower[i] + upper[i]) / 2);
+    const right = this.right(), slope = this.slope(), free = 1 - 2 * margin;
+    let distance = 0, height = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const from = [0, 1, 2].map((i) => (corner >> i & 1 ? upper : lower)[i] - this.target[i]);
+      const x = Math.abs(dot(from, right)), y = Math.abs(dot(from, this.up)), z = dot(from, this.direction);
+      distance = Math.max(distance, z + y / (slope * free), z + x / (slope * aspect * free));
+      height = Math.max(height, 2 * y / free, 2 * x / (aspect * free));
+    }
+    this.distance = distance || 1;
+    this.height = height || 1;
+  }
+
+  /** Turns about a point: to the right about the axis of the world that is nearest to `up`, then upwards. Radians. */
+  orbit(point, azimuth, elevation) {
+    const axis = [0, 0, 0];
+    const most = this.up.map(Math.abs).indexOf(Math.max(...this.up.map(Math.abs)));
+    axis[most] = Math.sign(this.up[most]) || 1;
+    const turn = (around, angle) => {
+      this.direction = unit(turned(this.direction, around, angle));
+      this.up = turned(this.up, around, angle);
+      this.target = add(point, turned(add(this.target, point, -1), around, angle));
+    };
+    turn(axis, azimuth);
+    // Not over the pole: there left and right would change places.
+    const now = Math.asin(Math.max(-1, Math.min(1, dot(this.direction, axis)))), most_up = 89 * Math.PI / 180;
+    turn(this.right(), -(Math.max(-most_up, Math.min(most_up, now + elevation)) - now));
+    this.up = unit(add(this.up, this.direction, -dot(this.up, this.direction)));
+  }
+
+  /** Moves so that a point follows the pointer; shares of the height of the picture, upwards. */
+  pan(point, x, y) {
+    const size = this.heightAt(point);
+    this.target = add(add(this.target, this.right(), -x * size), this.up, -y * size);
+  }
+
+  /** Things `factor` times as large; the point keeps its place in the picture. */
+  zoom(point, factor) {
+    if (this.projection === 'parallel') {
+      this.height /= factor;
+      const away = add(point, this.target, -1);
+      const in_plane = add(away, this.direction, -dot(away, this.direction));
+      this.target = add(this.target, in_plane, 1 - 1 / factor);
+      return;
+    }
+    this.target = add(point, add(this.target, point, -1), 1 / factor);
+    this.distance /= factor;
+  }
+
+  /** The point at the depth of `at` under a place of the picture, -1 to 1 each. */
+  under(x, y, aspect, at) {
+    if (this.projection === 'parallel') {
+      const depth = dot(add(at, this.target, -1), this.direction), half = this.height / 2;
+      return add(add(add(this.target, this.direction, depth), this.right(), x * half * aspect), this.up, y * half);
+    }
+    const eye = add(this.target, this.direction, this.distance);
+    const ray = add(add([0, 0, 0].map((_, i) => -this.direction[i]), this.right(), x * this.slope() * aspect), this.up, y * this.slope());
+    const depth = this.distance - dot(add(at, this.target, -1), this.direction);
+    return add(eye, ray, depth);
+  }
+
+  /** World to clip space, column by column, for a box that is to be between the near and the far plane. */
+  matrix(aspect, lower, upper) {
+    const right = this.right(), {up, direction, target} = this;
+    let near = Infinity, far = -Infinity;
+    for (let corner = 0; corner < 8; ++corner) {
+      const from = [0, 1, 2].map((i) => (corner >> i & 1 ? upper : lower)[i] - target[i]);
+      const depth = this.distance - dot(from, direction);
+      near = Math.min(near, depth);
+      far = Math.max(far, depth);
+    }
+    const pad = 0.01 * (far - near) || 0.01 * this.distance;
+    near -= pad; far += pad;
+    if (this.projection === 'perspective') near = Math.max(near, far * 1e-4, this.distance * 1e-4);
+    far = Math.max(far, near * 1.001 + 1e-30);
+    const rows = [right, up, direction].map((axis) => [...axis, -dot(axis, target)]);
+    rows[2][3] -= this.distance; // depth behind the eye is negative
+    let sx, sy, zz, zw, w;
+    if (this.projection === 'parallel') {
+      sy = 2 / this.height; sx = sy / aspect;
+      zz = -2 / (far - near); zw = -(far + near) / (far - near); w = [0, 0, 0, 1];
+    } else {
+      sy = 1 / this.slope(); sx = sy / aspect;
+      zz = -(far + near) / (far - near); zw = -2 * far * near / (far - near); w = rows[2].map((v) => -v);
+    }
+    const out = [rows[0].map((v) => v * sx), rows[1].map((v) => v * sy), rows[2].map((v, i) => v * zz + (i === 3 ? zw : 0)), w];
+    return {rows: out, near, far};
+  }
+
+  text() {
+    const of = (vector) => vector.map((v) => Number(v.toPrecision(9))).join(',');
+    const head = `${this.projection}:${of(this.target)}:${of(this.direction)}:${of(this.up)}:`;
+    const size = (v) => Number(v.toPrecision(9));
+    return head + (this.projection === 'parallel' ? size(this.height) : `${size(this.distance)}:${size(this.angle)}`);
+  }
+
+  /** False, and nothing changed, where the text is no camera. */
+  set(text) {
+    const [projection, target, direction, up, size, angle] = text.split(':');
+    const vectors = [target, direction, up].map((t) => (t || '').split(',').map(Number));
+    const sizes = projection === 'parallel' ? [Number(size)] : [Number(size), Number(angle)];
+    if (!['parallel', 'perspective'].includes(projection) || vectors.some((v) => v.length !== 3 || !v.every(Number.isFinite)) ||
+        !sizes.every((s) => s > 0)) return false;
+    this.projection = projection;
+    [this.target, this.direction, this.up] = vectors;
+    this.direction = unit(this.direction);
+    this.up = unit(add(this.up, this.direction, -dot(this.up, this.direction)));
+    if (projection === 'parallel') { this.height = sizes[0]; this.distance = this.height / (2 * this.slope()); }
+    else { [this.distance, this.angle] = sizes; this.height = 2 * this.distance * this.slope(); }
+    return true;
+  }
+}

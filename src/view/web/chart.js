@@ -1,0 +1,119 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The slider on the histogram of the field.
+import {roundTo, short} from './format.js';
+
+export class ChartSlider {
+  /** @param on  {input(value): the hand moves; commit(): it rests} */
+  constructor(element, canvas, on) {
+    this.element = element;
+    this.canvas = canvas;
+    this.context = canvas.getContext('2d');
+    this.on = on;
+    this.chart = null;
+    this.value = 0;
+    this.marks = [];
+    element.addEventListener('pointerdown', (event) => {
+      if (!this.chart || event.button !== 0) return;
+      event.preventDefault();
+      element.focus();
+      try { element.setPointerCapture(event.pointerId); } catch { /* a pointer that is up already */ }
+      this.dragging = true;
+      this.take(event);
+    });
+    element.addEventListener('pointermove', (event) => { if (this.dragging) this.take(event); });
+    for (const end of ['pointerup', 'pointercancel'])
+      element.addEventListener(end, () => { if (this.dragging) { this.dragging = false; this.on.commit(); } });
+    element.addEventListener('keydown', (event) => this.key(event));
+    new ResizeObserver(() => this.draw()).observe(element);
+  }
+
+  range() { return this.chart ? this.chart.upper - this.chart.lower : 0; }
+
+  take(event) {
+    const box = this.element.getBoundingClientRect();
+    const part = Math.max(0, Math.min(1, (event.clientX - box.left) / box.width));
+    this.on.input(this.limited(roundTo(this.chart.lower + part * this.range(), this.range())));
+  }
+
+  limited(value) { return Math.max(this.chart.lower, Math.min(this.chart.upper, value)); }
+
+  /** Moves by so many 200ths of the range. */
+  step(steps) {
+    if (!this.chart || !(this.range() > 0)) return;
+    const fine = this.range() * Math.min(1, Math.abs(steps));
+    this.on.input(this.limited(roundTo(this.value + steps * this.range() / 200, fine)));
+    this.on.commit();
+  }
+
+  key(event) {
+    if (!this.chart || event.ctrlKey || event.altKey || event.metaKey) return;
+    const fine = event.shiftKey ? 0.1 : 1;
+    const steps = {ArrowLeft: -fine, ArrowDown: -fine, ArrowRight: fine, ArrowUp: fine, PageUp: 10, PageDown: -10}[event.key];
+    if (steps) this.step(steps);
+    else if (event.key === 'Home' || event.key === 'End') {
+      this.on.input(event.key === 'Home' ? this.chart.lower : this.chart.upper);
+      this.on.commit();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  /** Triangles that are expected at a value; null where nothing is known. */
+  expected(value) {
+    if (!this.chart || !(this.range() > 0)) return null;
+    const {triangles} = this.chart;
+    const at = Math.floor((value - this.chart.lower) / this.range() * triangles.length);
+    return triangles[Math.max(0, Math.min(triangles.length - 1, at))];
+  }
+
+  set(value, marks) {
+    this.value = value;
+    this.marks = marks;
+    const {element} = this;
+    element.setAttribute('aria-valuenow', value);
+    element.setAttribute('aria-valuetext', short(value));
+    if (this.chart) {
+      element.setAttribute('aria-valuemin', this.chart.lower);
+      element.setAttribute('aria-valuemax', this.chart.upper);
+    }
+    this.draw();
+  }
+
+  draw() {
+    const ratio = window.devicePixelRatio || 1, {canvas, context, element} = this;
+    const width = element.clientWidth, height = element.clientHeight;
+    if (width === 0) return;
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    if (!this.chart) return;
+    const style = getComputedStyle(document.documentElement), color = (name) => style.getPropertyValue('--' + name).trim();
+    const base = height - 2, room = height - 14;
+    const {points, triangles} = this.chart;
+    // Square roots: bins with few points stay visible beside a bin with most of them.
+    const most = Math.sqrt(Math.max(1, ...points)), wide = width / points.length;
+    context.fillStyle = color('bars');
+    points.forEach((count, i) => {
+      const tall = room * Math.sqrt(count) / most;
+      if (count > 0) context.fillRect(i * wide, base - Math.max(1, tall), Math.max(1, wide - 0.5), Math.max(1, tall));
+    });
+    const largest = Math.max(1, ...triangles);
+    context.strokeStyle = color('curve');
+    context.lineWidth = 1.5;
+    context.lineJoin = 'round';
+    context.beginPath();
+    triangles.forEach((count, i) => context[i ? 'lineTo' : 'moveTo']((i + 0.5) * wide, base - room * count / largest));
+    context.stroke();
+    const x = (value) => this.range() > 0 ? Math.round((value - this.chart.lower) / this.range() * (width - 2)) + 1 : width / 2;
+    for (const mark of this.marks) {
+      context.fillStyle = mark.color;
+      context.fillRect(x(mark.value) - 1, 10, 2, height - 10);
+    }
+    context.fillStyle = color('accent');
+    context.fillRect(x(this.value) - 1, 4, 2, height - 4);
+    context.beginPath();
+    context.arc(x(this.value), 6, 5, 0, 2 * Math.PI);
+    context.fill();
+  }
+}

@@ -1,0 +1,72 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The WebSocket to the server, opened again whenever it is lost.
+
+export class Link {
+  /** @param on  {text(message), frame(buffer), open(), lost()} */
+  constructor(token, on) {
+    this.token = token;
+    this.on = on;
+    this.delay = 300;
+    this.refused = false;
+    this.ready = false;
+    this.connect();
+    // A machine that wakes up, or a page that is shown again, need not wait for the next attempt.
+    const now = () => { if (!this.refused && !this.ready && this.timer) { clearTimeout(this.timer); this.connect(); } };
+    addEventListener('online', now);
+    document.addEventListener('visibilitychange', () => { if (!document.hidden) now(); });
+  }
+
+  connect() {
+    this.timer = null;
+    const address = new URL('socket', location.href.split('#')[0]);
+    address.protocol = address.protocol.replace('http', 'ws');
+    const socket = this.socket = new WebSocket(address);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => socket.send(JSON.stringify({do: 'hello', token: this.token}));
+    socket.onmessage = (event) => {
+      if (typeof event.data !== 'string') return this.on.frame(event.data);
+      const message = JSON.parse(event.data);
+      if (message.say === 'welcome') {
+        this.ready = true;
+        this.delay = 300;
+        this.on.open();
+      }
+      if (message.say === 'error' && (message.about === 'token' || message.about === 'pages')) this.refused = true;
+      this.on.text(message);
+    };
+    socket.onclose = () => {
+      if (this.socket !== socket) return;
+      this.ready = false;
+      this.on.lost();
+      if (this.refused) return;
+      this.timer = setTimeout(() => this.connect(), this.delay);
+      this.delay = Math.min(5000, this.delay * 1.6);
+    };
+  }
+
+  send(message) {
+    if (!this.ready || this.socket.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+}
+
+/** A frame taken apart: its head, with arrays in place of where they stand. */
+export function readFrame(buffer) {
+  const view = new DataView(buffer);
+  if (view.getUint32(0, true) !== 0x666f7369) throw new Error('a frame begins with "isof"');
+  const length = view.getUint32(4, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 8, length)));
+  const blocks = Math.ceil((8 + length) / 8) * 8;
+  for (const {mesh} of head.surfaces) {
+    if (!mesh) continue;
+    mesh.vertexBytes = new Uint8Array(buffer, blocks + mesh.vertices_at, 8 * mesh.vertices);
+    if (mesh.colors_at !== undefined) mesh.colors = new Uint16Array(buffer, blocks + mesh.colors_at, mesh.vertices);
+    if (mesh.corners_at !== undefined) {
+      const Type = mesh.wide ? Uint32Array : Uint16Array;
+      mesh.corners = new Type(buffer, blocks + mesh.corners_at, 3 * mesh.triangles);
+    }
+  }
+  head.bytes = buffer.byteLength;
+  return head;
+}

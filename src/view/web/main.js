@@ -1,0 +1,546 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Ties the parts together: state -> wishes -> frames -> picture.
+import {Camera} from './camera.js';
+import {ChartSlider} from './chart.js';
+import * as format from './format.js';
+import {Link, readFrame} from './link.js';
+import {Pointer} from './pointer.js';
+import {Scene} from './scene.js';
+import {fromAddress, fromMessage, toAddress, toMessage} from './state.js';
+
+const id = (name) => document.getElementById(name);
+const [token, ...rest] = location.hash.slice(1).split('&');
+let state = fromAddress(rest.join('&'));
+const camera = new Camera();
+let grid = null, maps = null, frame = null, scene = null;
+let number = 0, sent = null, sentAt = new Map(), waiting = 0, restTimer = 0, wishPlanned = false, drawPlanned = false;
+
+// --- what is shown -------------------------------------------------------------------------------------------------
+
+function css(name) { return getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim(); }
+
+function say(sentence) {
+  id('message').textContent = sentence || '';
+  id('message').hidden = !sentence;
+}
+
+/** The rule of isotet render: of several surfaces those are translucent that may hide others. */
+function renderOpacity(which, boxes) {
+  if (boxes.length < 2) return 1;
+  const [lower, upper] = boxes[which] || [];
+  const hides = lower && boxes.some((box, other) => other !== which && box && box[0].every((v, i) => lower[i] <= v && box[1][i] <= upper[i]));
+  return hides ? 0.35 : 1;
+}
+
+/** Colour and opacity of each surface of the frame: the first is the slider's. */
+function dressed() {
+  if (!frame) return [];
+  // A surface that was pinned just now lies where the slider's still is: it is drawn once.
+  const twice = frame.surfaces.slice(1).some((one) => one.isovalue === frame.surfaces[0].isovalue);
+  const boxes = frame.surfaces.map(({key}) => { const mesh = scene.meshes.get(key); return mesh?.lower ? [mesh.lower, mesh.upper] : null; });
+  if (twice) boxes.shift();
+  return frame.surfaces.map((surface, i) => {
+    const own = i === 0 ? state : state.pins[i - 1] || {};
+    const opacity = own.opacity ?? renderOpacity(Math.max(0, i - (twice ? 1 : 0)), boxes);
+    return {key: surface.key, color: own.color || surface.color, opacity, hidden: twice && i === 0};
+  });
+}
+
+/** While something moves, a picture that takes long has half the pixels each way; in full when all rests. */
+let slow = false, sharpTimer = 0;
+function chooseScale() {
+  clearTimeout(sharpTimer);
+  if (slow && !resting) {
+    scene.scale = 0.5;
+    sharpTimer = setTimeout(() => { resting = true; drawSoon(); }, 250);
+  } else scene.scale = 1;
+  resting = false;
+}
+let resting = false;
+
+function draw() {
+  drawPlanned = false;
+  if (!scene || !grid?.lower) return;
+  chooseScale();
+  const pad = grid.upper.map((u, i) => (u - grid.lower[i]) * 0.001);
+  const start = performance.now();
+  scene.draw(camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: grid.lower.map((v, i) => v - pad[i]),
+    upper: grid.upper.map((v, i) => v + pad[i]), boxLower: grid.lower, boxUpper: grid.upper, outline: state.outline,
+    edges: state.edges, mapped: !!state.colorBy, noData: frame?.scale?.no_data, line: css('soft')});
+  drawAxes();
+  scene.finish();
+  const took = performance.now() - start;
+  if (scene.scale === 1) slow = took > 50;
+  if (frame && !frame.acknowledged) {
+    frame.acknowledged = true;
+    frame.draw_ms = took;
+    frame.age_ms = performance.now() - (sentAt.get(frame.number) ?? start);
+    for (const old of sentAt.keys()) if (old <= frame.number) sentAt.delete(old);
+    link.send({do: 'shown', number: frame.number});
+    tellFacts();
+  }
+  document.body.dataset.camera = camera.text();
+}
+
+function drawSoon() {
+  if (drawPlanned) return;
+  drawPlanned = true;
+  requestAnimationFrame(draw);
+}
+
+function drawAxes() {
+  const right = camera.right(), ends = [0, 1, 2].map((i) => [right[i], -camera.up[i], camera.direction[i]]);
+  const colors = ['#d1495b', '#3a9d5d', '#3f7cc4'];
+  id('axes').innerHTML = ends.map(([x, y, z], i) => ({x, y, z, i})).sort((a, b) => a.z - b.z).map(({x, y, i}) =>
+    `<line x2="${22 * x}" y2="${22 * y}" stroke="${colors[i]}" stroke-width="2.5" stroke-linecap="round"/>` +
+    `<text x="${30 * x}" y="${30 * y}">${'xyz'[i]}</text>`).join('');
+}
+
+function tellFacts() {
+  const first = frame.surfaces[0];
+  const triangles = frame.surfaces.reduce((sum, one) => sum + one.triangles, 0);
+  const drawn = frame.surfaces.reduce((sum, one) => sum + (scene.meshes.get(one.key)?.count || 0) / 3, 0);
+  id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
+  const parts = [`${format.grouped(triangles)} triangles` + (frame.preview ? `, preview of ${format.rough(drawn)}` : '')];
+  if (triangles === 0 && first) parts[0] = 'no triangles at this value';
+  parts.push(`extract ${format.duration(frame.extract_ms)}`, `code ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
+    `draw ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
+  if (frame.method === 'direct') parts.push('direct, while the grid is packed');
+  id('facts').textContent = parts.join(' · ');
+  id('facts').title = parts.join('\n');
+  Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: frame.preview, method: frame.method,
+    frame: frame.number, field: frame.field});
+  id('scene').setAttribute('aria-label', `Isosurface of ${state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
+    `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
+}
+
+function takeFrame(buffer) {
+  const next = readFrame(buffer);
+  const keep = new Set(next.surfaces.map(({key}) => key));
+  for (const key of [...scene.meshes.keys()]) if (!keep.has(key)) scene.remove(key);
+  for (const {key, mesh} of next.surfaces) if (mesh) scene.add(key, mesh);
+  next.field = state.field;
+  frame = next;
+  if (next.number >= number) stopWaiting();
+  say(next.notes.join(' '));
+  showSurfaces();
+  showRange();
+  drawSoon();
+  if (next.preview && next.number >= number) restSoon();
+}
+
+function stopWaiting() {
+  clearTimeout(waiting);
+  waiting = 0;
+  id('stage').classList.remove('waiting');
+  id('bar').hidden = true;
+}
+
+// --- wishes --------------------------------------------------------------------------------------------------------
+
+/** What a frame depends on. */
+const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic]);
+
+function wish(moving) {
+  wishPlanned = false;
+  if (!grid || !state.field || state.value === null) return;
+  const what = wanted() + (moving ? '' : '|rest');
+  if (what === sent || (moving && sent === wanted() + '|rest')) return;
+  const message = {do: 'show', number: number + 1, state: toMessage(state), moving, preview: slow ? 100000 : 600000};
+  delete message.state.camera;
+  if (!link.send(message)) return;
+  sent = what;
+  sentAt.set(++number, performance.now());
+  if (!waiting) waiting = setTimeout(() => { id('stage').classList.add('waiting'); id('bar').hidden = false; }, 100);
+}
+
+/** A wish a picture of the screen, however fast the hand is; when it rests, in full. */
+function wishSoon() {
+  if (!wishPlanned) {
+    wishPlanned = true;
+    requestAnimationFrame(() => wish(true));
+  }
+  restSoon();
+}
+
+function restSoon() {
+  clearTimeout(restTimer);
+  restTimer = setTimeout(() => wish(false), 150);
+}
+
+// --- undo: the address holds the state ------------------------------------------------------------------------------
+
+let commitTimer = 0;
+const address = () => `#${token}&${toAddress(state)}`;
+
+function commit() {
+  clearTimeout(commitTimer);
+  commitTimer = 0;
+  state.camera = grid ? camera.text() : state.camera;
+  if (location.hash !== address()) history.pushState(null, '', address());
+}
+
+function commitSoon() {
+  clearTimeout(commitTimer);
+  commitTimer = setTimeout(commit, 500);
+}
+
+addEventListener('popstate', () => {
+  clearTimeout(commitTimer);
+  const [sameToken, ...parts] = location.hash.slice(1).split('&');
+  if (sameToken !== token) return location.reload();
+  state = fromAddress(parts.join('&'));
+  if (!grid?.fields.some(({name}) => name === state.field)) state.field = grid?.state.field || state.field;
+  showState();
+});
+
+/** The controls and the picture follow a new state. */
+function showState() {
+  if (!state.camera || !camera.set(state.camera)) camera.fit(grid.lower, grid.upper, scene?.aspect() || 1);
+  id('field').value = state.field;
+  id('color-by').value = state.colorBy;
+  id('map').value = state.map;
+  id('logarithmic').checked = state.logarithmic;
+  id('outline').checked = state.outline;
+  id('edges').checked = state.edges;
+  id('parallel').checked = camera.projection === 'parallel';
+  id('color-details').hidden = !state.colorBy;
+  showMap();
+  showRange();
+  if (slider.chart?.field !== state.field) askChart();
+  showValue();
+  showSurfaces();
+  wishSoon();
+  drawSoon();
+}
+
+// --- level -----------------------------------------------------------------------------------------------------------
+
+const slider = new ChartSlider(id('slider'), id('chart'), {input: setValue, commit});
+
+function setValue(value) {
+  state.value = value;
+  showValue();
+  wishSoon();
+}
+
+function showValue() {
+  if (document.activeElement !== id('value')) id('value').value = state.value === null ? '' : String(state.value);
+  id('value').removeAttribute('aria-invalid');
+  const rows = id('surfaces').children;
+  if (rows.length > 0 && state.value !== null) rows[0].querySelector('.value').textContent = format.short(state.value);
+  slider.set(state.value ?? 0, state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})));
+  const expected = state.value === null ? null : slider.expected(state.value);
+  id('prediction').textContent = expected === null ? '' : `About ${format.rough(expected)} triangles expected`;
+}
+
+const pinColor = (i) => state.pins[i].color || frame?.surfaces[i + 1]?.color || '#888888';
+
+function askChart() {
+  slider.chart = null;
+  link.send({do: 'chart', field: state.field});
+}
+
+function takeChart(chart) {
+  if (chart.field !== state.field) return;
+  slider.chart = chart.lower <= chart.upper ? chart : null;
+  id('lower').textContent = slider.chart ? format.short(chart.lower) : '';
+  id('upper').textContent = slider.chart ? format.short(chart.upper) : 'The field has no finite value';
+  if (state.value === null && slider.chart) {
+    state.value = chart.first;
+    history.replaceState(null, '', address());
+  }
+  showValue();
+  wishSoon();
+}
+
+function typed() {
+  const value = format.parseNumber(id('value').value);
+  id('value').setAttribute('aria-invalid', value === null);
+  if (value === null) return say('An isovalue is a number, such as 0.25 or 1e-3.');
+  say('');
+  setValue(value);
+  commit();
+}
+
+id('value').addEventListener('keydown', (event) => {
+  if (event.key === 'Enter') typed();
+  if (event.key === 'Escape') { event.target.value = String(state.value ?? ''); event.target.removeAttribute('aria-invalid'); }
+});
+id('value').addEventListener('blur', () => showValue());
+
+function pin() {
+  if (state.value === null || state.pins.length >= 31 || state.pins.some((one) => one.value === state.value)) return;
+  state.pins.push({value: state.value, color: null, opacity: null});
+  pinsChanged();
+}
+
+function pinsChanged() {
+  showSurfaces();
+  showValue();
+  commit();
+  wishSoon();
+  drawSoon();
+}
+
+id('pin').addEventListener('click', pin);
+
+/** The list of surfaces, with colour and opacity. Rows stay where their number is the same: a control keeps its focus. */
+function showSurfaces() {
+  const list = id('surfaces'), all = state.value === null ? [] : [state, ...state.pins];
+  while (list.children.length > all.length) list.lastChild.remove();
+  const looks = dressed();
+  all.forEach((one, i) => {
+    const row = list.children[i] || list.appendChild(surfaceRow(i));
+    const [color, value, opacity] = row.children;
+    value.textContent = format.short(one.value);
+    if (document.activeElement !== color) color.value = one.color || looks[i]?.color || '#888888';
+    color.hidden = !!state.colorBy;
+    if (document.activeElement !== opacity) opacity.value = one.opacity ?? looks[i]?.opacity ?? 1;
+    const name = i === 0 ? 'the surface of the slider' : `pin ${format.short(one.value)}`;
+    color.setAttribute('aria-label', `Colour of ${name}`);
+    opacity.setAttribute('aria-label', `Opacity of ${name}`);
+    row.querySelector('button')?.setAttribute('aria-label', `Remove ${name}`);
+  });
+}
+
+function surfaceRow(i) {
+  const row = document.createElement('li');
+  row.innerHTML = '<input type="color"><span class="value"></span><input type="range" min="0" max="1" step="0.05">' +
+    (i === 0 ? '<span class="spacer"></span>' : '<button type="button">×</button>');
+  const own = () => (i === 0 ? state : state.pins[i - 1]);
+  const [color, , opacity] = row.children;
+  color.addEventListener('input', () => { own().color = color.value; showValue(); drawSoon(); commitSoon(); });
+  opacity.addEventListener('input', () => { own().opacity = Number(opacity.value); drawSoon(); commitSoon(); });
+  row.querySelector('button')?.addEventListener('click', () => {
+    state.pins.splice(i - 1, 1);
+    pinsChanged();
+    (id('surfaces').children[i] || id('surfaces').children[i - 1])?.querySelector('button, input')?.focus();
+  });
+  return row;
+}
+
+id('field').addEventListener('change', () => {
+  state.field = id('field').value;
+  state.value = null;
+  state.pins = [];
+  askChart();
+  showSurfaces();
+  commitSoon();
+});
+
+// --- colour ----------------------------------------------------------------------------------------------------------
+
+function showMap() {
+  if (!maps) return;
+  const colors = maps[state.map], context = id('legend').getContext('2d');
+  scene?.setMap(state.map, colors);
+  for (let x = 0; x < 256; ++x) {
+    const at = 6 * Math.round(x * 63 / 255);
+    context.fillStyle = '#' + colors.slice(at, at + 6);
+    context.fillRect(x, 0, 1, 1);
+  }
+}
+
+function showRange() {
+  const scale = state.range ? {lower: state.range[0], upper: state.range[1]} : frame?.scale;
+  for (const end of ['lower', 'upper']) {
+    const input = id('range-' + end);
+    if (document.activeElement !== input) input.value = scale ? format.short(scale[end]) : '';
+  }
+}
+
+function colorsChanged() {
+  id('color-details').hidden = !state.colorBy;
+  showMap();
+  showRange();
+  showSurfaces();
+  commitSoon();
+  wishSoon();
+  drawSoon();
+}
+
+id('color-by').addEventListener('change', () => { state.colorBy = id('color-by').value; state.range = null; colorsChanged(); });
+id('map').addEventListener('change', () => { state.map = id('map').value; colorsChanged(); });
+id('logarithmic').addEventListener('change', () => { state.logarithmic = id('logarithmic').checked; colorsChanged(); });
+id('range-reset').addEventListener('click', () => { state.range = null; colorsChanged(); });
+for (const end of ['lower', 'upper']) {
+  id('range-' + end).addEventListener('keydown', (event) => { if (event.key === 'Enter') takeRange(); });
+  id('range-' + end).addEventListener('change', takeRange);
+}
+
+function takeRange() {
+  const ends = ['lower', 'upper'].map((end) => format.parseNumber(id('range-' + end).value));
+  const fits = ends.every((one) => one !== null) && ends[0] < ends[1];
+  for (const end of ['lower', 'upper']) id('range-' + end).setAttribute('aria-invalid', !fits);
+  if (!fits) return say('The range of colours takes two numbers, the smaller one first.');
+  say('');
+  if (state.range?.[0] === ends[0] && state.range?.[1] === ends[1]) return;
+  if (!state.range && frame?.scale && format.short(frame.scale.lower) === format.short(ends[0]) && format.short(frame.scale.upper) === format.short(ends[1])) return;
+  state.range = ends;
+  colorsChanged();
+}
+
+// --- view ------------------------------------------------------------------------------------------------------------
+
+function lookFrom(name) {
+  if (!grid?.lower) return;
+  if (name !== 'fit') camera.look(name);
+  camera.fit(grid.lower, grid.upper, scene.aspect());
+  moved();
+}
+
+function moved() {
+  id('parallel').checked = camera.projection === 'parallel';
+  drawSoon();
+  commitSoon();
+}
+
+for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => lookFrom(button.dataset.view));
+id('parallel').addEventListener('change', () => { camera.setProjection(id('parallel').checked ? 'parallel' : 'perspective'); moved(); });
+for (const flag of ['edges', 'outline'])
+  id(flag).addEventListener('change', () => { state[flag] = id(flag).checked; drawSoon(); commitSoon(); });
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { showValue(); drawSoon(); });
+new ResizeObserver(drawSoon).observe(id('stage'));
+
+// --- commands --------------------------------------------------------------------------------------------------------
+
+let copying = null;
+for (const kind of ['render', 'extract'])
+  id('copy-' + kind).addEventListener('click', () => {
+    copying = kind;
+    state.camera = camera.text();
+    const message = toMessage(state);
+    message.isovalues = [...new Set(message.isovalues)];
+    link.send({do: 'command', state: message});
+  });
+
+async function takeCommand(message) {
+  const text = message[copying] || '';
+  let copied = true;
+  try { await navigator.clipboard.writeText(text); } catch { copied = false; }
+  const own = copying === 'render' && [state, ...state.pins].some((one) => one.color || (one.opacity !== null && one.opacity !== state.opacity));
+  id('copied').textContent = text;
+  id('copied').title = copied ? 'Copied' : 'The browser did not copy: select it';
+  id('copy-' + copying).textContent = copied ? 'Copied' : 'See below';
+  if (own) say('Colours and opacities of single surfaces are not part of isotet render.');
+  setTimeout(() => { id('copy-render').textContent = 'Copy render'; id('copy-extract').textContent = 'Copy extract'; }, 1500);
+}
+
+id('command').addEventListener('keydown', (event) => {
+  if (event.key !== 'Enter' || id('command').value.trim() === '') return;
+  link.send({do: 'paste', text: id('command').value});
+});
+
+function takeState(message) {
+  const next = fromMessage(message);
+  if (!next.field) next.field = state.field;
+  if (next.value === null && next.field === state.field) next.value = state.value;
+  state = {...next, edges: state.edges};
+  if (!state.camera) state.camera = camera.text();
+  id('command').value = '';
+  say('');
+  commit();
+  showState();
+}
+
+// --- keys ------------------------------------------------------------------------------------------------------------
+
+id('help-open').addEventListener('click', () => id('help').showModal());
+id('help-close').addEventListener('click', () => id('help').close());
+
+const keys = {
+  f: () => lookFrom('fit'), Home: () => lookFrom('fit'), 1: () => lookFrom('front'), 3: () => lookFrom('right'), 7: () => lookFrom('top'),
+  9: () => lookFrom('oblique'), 5: () => id('parallel').click(), e: () => id('edges').click(), b: () => id('outline').click(), p: pin,
+  '[': () => slider.step(-1), ']': () => slider.step(1), '{': () => slider.step(-0.1), '}': () => slider.step(0.1), '?': () => id('help').showModal(),
+};
+addEventListener('keydown', (event) => {
+  const typing = event.target.matches('input[type=text], select') || id('help').open;
+  const action = keys[event.key] || keys[event.key.toLowerCase()];
+  if (typing || event.ctrlKey || event.altKey || event.metaKey || !action) return;
+  event.preventDefault();
+  action();
+});
+
+// --- start -----------------------------------------------------------------------------------------------------------
+
+function fill(select, names, chosen) {
+  select.replaceChildren(...names.map(([value, text]) => new Option(text, value)));
+  select.value = chosen;
+}
+
+function takeGrid(message) {
+  if (grid) { askChart(); sent = null; return wishSoon(); }
+  grid = message;
+  if (!grid.lower) [grid.lower, grid.upper] = [[0, 0, 0], [1, 1, 1]];
+  const names = grid.fields.map(({name}) => name), start = fromMessage(grid.state);
+  const fresh = !state.field || !names.includes(state.field);
+  if (fresh) state = {...start, camera: state.camera, edges: state.edges};
+  if (!names.includes(state.field)) names.unshift(state.field);
+  const label = (name) => [name, name + (grid.fields.find((one) => one.name === name)?.cell ? ' (cells)' : '')];
+  fill(id('field'), names.map(label), state.field);
+  fill(id('color-by'), [['', 'Surface'], ...names.map(label)], state.colorBy);
+  say(grid.notes.join(' '));
+  document.body.dataset.grid = `${grid.points} points, ${grid.cells} cells`;
+  showState();
+  if (fresh) history.replaceState(null, '', address());
+}
+
+function takeProgress({step, fraction}) {
+  const running = fraction < 1 && step !== 'ready';
+  const words = {read: 'Reading', pack: 'Packing', make: 'Making', split: 'Packing'};
+  id('progress').hidden = !running && !step.startsWith('not packed');
+  id('progress-text').textContent = step.startsWith('not packed') ? step : `${words[step] || step}${grid ? ', the surface can be moved already' : ''}`;
+  id('progress-bar').hidden = !running;
+  if (fraction > 0) id('progress-bar').value = fraction;
+  else id('progress-bar').removeAttribute('value');
+  document.body.dataset.step = step;
+}
+
+const messages = {
+  welcome(message) {
+    maps = message.maps;
+    fill(id('map'), Object.keys(maps).map((name) => [name, name]), state.map in maps ? state.map : (state.map = 'viridis'));
+    const name = message.file.split('/').pop();
+    id('file').textContent = name;
+    id('file').title = message.file;
+    document.title = `${name} – isotet`;
+    showMap();
+    if (grid) { sent = null; askChart(); }
+  },
+  grid: takeGrid,
+  progress: takeProgress,
+  chart: takeChart,
+  command: takeCommand,
+  state: (message) => takeState(message.state),
+  refused(message) {
+    if (message.number >= number) stopWaiting();
+    sent = null;
+    say(message.sentence);
+  },
+  error: (message) => say(message.sentence),
+};
+
+try {
+  scene = new Scene(id('scene'));
+  scene.onRestored = () => { frame = null; sent = null; link.socket.close(); };
+} catch (error) {
+  say(error.message);
+}
+
+const link = new Link(token, {
+  open: () => { id('link').textContent = ''; document.body.dataset.link = 'open'; },
+  lost: () => {
+    // Another connection begins without surfaces: all are sent again.
+    sent = null;
+    stopWaiting();
+    id('link').textContent = 'No connection: trying again';
+    document.body.dataset.link = 'lost';
+  },
+  text: (message) => messages[message.say]?.(message),
+  frame: (buffer) => { if (scene) takeFrame(buffer); },
+});
+
+new Pointer(id('scene'), camera, () => scene, {
+  moved, middle: () => grid && grid.lower.map((v, i) => (v + grid.upper[i]) / 2), level: (steps) => slider.step(steps),
+});

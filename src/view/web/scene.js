@@ -1,0 +1,337 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Draws surfaces with WebGL2. Coordinates come as 65535ths of a surface's box; matrices are made in double precision.
+
+const meshVertex = `#version 300 es
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec2 octahedron;
+layout(location = 2) in float colorPlace;
+uniform mat4 clip;
+uniform mat3 toView;
+out vec3 normal;
+out float colorAt;
+flat out float noData;
+void main() {
+  gl_Position = clip * vec4(place, 1.0);
+  vec3 n = vec3(octahedron, 1.0 - abs(octahedron.x) - abs(octahedron.y));
+  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+  normal = toView * n;
+  noData = colorPlace > 65534.5 ? 1.0 : 0.0;
+  colorAt = colorPlace / 65534.0;
+}`;
+
+const meshFragment = `#version 300 es
+precision highp float;
+in vec3 normal;
+in float colorAt;
+flat in float noData;
+uniform vec4 color;
+uniform vec3 noDataColor;
+uniform sampler2D map;
+uniform bool mapped;
+out vec4 pixel;
+void main() {
+  vec3 n = normalize(normal + vec3(0.0, 0.0, 1e-6));
+  if (n.z < 0.0) n = -n;
+  float light = 0.38 + 0.62 * max(0.0, dot(n, normalize(vec3(-0.35, 0.45, 0.85))));
+  float shine = 0.10 * pow(max(0.0, dot(n, normalize(vec3(-0.18, 0.23, 1.0)))), 40.0);
+  vec3 base = color.rgb;
+  if (mapped) base = noData > 0.5 ? noDataColor : texture(map, vec2((clamp(colorAt, 0.0, 1.0) * 63.0 + 0.5) / 64.0, 0.5)).rgb;
+  pixel = vec4(min(vec3(1.0), base * light + shine), color.a);
+}`;
+
+// Depth in 24 bits: what is under the pointer.
+const depthFragment = `#version 300 es
+precision highp float;
+out vec4 pixel;
+void main() {
+  float d = floor(gl_FragCoord.z * 16777215.0);
+  pixel = vec4(mod(d, 256.0), mod(floor(d / 256.0), 256.0), floor(d / 65536.0), 255.0) / 255.0;
+}`;
+
+const lineVertex = `#version 300 es
+layout(location = 0) in vec3 place;
+uniform mat4 clip;
+void main() { gl_Position = clip * vec4(place, 1.0); }`;
+const lineFragment = `#version 300 es
+precision highp float;
+uniform vec4 color;
+out vec4 pixel;
+void main() { pixel = color; }`;
+
+const boxLines = new Float32Array([0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7]
+  .flatMap((corner) => [corner & 1, corner >> 1 & 1, corner >> 2]));
+
+export function rgb(text) {
+  return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
+}
+
+export class Scene {
+  /** Throws where the browser has no WebGL2. */
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.meshes = new Map();
+    this.scale = 1;
+    const gl = this.gl = canvas.getContext('webgl2', {antialias: true, alpha: false, powerPreference: 'high-performance'});
+    if (!gl) throw new Error('This browser has no WebGL2, which draws the surfaces.');
+    this.start();
+    canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+    canvas.addEventListener('webglcontextrestored', () => { this.meshes.clear(); this.start(); this.onRestored?.(); });
+  }
+
+  start() {
+    const gl = this.gl;
+    this.mesh = this.program(meshVertex, meshFragment);
+    this.depth = this.program(meshVertex, depthFragment);
+    this.line = this.program(lineVertex, lineFragment);
+    this.map = gl.createTexture();
+    this.mapName = null;
+    this.box = gl.createVertexArray();
+    gl.bindVertexArray(this.box);
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ARRAY_BUFFER, boxLines, gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    gl.bindVertexArray(null);
+    this.pickColor = gl.createRenderbuffer();
+    this.pickDepth = gl.createRenderbuffer();
+    this.pickFrame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.pickFrame);
+    for (const [buffer, format, point] of [[this.pickColor, gl.RGBA8, gl.COLOR_ATTACHMENT0],
+      [this.pickDepth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+      gl.renderbufferStorage(gl.RENDERBUFFER, format, 1, 1);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, point, gl.RENDERBUFFER, buffer);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  program(vertex, fragment) {
+    const gl = this.gl, program = gl.createProgram();
+    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, source);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+    }
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error('WebGL2: ' + gl.getProgramInfoLog(program));
+    const at = {program};
+    for (const name of ['clip', 'toView', 'color', 'noDataColor', 'map', 'mapped']) at[name] = gl.getUniformLocation(program, name);
+    return at;
+  }
+
+  /** Takes a mesh of a frame (link.js) over. */
+  add(key, mesh) {
+    const gl = this.gl;
+    this.remove(key);
+    const own = {count: mesh.vertices, indexed: !!mesh.corners, type: mesh.wide ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT,
+      lower: mesh.lower, upper: mesh.upper, colored: !!mesh.colors, corners: mesh.corners, buffers: []};
+    if (mesh.corners) own.count = mesh.corners.length;
+    own.array = gl.createVertexArray();
+    gl.bindVertexArray(own.array);
+    const fill = (target, data) => {
+      const buffer = gl.createBuffer();
+      own.buffers.push(buffer);
+      gl.bindBuffer(target, buffer);
+      gl.bufferData(target, data, gl.STATIC_DRAW);
+    };
+    fill(gl.ARRAY_BUFFER, mesh.vertexBytes);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.UNSIGNED_SHORT, true, 8, 0);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 2, gl.BYTE, true, 8, 6);
+    if (mesh.colors) {
+      fill(gl.ARRAY_BUFFER, mesh.colors);
+      gl.enableVertexAttribArray(2);
+      gl.vertexAttribPointer(2, 1, gl.UNSIGNED_SHORT, false, 2, 0);
+    }
+    if (mesh.corners) fill(gl.ELEMENT_ARRAY_BUFFER, mesh.corners);
+    gl.bindVertexArray(null);
+    this.meshes.set(key, own);
+  }
+
+  remove(key) {
+    const own = this.meshes.get(key);
+    if (!own) return;
+    for (const buffer of own.buffers) this.gl.deleteBuffer(buffer);
+    this.gl.deleteVertexArray(own.array);
+    this.meshes.delete(key);
+  }
+
+  setMap(name, colors) {
+    if (this.mapName === name) return;
+    const gl = this.gl, pixels = new Uint8Array(64 * 4).fill(255);
+    for (let i = 0; i < 64; ++i) for (let k = 0; k < 3; ++k) pixels[4 * i + k] = parseInt(colors.slice(6 * i + 2 * k, 6 * i + 2 * k + 2), 16);
+    gl.bindTexture(gl.TEXTURE_2D, this.map);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 64, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    for (const [what, how] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
+      [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) gl.texParameteri(gl.TEXTURE_2D, what, how);
+    this.mapName = name;
+  }
+
+  aspect() { return this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight); }
+
+  resize() {
+    const ratio = (window.devicePixelRatio || 1) * this.scale;
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio)), height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
+    if (this.canvas.width !== width || this.canvas.height !== height) { this.canvas.width = width; this.canvas.height = height; }
+  }
+
+  /** The matrix of a box of size 1 that lies at `lower` to `upper`. */
+  clip(rows, lower, upper) {
+    const out = new Float32Array(16);
+    for (let r = 0; r < 4; ++r) {
+      let last = rows[r][3];
+      for (let c = 0; c < 3; ++c) {
+        out[4 * c + r] = rows[r][c] * (upper[c] - lower[c]);
+        last += rows[r][c] * lower[c];
+      }
+      out[12 + r] = last;
+    }
+    return out;
+  }
+
+  /**
+   * @param surfaces  [{key, color, opacity}]; keys without a mesh are passed over
+   * @param look      {background, lower, upper, outline, edges, mapped, noData, line}
+   */
+  draw(camera, surfaces, look) {
+    const gl = this.gl;
+    this.resize();
+    this.camera = camera;
+    this.surfaces = surfaces;
+    this.look = look;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.clearColor(...rgb(look.background), 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    const view = this.view = camera.matrix(this.aspect(), look.lower, look.upper);
+    if (look.outline) this.drawBox(view.rows, look);
+    gl.useProgram(this.mesh.program);
+    const right = camera.right();
+    gl.uniformMatrix3fv(this.mesh.toView, false, [0, 1, 2].flatMap((i) => [right[i], camera.up[i], camera.direction[i]]));
+    gl.uniform3fv(this.mesh.noDataColor, rgb(look.noData || '#b8b8b8'));
+    gl.bindTexture(gl.TEXTURE_2D, this.map);
+    const there = surfaces.map((one) => ({...one, mesh: this.meshes.get(one.key)}))
+      .filter(({mesh, opacity}) => mesh && mesh.lower && mesh.count > 0 && opacity > 0);
+    if (look.edges) { gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1); }
+    for (const one of there) if (one.opacity >= 1) this.drawMesh(one, view.rows, look);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    if (look.edges) this.drawEdges(there, view.rows, look);
+    this.drawTranslucent(there.filter(({opacity}) => opacity < 1), view.rows, look);
+  }
+
+  /** Inner surfaces lie in smaller boxes: far sides from the outer to the inner, then near sides back. */
+  drawTranslucent(surfaces, rows, look) {
+    if (surfaces.length === 0) return;
+    const gl = this.gl;
+    const size = ({mesh}) => Math.hypot(...mesh.upper.map((u, i) => u - mesh.lower[i]));
+    surfaces.sort((a, b) => size(b) - size(a));
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+    gl.enable(gl.CULL_FACE);
+    for (const face of [gl.BACK, gl.FRONT]) {
+      // Triangles are counter-clockwise from the side of higher values, which may be inside: both ways are drawn.
+      gl.cullFace(face);
+      for (const one of surfaces) this.drawMesh(one, rows, look);
+      surfaces.reverse();
+    }
+    gl.disable(gl.CULL_FACE);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+  }
+
+  drawMesh({mesh, color, opacity}, rows, look) {
+    const gl = this.gl;
+    gl.uniformMatrix4fv(this.mesh.clip, false, this.clip(rows, mesh.lower, mesh.upper));
+    gl.uniform4f(this.mesh.color, ...rgb(color), opacity);
+    gl.uniform1i(this.mesh.mapped, look.mapped && mesh.colored ? 1 : 0);
+    gl.bindVertexArray(mesh.array);
+    if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
+    else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
+  }
+
+  drawEdges(surfaces, rows, look) {
+    const gl = this.gl;
+    gl.useProgram(this.line.program);
+    gl.uniform4f(this.line.color, ...rgb(look.line), 1);
+    gl.enable(gl.BLEND);
+    for (const {mesh} of surfaces) {
+      if (!mesh.lines) this.makeEdges(mesh);
+      gl.uniformMatrix4fv(this.line.clip, false, this.clip(rows, mesh.lower, mesh.upper));
+      gl.bindVertexArray(mesh.lines.array);
+      gl.drawElements(gl.LINES, mesh.lines.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.disable(gl.BLEND);
+    gl.useProgram(this.mesh.program);
+  }
+
+  makeEdges(mesh) {
+    const gl = this.gl, triangles = mesh.count / 3, edges = new Uint32Array(6 * triangles);
+    for (let t = 0; t < triangles; ++t)
+      for (let k = 0; k < 3; ++k) {
+        const a = 3 * t + k, b = 3 * t + (k + 1) % 3;
+        edges[6 * t + 2 * k] = mesh.corners ? mesh.corners[a] : a;
+        edges[6 * t + 2 * k + 1] = mesh.corners ? mesh.corners[b] : b;
+      }
+    const array = gl.createVertexArray(), buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffers[0]);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.UNSIGNED_SHORT, true, 8, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, edges, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    mesh.buffers.push(buffer);
+    mesh.lines = {array, count: edges.length};
+  }
+
+  drawBox(rows, look) {
+    const gl = this.gl;
+    gl.useProgram(this.line.program);
+    gl.uniformMatrix4fv(this.line.clip, false, this.clip(rows, look.boxLower, look.boxUpper));
+    gl.uniform4f(this.line.color, ...rgb(look.line), 1);
+    gl.bindVertexArray(this.box);
+    gl.drawArrays(gl.LINES, 0, 24);
+  }
+
+  /** The point of a surface under a place of the picture (-1 to 1 each), or null. */
+  pick(x, y) {
+    if (!this.view) return null;
+    const gl = this.gl, {rows, near, far} = this.view;
+    const width = this.canvas.width, height = this.canvas.height;
+    // The picture shrinks to one pixel: that at (x, y).
+    const zoomed = [0, 1].map((r) => rows[r].map((v, i) => (v - (r ? y : x) * rows[3][i]) * (r ? height : width)));
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.pickFrame);
+    gl.viewport(0, 0, 1, 1);
+    gl.disable(gl.BLEND);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(this.depth.program);
+    for (const {key, opacity} of this.surfaces) {
+      const mesh = this.meshes.get(key);
+      if (!mesh || !mesh.lower || opacity <= 0) continue;
+      gl.uniformMatrix4fv(this.depth.clip, false, this.clip([zoomed[0], zoomed[1], rows[2], rows[3]], mesh.lower, mesh.upper));
+      gl.bindVertexArray(mesh.array);
+      if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
+      else gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
+    }
+    const pixel = new Uint8Array(4);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    if (pixel[3] === 0) return null;
+    const z = 2 * (pixel[0] + 256 * pixel[1] + 65536 * pixel[2]) / 16777215 - 1;
+    const parallel = this.camera.projection === 'parallel';
+    const depth = parallel ? (z * (far - near) + far + near) / 2 : 2 * far * near / (far + near - z * (far - near));
+    const at = [0, 1, 2].map((i) => this.camera.target[i] + (this.camera.distance - depth) * this.camera.direction[i]);
+    return this.camera.under(x, y, this.aspect(), at);
+  }
+
+  /** Waits until all is drawn: for measuring. */
+  finish() {
+    this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+}

@@ -1,0 +1,70 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What the page shows, as a value, and as the part of the address behind the token.
+
+export const firstState = () => ({
+  field: '', value: null, pins: [], // [{value, color, opacity}], color null: the one that isotet render gives
+  color: null, opacity: null,       // of the surface that the slider moves
+  colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
+});
+
+const isColor = (text) => /^#[0-9a-f]{6}$/.test(text);
+const isPart = (number) => Number.isFinite(number) && number >= 0 && number <= 1;
+
+export function toAddress(state) {
+  const parts = new URLSearchParams();
+  parts.set('f', state.field);
+  if (state.value !== null) parts.set('i', state.value);
+  if (state.color) parts.set('c', state.color);
+  if (state.opacity !== null) parts.set('o', state.opacity);
+  for (const pin of state.pins) parts.append('pin', [pin.value, pin.color || '', pin.opacity ?? ''].join(','));
+  if (state.colorBy) parts.set('by', state.colorBy);
+  if (state.map !== 'viridis') parts.set('map', state.map);
+  if (state.range) parts.set('range', state.range.join(','));
+  for (const flag of ['logarithmic', 'outline', 'edges']) if (state[flag]) parts.set(flag, 1);
+  if (state.camera) parts.set('camera', state.camera);
+  return parts.toString();
+}
+
+/** What of an address makes sense; nothing of it is trusted. */
+export function fromAddress(text) {
+  const parts = new URLSearchParams(text), state = firstState();
+  const number = (t) => (t !== null && t.trim() !== '' && Number.isFinite(Number(t)) ? Number(t) : null);
+  state.field = parts.get('f') || '';
+  state.value = number(parts.get('i'));
+  if (isColor(parts.get('c') || '')) state.color = parts.get('c');
+  const opacity = number(parts.get('o'));
+  if (opacity !== null && isPart(opacity)) state.opacity = opacity;
+  for (const pin of parts.getAll('pin').slice(0, 31)) {
+    const [value, color, part] = pin.split(',');
+    if (number(value ?? null) === null) continue;
+    const seen = number(part ?? null);
+    state.pins.push({value: Number(value), color: isColor(color || '') ? color : null, opacity: seen !== null && isPart(seen) ? seen : null});
+  }
+  state.colorBy = parts.get('by') || '';
+  state.map = parts.get('map') || 'viridis';
+  const range = (parts.get('range') || '').split(',').map(Number);
+  if (range.length === 2 && range.every(Number.isFinite) && range[0] < range[1]) state.range = range;
+  for (const flag of ['logarithmic', 'outline', 'edges']) state[flag] = parts.get(flag) === '1';
+  state.camera = parts.get('camera');
+  return state;
+}
+
+/** As messages have it (src/view/state.hpp). */
+export function toMessage(state) {
+  const message = {field: state.field, isovalues: [state.value, ...state.pins.map((pin) => pin.value)], color_by: state.colorBy,
+    map: state.map, logarithmic: state.logarithmic, outline: state.outline};
+  if (state.value === null) message.isovalues.shift();
+  if (state.range) message.range = state.range;
+  if (state.camera) message.camera = state.camera;
+  const opacities = [state.opacity, ...state.pins.map((pin) => pin.opacity)];
+  if (opacities[0] !== null && opacities.every((one) => one === opacities[0])) message.opacity = opacities[0];
+  return message;
+}
+
+export function fromMessage(message) {
+  const state = firstState(), [value = null, ...pins] = message.isovalues;
+  const opacity = message.opacity ?? null;
+  return {...state, field: message.field, value, pins: pins.map((one) => ({value: one, color: null, opacity})), opacity,
+    colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
+    range: message.range ?? null, camera: message.camera ?? null};
+}

@@ -1,0 +1,144 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/worker.hpp"
+
+#include <utility>
+
+namespace isotet::view {
+
+Worker::Worker(WorkerOutput output, std::function<double()> clock, SlotRules rules)
+    : output_(std::move(output)), clock_(std::move(clock)), rules_(rules), thread_([this] { work(); }) {}
+
+Worker::~Worker() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+        cancel_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void Worker::start(std::shared_ptr<FrameMaker> maker) {
+    {
+        const std::lock_guard lock(mutex_);
+        maker_ = std::move(maker);
+    }
+    changed_.notify_all();
+}
+
+void Worker::add_page(PageNumber page) {
+    const std::lock_guard lock(mutex_);
+    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}});
+}
+
+void Worker::remove_page(PageNumber page) {
+    const std::lock_guard lock(mutex_);
+    pages_.erase(page);
+    if (working_for_ == page) cancel_ = true;
+}
+
+void Worker::wish(PageNumber page, ShowMessage message) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) return;
+        found->second.slot.put({std::move(message), clock_()});
+        cancel_if_stale();
+    }
+    changed_.notify_all();
+}
+
+void Worker::ask_chart(PageNumber page, std::string field) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) return;
+        found->second.chart = std::move(field);
+    }
+    changed_.notify_all();
+}
+
+void Worker::acknowledge(PageNumber page) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) return;
+        found->second.slot.acknowledge();
+    }
+    changed_.notify_all();
+}
+
+void Worker::look_for_stale_work() {
+    const std::lock_guard lock(mutex_);
+    cancel_if_stale();
+}
+
+void Worker::cancel_if_stale() {
+    if (!working_for_) return;
+    const auto found = pages_.find(*working_for_);
+    if (found != pages_.end() && found->second.slot.is_stale(clock_())) cancel_ = true;
+}
+
+/// The next page behind the one that was served last that wants something.
+std::optional<PageNumber> Worker::next_page() const {
+    if (!maker_) return std::nullopt;
+    const auto wants = [](const Page& page) { return page.chart || page.slot.ready(); };
+    for (auto at = pages_.upper_bound(last_); at != pages_.end(); ++at)
+        if (wants(at->second)) return at->first;
+    for (const auto& [number, page] : pages_)
+        if (wants(page)) return number;
+    return std::nullopt;
+}
+
+void Worker::work() {
+    std::unique_lock lock(mutex_);
+    while (!stop_) {
+        const std::optional<PageNumber> number = next_page();
+        if (!number) {
+            changed_.wait(lock);
+            continue;
+        }
+        last_ = *number;
+        if (pages_.at(*number).chart) make_chart(lock, *number);
+        else make_frame(lock, *number);
+    }
+}
+
+void Worker::make_chart(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    const std::string field = *std::exchange(pages_.at(number).chart, std::nullopt);
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    cancel_ = stop_;
+    lock.unlock();
+    Result<std::string> chart = maker->chart(field, {0, {{}, &cancel_}});
+    if (chart) output_.text(number, *std::move(chart));
+    else if (chart.error().code != ErrorCode::cancelled)
+        output_.text(number, error_text("chart", chart.error().message));
+    lock.lock();
+}
+
+void Worker::make_frame(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    Page& page = pages_.at(number);
+    const double now = clock_();
+    const std::optional<Wish> wish = page.slot.take(now);
+    std::vector<std::string> known = page.known;
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    working_for_ = number;
+    cancel_ = stop_;
+    lock.unlock();
+    Result<std::string> frame = maker->frame(wish->message, now - wish->came, known, {0, {{}, &cancel_}});
+    const bool made = static_cast<bool>(frame);
+    const bool cancelled = !made && frame.error().code == ErrorCode::cancelled;
+    lock.lock();
+    working_for_.reset();
+    const auto found = pages_.find(number);
+    if (found == pages_.end()) return;
+    using End = Slot<Wish>::End;
+    found->second.slot.finish(made ? End::frame : cancelled ? End::cancelled : End::nothing);
+    if (made) found->second.known = std::move(known);
+    lock.unlock();
+    if (made) output_.frame(number, *std::move(frame));
+    else if (!cancelled) output_.text(number, refusal_text(wish->message.number, frame.error().message));
+    lock.lock();
+}
+
+} // namespace isotet::view

@@ -1,0 +1,92 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The thread that makes frames: for the newest wish of each page, page after page.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "view/messages.hpp"
+#include "view/slot.hpp"
+
+namespace isotet::view {
+
+using PageNumber = std::uint64_t;
+
+/// What answers wishes: GridView, or a test's. Called by the worker's thread alone.
+class FrameMaker {
+public:
+    virtual ~FrameMaker() = default;
+    /// Bytes of the frame; an error, which the page is told unless it is cancelled.
+    virtual Result<std::string> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                                      const Run& run) = 0;
+    /// Text of the answer.
+    virtual Result<std::string> chart(const std::string& field, const Run& run) = 0;
+};
+
+/// How the worker answers. Called by the worker's thread.
+struct WorkerOutput {
+    std::function<void(PageNumber page, std::string bytes)> frame;
+    std::function<void(PageNumber page, std::string text)> text;
+};
+
+/// Threads   safe from many threads
+class Worker {
+public:
+    Worker(WorkerOutput output, std::function<double()> clock, SlotRules rules = {});
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+    ~Worker(); ///< cancels what is going on, and waits for its end
+
+    /// From now on wishes are answered, those that wait already too.
+    void start(std::shared_ptr<FrameMaker> maker);
+
+    void add_page(PageNumber page);
+    void remove_page(PageNumber page);
+    void wish(PageNumber page, ShowMessage message);
+    void ask_chart(PageNumber page, std::string field); ///< the newest counts
+    void acknowledge(PageNumber page);
+
+    /// To be called now and then: cancels work that became stale in the meantime.
+    void look_for_stale_work();
+
+private:
+    struct Wish {
+        ShowMessage message;
+        double came = 0;
+    };
+    struct Page {
+        Slot<Wish> slot;
+        std::optional<std::string> chart;
+        std::vector<std::string> known;
+    };
+
+    void work();
+    std::optional<PageNumber> next_page() const;
+    void make_chart(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void make_frame(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void cancel_if_stale();
+
+    WorkerOutput output_;
+    std::function<double()> clock_;
+    SlotRules rules_;
+    std::mutex mutex_; ///< of all that follows
+    std::condition_variable changed_;
+    std::shared_ptr<FrameMaker> maker_;
+    std::map<PageNumber, Page> pages_;
+    PageNumber last_ = 0; ///< that was served
+    std::optional<PageNumber> working_for_;
+    std::atomic<bool> cancel_{false};
+    bool stop_ = false;
+    std::thread thread_;
+};
+
+} // namespace isotet::view

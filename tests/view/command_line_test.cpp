@@ -1,0 +1,98 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// States as command lines and as JSON, and back.
+#include <gtest/gtest.h>
+
+#include "view/command_line.hpp"
+#include "view/random_state.hpp"
+
+namespace isotet::test {
+namespace {
+
+using namespace view;
+
+TEST(ShellText, IsReadBackWordByWord) {
+    const std::vector<std::string> words{"isotet",    "a b",      "",  "it's", "\"quoted\"", "back\\slash",
+                                         "new\nline", "$HOME;rm", "~", "é",    "*",          "'"};
+    const auto back = shell_words(shell_text(words));
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(*back, words);
+}
+
+TEST(ShellWords, AreTakenByTheRulesOfAShell) {
+    EXPECT_EQ(*shell_words("a  \"b c\"d 'e\\f' g\\ h \\\n i"),
+              (std::vector<std::string>{"a", "b cd", "e\\f", "g h", "i"}));
+    EXPECT_EQ(*shell_words(R"("a\b\"\$")"), (std::vector<std::string>{R"(a\b"$)"}));
+    EXPECT_FALSE(shell_words("'open"));
+    EXPECT_FALSE(shell_words("\"open"));
+    EXPECT_FALSE(shell_words("ends in \\"));
+}
+
+TEST(RenderWords, GiveTheStateBack) {
+    for (unsigned seed = 1; seed <= 500; ++seed) {
+        SCOPED_TRACE(seed);
+        const ViewState state = random_state(seed);
+        const std::string text = shell_text(render_words(state, "some grid.vtu", {"--step", "3"}));
+        const auto back = state_of_command(text);
+        ASSERT_TRUE(back) << back.error().message << "\n" << text;
+        EXPECT_TRUE(*back == state) << text;
+    }
+}
+
+TEST(ExtractWords, GiveFieldAndIsovaluesBack) {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+        SCOPED_TRACE(seed);
+        const ViewState state = random_state(seed);
+        const auto back = state_of_command(shell_text(extract_words(state, "grid.vtu")));
+        ASSERT_TRUE(back) << back.error().message;
+        EXPECT_EQ(back->field, state.field);
+        EXPECT_EQ(back->isovalues, state.isovalues);
+    }
+}
+
+TEST(StateJson, GivesTheStateBack) {
+    for (unsigned seed = 1; seed <= 500; ++seed) {
+        SCOPED_TRACE(seed);
+        const ViewState state = random_state(seed);
+        const auto json = parse_json(text_of(to_json(state)));
+        ASSERT_TRUE(json);
+        const auto back = state_of(*json);
+        ASSERT_TRUE(back) << back.error().message;
+        EXPECT_TRUE(*back == state);
+    }
+}
+
+TEST(StateOfCommand, TakesEveryWayToWriteAnOption) {
+    for (const char* text : {"isotet render g.vtu -f p -i 0.5,1", "render g.vtu --field=p -i0.5 --isovalue 1",
+                             "isotet extract -i .5 -i +1 g.vtu out.vtp -f 'p' --snap", "-fp --isovalue=0.5,1e0 --"}) {
+        const auto state = state_of_command(text);
+        ASSERT_TRUE(state) << state.error().message;
+        EXPECT_EQ(state->field, "p") << text;
+        EXPECT_EQ(state->isovalues, (std::vector<double>{0.5, 1})) << text;
+    }
+}
+
+TEST(StateOfCommand, SaysWhatIsWrong) {
+    EXPECT_EQ(state_of_command("-i 0.5,x").error().message,
+              "--isovalue got '0.5,x', but it takes numbers separated by commas, at most 32 of them");
+    EXPECT_EQ(state_of_command("--range 2,1").error().message,
+              "--range got '2,1', but it takes two numbers, the smaller one first");
+    for (const char* text : {"-i", "-i nan", "-i inf", "--opacity 2", "--camera x", "--colormap jet", "--field"})
+        EXPECT_FALSE(state_of_command(text)) << text;
+}
+
+TEST(StateOf, RefusesWhatIsNoState) {
+    for (const char* text : {"[]", "3", R"({"isovalues":3})", R"({"isovalues":["a"]})", R"({"isovalues":[1e999]})",
+                             R"({"field":3})", R"({"map":"jet"})", R"({"range":[1,1]})", R"({"range":[1]})",
+                             R"({"opacity":-0.1})", R"({"opacity":"1"})", R"({"camera":"x"})", R"({"outline":1})"}) {
+        const auto json = parse_json(text);
+        if (!json) continue; // 1e999 is no JSON number for the library
+        EXPECT_FALSE(state_of(*json)) << text;
+    }
+    Json many = {{"isovalues", std::vector<double>(max_isovalues + 1, 0.5)}};
+    EXPECT_FALSE(state_of(many));
+    Json longest = {{"field", std::string(max_name_bytes + 1, 'x')}};
+    EXPECT_FALSE(state_of(longest));
+}
+
+} // namespace
+} // namespace isotet::test

@@ -1,0 +1,159 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Frames of a grid: what is sent, what is not sent again, directly and from the packed grid.
+#include <gtest/gtest.h>
+
+#include <isotet/make.hpp>
+
+#include "view/frame_reader.hpp"
+#include "view/grid_view.hpp"
+
+namespace isotet::test {
+namespace {
+
+using namespace view;
+
+Grid made_grid(std::uint64_t side) {
+    MakeOptions options;
+    options.shape = "kuhn";
+    options.side = side;
+    options.fields = {"sphere", "gyroid"};
+    Grid grid = make_grid(options).value();
+    std::vector<float> numbers(grid.cells.count());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i % 7);
+    grid.cell_fields.push_back({"seventh", Array::own(std::move(numbers))});
+    std::vector<float> vectors(3 * grid.points.tuples(), 2);
+    grid.point_fields.push_back({"v", Array::own(std::move(vectors), 3)});
+    return grid;
+}
+
+ShowMessage show(std::uint64_t number, std::vector<double> isovalues, bool moving = false) {
+    ShowMessage message;
+    message.number = number;
+    message.state.field = "sphere";
+    message.state.isovalues = std::move(isovalues);
+    message.moving = moving;
+    return message;
+}
+
+class GridViewTest : public testing::Test {
+protected:
+    std::unique_ptr<GridView> view_ = GridView::create(made_grid(12), {.preview_triangles = 500}).value();
+    std::vector<std::string> known_;
+
+    Json frame(const ShowMessage& message) {
+        auto made = view_->frame(message, 0, known_, {});
+        if (!made) throw std::runtime_error(made.error().message);
+        return head_of(made->bytes);
+    }
+};
+
+TEST_F(GridViewTest, OffersScalarsMagnitudesAndComponents) {
+    std::vector<std::string> names;
+    for (const OfferedField& field : view_->fields()) names.push_back(field.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"sphere", "gyroid", "v:mag", "v:x", "v:y", "v:z", "seventh"}));
+    EXPECT_EQ(view_->fields().back().association, Association::cell);
+}
+
+TEST_F(GridViewTest, TheFirstSurfaceIsDirectAndThePackedGridGivesTheSame) {
+    const Json direct = frame(show(1, {0.7}));
+    EXPECT_EQ(direct["method"], "direct");
+    ASSERT_TRUE(view_->pack("sphere", {}));
+    known_.clear();
+    frame(show(2, {0.5}));
+    known_.clear();
+    const Json packed = frame(show(3, {0.7}));
+    EXPECT_EQ(packed["method"], "clusters");
+    EXPECT_EQ(packed["surfaces"][0]["triangles"], direct["surfaces"][0]["triangles"]);
+    EXPECT_GT(packed["surfaces"][0]["triangles"], 100);
+}
+
+TEST_F(GridViewTest, WhatThePageHasIsNotSentAgain) {
+    Json head = frame(show(1, {0.7, 0.4}));
+    EXPECT_TRUE(head["surfaces"][0].contains("mesh"));
+    EXPECT_TRUE(head["surfaces"][1].contains("mesh"));
+    head = frame(show(2, {0.6, 0.4}));
+    EXPECT_TRUE(head["surfaces"][0].contains("mesh"));
+    EXPECT_FALSE(head["surfaces"][1].contains("mesh")) << "the pinned surface is there already";
+    known_.clear();
+    head = frame(show(3, {0.6, 0.4}));
+    EXPECT_TRUE(head["surfaces"][1].contains("mesh")) << "a new connection has nothing";
+}
+
+TEST_F(GridViewTest, AMovingHandGetsAPreviewAndTheRestAllOfIt) {
+    Json head = frame(show(1, {0.8}, true));
+    EXPECT_EQ(head["preview"], true);
+    EXPECT_LT(head["surfaces"][0]["mesh"]["triangles"], head["surfaces"][0]["triangles"]);
+    head = frame(show(2, {0.8}, false));
+    EXPECT_EQ(head["preview"], false);
+    EXPECT_EQ(head["surfaces"][0]["mesh"]["triangles"], head["surfaces"][0]["triangles"]);
+    head = frame(show(3, {0.8}, true));
+    EXPECT_EQ(head["preview"], false) << "the page has it in full";
+    EXPECT_FALSE(head["surfaces"][0].contains("mesh"));
+}
+
+TEST_F(GridViewTest, ColoursFollowPointAndCellFieldsAndTheirRange) {
+    ShowMessage message = show(1, {0.7});
+    message.state.color_by = "gyroid";
+    Json head = frame(message);
+    EXPECT_TRUE(head["surfaces"][0]["mesh"].contains("colors_at"));
+    EXPECT_LT(head["scale"]["lower"], -1.0);
+    message.state.color_by = "seventh";
+    head = frame(message);
+    EXPECT_FALSE(head["surfaces"][0]["mesh"].contains("corners_at")) << "triangles of a cell field share no vertices";
+    EXPECT_EQ(head["scale"]["upper"], 6.0);
+    message.state.range = ValueRange{1, 2};
+    EXPECT_EQ(frame(message)["scale"]["upper"], 2.0);
+    message.state.range = ValueRange{-1, 2};
+    message.state.logarithmic = true;
+    EXPECT_FALSE(view_->frame(message, 0, known_, {}));
+}
+
+TEST_F(GridViewTest, AnotherFieldIsFollowedDirectlyAndPacked) {
+    ShowMessage message = show(1, {0.2});
+    message.state.field = "gyroid";
+    const auto direct = frame(message)["surfaces"][0]["triangles"];
+    ASSERT_TRUE(view_->pack("sphere", {}));
+    message.state.isovalues = {0.3};
+    frame(message);
+    message.state.isovalues = {0.2};
+    known_.clear();
+    const Json packed = frame(message);
+    EXPECT_EQ(packed["method"], "clusters");
+    EXPECT_EQ(packed["surfaces"][0]["triangles"], direct);
+}
+
+TEST_F(GridViewTest, WrongWishesAreErrorsAndLeaveWhatThePageHas) {
+    frame(show(1, {0.7}));
+    const std::vector<std::string> before = known_;
+    ShowMessage message = show(2, {0.6});
+    message.state.field = "nothing";
+    EXPECT_FALSE(view_->frame(message, 0, known_, {}));
+    message = show(3, {0.6});
+    message.state.color_by = "v";
+    EXPECT_FALSE(view_->frame(message, 0, known_, {}));
+    EXPECT_EQ(known_, before);
+    EXPECT_EQ(frame(show(4, {99}))["surfaces"][0]["triangles"], 0);
+}
+
+TEST_F(GridViewTest, ACancelledFrameIsCancelled) {
+    const std::atomic<bool> cancel{true};
+    const auto made = view_->frame(show(1, {0.7}), 0, known_, {0, {{}, &cancel}});
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::cancelled);
+}
+
+TEST_F(GridViewTest, TheChartCountsAllPointsAndBeginsWhereASurfaceIs) {
+    const Chart chart = view_->chart("sphere", {}).value();
+    std::uint64_t points = 0;
+    for (const std::uint64_t count : chart.points) points += count;
+    EXPECT_EQ(points, 13U * 13 * 13);
+    EXPECT_GT(chart.first, chart.lower);
+    EXPECT_LT(chart.first, chart.upper);
+    EXPECT_GT(frame(show(1, {chart.first}))["surfaces"][0]["triangles"], 0);
+    const Chart constant = view_->chart("v:x", {}).value();
+    EXPECT_EQ(constant.first, 2);
+    EXPECT_FALSE(view_->chart("nothing", {}));
+}
+
+} // namespace
+} // namespace isotet::test

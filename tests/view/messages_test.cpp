@@ -1,0 +1,71 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Messages of a page, right and wrong.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "view/messages.hpp"
+#include "view/random_state.hpp"
+
+namespace isotet::test {
+namespace {
+
+using namespace view;
+
+TEST(ParsePageMessage, TakesEveryKind) {
+    EXPECT_EQ(std::get<HelloMessage>(*parse_page_message(R"({"do":"hello","token":"abc"})")).token, "abc");
+    const auto show = std::get<ShowMessage>(
+        *parse_page_message(R"({"do":"show","number":7,"moving":true,"state":{"field":"p","isovalues":[0.5]}})"));
+    EXPECT_EQ(show.number, 7U);
+    EXPECT_TRUE(show.moving);
+    EXPECT_EQ(show.state.isovalues, std::vector<double>{0.5});
+    EXPECT_EQ(std::get<ShownMessage>(*parse_page_message(R"({"do":"shown","number":7})")).number, 7U);
+    EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p"})")).field, "p");
+    EXPECT_EQ(std::get<CommandMessage>(*parse_page_message(R"({"do":"command","state":{"field":"q"}})")).state.field,
+              "q");
+    EXPECT_EQ(std::get<PasteMessage>(*parse_page_message(R"({"do":"paste","text":"-i 1"})")).text, "-i 1");
+}
+
+TEST(ParsePageMessage, RefusesEverythingElse) {
+    for (const char* text :
+         {"", "x", "[]", "null", "3", "{}", R"({"do":3})", R"({"do":"write"})", R"({"do":"hello"})",
+          R"({"do":"hello","token":3})", R"({"do":"show"})", R"({"do":"show","number":-1,"state":{}})",
+          R"({"do":"show","number":1.5,"state":{}})", R"({"do":"show","number":1})",
+          R"({"do":"show","number":1,"state":[]})", R"({"do":"shown","number":"1"})", R"({"do":"chart"})",
+          R"({"do":"paste","text":null})", "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
+        const auto message = parse_page_message(text);
+        ASSERT_FALSE(message) << text;
+        EXPECT_EQ(message.error().code, ErrorCode::invalid_argument) << text;
+        EXPECT_FALSE(message.error().message.empty());
+    }
+}
+
+TEST(ParsePageMessage, SurvivesDeepNesting) {
+    EXPECT_FALSE(parse_page_message(std::string(60'000, '[')));
+    EXPECT_FALSE(parse_page_message(std::string(30'000, '[') + std::string(30'000, ']')));
+}
+
+TEST(ParsePageMessage, SurvivesEveryTruncationAndManyChanges) {
+    std::mt19937 random(1);
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        const std::string text =
+            text_of({{"do", "show"}, {"number", seed}, {"state", to_json(random_state(seed))}, {"moving", false}});
+        ASSERT_TRUE(parse_page_message(text)) << text;
+        for (std::size_t length = 0; length < text.size(); ++length)
+            EXPECT_FALSE(parse_page_message(std::string_view(text).substr(0, length)));
+        for (int change = 0; change < 200; ++change) {
+            std::string changed = text;
+            changed[random() % changed.size()] = static_cast<char>(random() % 256);
+            const auto message = parse_page_message(changed);
+            EXPECT_TRUE(message || !message.error().message.empty());
+        }
+    }
+}
+
+TEST(Texts, ReplaceBytesThatAreNotUtf8) {
+    EXPECT_TRUE(parse_json(error_text("file", "caf\xe9 \xff")));
+    EXPECT_TRUE(parse_json(refusal_text(1, std::string("\0\x01\"\\", 4))));
+}
+
+} // namespace
+} // namespace isotet::test

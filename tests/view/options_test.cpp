@@ -1,0 +1,57 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The command lines of the page are those that the program takes: they are parsed by its own option tree.
+#include <gtest/gtest.h>
+
+#include "option_tree.hpp"
+#include "options.hpp"
+#include "view/command_line.hpp"
+#include "view/random_state.hpp"
+
+namespace isotet::test {
+namespace {
+
+using view::ViewState;
+
+TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+        SCOPED_TRACE(seed);
+        const ViewState state = random_state(seed);
+        cli::CommandLine line;
+        cli::OptionTree tree(line);
+        const auto parsed = tree.parse(view::render_words(state, "grid.vtu", {"--step", "2"}));
+        ASSERT_TRUE(parsed) << parsed.error().message;
+        const cli::RenderCommand& render = line.render;
+        EXPECT_EQ(line.command, "render");
+        EXPECT_EQ(render.grid.file, "grid.vtu");
+        EXPECT_EQ(render.grid.step, 2U);
+        EXPECT_EQ(render.field.name, state.field);
+        EXPECT_EQ(render.isovalues, state.isovalues);
+        EXPECT_EQ(render.color_by, state.color_by);
+        EXPECT_EQ(render.scale.map, state.map);
+        EXPECT_EQ(render.scale.logarithmic, state.logarithmic);
+        EXPECT_EQ(render.opacity, state.opacity);
+        EXPECT_EQ(render.outline, state.outline);
+        EXPECT_EQ(render.range,
+                  state.range ? (std::vector<double>{state.range->lower, state.range->upper}) : std::vector<double>());
+        EXPECT_EQ(render.camera ? to_text(*render.camera) : "", state.camera ? to_text(*state.camera) : "");
+    }
+}
+
+TEST(ExtractWords, AreOptionsOfTheProgramWithTheSameMeaning) {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+        SCOPED_TRACE(seed);
+        const ViewState state = random_state(seed);
+        cli::CommandLine line;
+        cli::OptionTree tree(line);
+        const auto parsed = tree.parse(view::extract_words(state, "-grid.vtu"));
+        ASSERT_TRUE(parsed) << parsed.error().message;
+        EXPECT_EQ(line.command, "extract");
+        EXPECT_EQ(line.extract.grid.file, "./-grid.vtu");
+        EXPECT_EQ(line.extract.field.name, state.field);
+        EXPECT_EQ(line.extract.isovalues, state.isovalues);
+        EXPECT_EQ(line.extract.out, "surface.vtp");
+    }
+}
+
+} // namespace
+} // namespace isotet::test

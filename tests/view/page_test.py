@@ -1,0 +1,374 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""The page of `isotet view` in Chromium: real mouse and keys, values read back from the page."""
+import os
+import struct
+import sys
+import traceback
+import zlib
+
+from chromium import Browser, Viewer
+
+GRID = 'make:kuhn:16:sphere,gyroid'
+SHIFT = 8
+pictures = os.environ.get('ISOTET_TEST_PICTURES')  # a folder for the screenshots; without it they are not kept
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def shown(browser):
+    return float(browser.value('document.body.dataset.shown'))
+
+
+def start(browser, viewer, extra=''):
+    """A page with its first surface in full."""
+    browser.call('Page.navigate', url='about:blank')
+    browser.open(viewer.address + extra)
+    browser.wait('document.body.dataset.shown !== undefined && document.body.dataset.preview === "false"')
+    browser.wait('document.body.dataset.step === "ready"')
+
+
+def at_rest(browser, value=None):
+    """The surface of the value that the page asks for is on the screen, in full."""
+    if value is not None:
+        browser.wait(f'Number(document.body.dataset.shown) === {value}')
+    browser.wait('document.body.dataset.preview === "false" && Number(document.getElementById("slider")'
+                 '.getAttribute("aria-valuenow")) === Number(document.body.dataset.shown)')
+
+
+def pixels(data):
+    """Width, height and rows of RGB bytes of a PNG as Chromium writes it."""
+    at, packed, width, height, channels = 8, b'', 0, 0, 3
+    while at < len(data):
+        length, kind = struct.unpack('>I4s', data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        if kind == b'IHDR':
+            width, height, _, color = struct.unpack('>IIBB', body[:10])
+            channels = {2: 3, 6: 4}[color]
+        if kind == b'IDAT':
+            packed += body
+        at += length + 12
+    raw, rows, before = zlib.decompress(packed), [], bytes(width * channels)
+    for y in range(height):
+        kind, *line = raw[y * (width * channels + 1):(y + 1) * (width * channels + 1)]
+        for x, value in enumerate(line):
+            left = line[x - channels] if x >= channels else 0
+            corner = before[x - channels] if x >= channels else 0
+            if kind == 1:
+                value += left
+            elif kind == 2:
+                value += before[x]
+            elif kind == 3:
+                value += (left + before[x]) // 2
+            elif kind == 4:
+                guess = left + before[x] - corner
+                value += min((left, before[x], corner), key=lambda near: abs(guess - near))
+            line[x] = value & 255
+        before = bytes(line)
+        rows.append(before if channels == 3 else bytes(b for i, b in enumerate(before) if i % 4 != 3))
+    return width, height, rows
+
+
+def share_of_surface(browser):
+    """Part of the picture's pixels that are not background: every fourth each way, without the axes."""
+    ratio = browser.value('devicePixelRatio')
+    x, y, w, h = (int(v * ratio) for v in browser.box('#scene'))
+    _, _, rows = pixels(browser.picture())
+    back = rows[y + 4][3 * (x + w - 8):3 * (x + w - 8) + 3]
+    inside = [rows[j][3 * i:3 * i + 3] != back for j in range(y, y + int(0.85 * h), 4) for i in range(x + 4, x + w - 4, 4)]
+    return sum(inside) / len(inside)
+
+
+def test_first_surface(browser, viewer):
+    start(browser, viewer)
+    check(0.6 < shown(browser) < 1.3, 'the first value is one with a large surface')
+    check(int(browser.value('document.body.dataset.triangles')) > 1000, 'triangles are there')
+    check(0.1 < share_of_surface(browser) < 0.7, 'the surface is in the picture')
+
+
+def test_drag(browser, viewer):
+    """The surface follows the hand: values between the ends are shown while it moves, the last one at the end."""
+    start(browser, viewer)
+    browser.value('window.seen = []; new MutationObserver(() => seen.push(Number(document.body.dataset.shown)))'
+                  '.observe(document.body, {attributes: true, attributeFilter: ["data-shown"]})')
+    x, y, w, h = browser.box('#slider')
+    browser.drag((x + 0.3 * w, y + h / 2), (x + 0.6 * w, y + h / 2), steps=30)
+    at_rest(browser)
+    seen = browser.value('seen')
+    check(abs(seen[-1] - 0.6 * 3 ** 0.5) < 0.01, f'the last value is that under the hand: {seen[-1]}')
+    check(any(0.55 < value < 1.0 for value in seen[:-1]), f'values on the way are shown: {seen}')
+    moving = [value for value in seen if value != seen[0]]  # the first jump is down to where the hand begins
+    check(moving == sorted(moving), f'no value of the past comes late: {seen}')
+
+
+def test_type(browser, viewer):
+    start(browser, viewer)
+    browser.click('#value')
+    browser.value('document.getElementById("value").select()')
+    browser.type('0.5')
+    before = shown(browser)
+    check(before != 0.5, 'nothing happens before Enter')
+    browser.key('Enter')
+    at_rest(browser, 0.5)
+    browser.value('document.getElementById("value").select()')
+    browser.type('half')
+    browser.key('Enter')
+    browser.wait('document.getElementById("value").getAttribute("aria-invalid") === "true"')
+    check('number' in browser.value('document.getElementById("message").textContent'), 'the rule is told')
+    check(shown(browser) == 0.5, 'the last surface stays')
+
+
+def test_orbit_pan_zoom(browser, viewer):
+    start(browser, viewer)
+    x, y, w, h = browser.box('#scene')
+    cameras = [browser.value('document.body.dataset.camera')]
+
+    def moved(what):
+        browser.wait(f'document.body.dataset.camera !== "{cameras[-1]}"')
+        browser.value('new Promise(done => setTimeout(done, 100))')
+        cameras.append(browser.value('document.body.dataset.camera'))
+        parts = [[float(v) for v in part.split(',')] for part in cameras[-1].split(':')[1:]]
+        check(abs(sum(v * v for v in parts[1]) - 1) < 1e-6, f'{what}: the direction is a unit')
+        return parts
+
+    browser.drag((x + w / 2, y + h / 2), (x + w / 2 + 80, y + h / 2 + 40))
+    moved('orbit')
+    browser.drag((x + w / 2, y + h / 2), (x + w / 2 + 80, y + h / 2), modifiers=SHIFT)
+    before = [float(v) for v in cameras[-1].split(':')[1].split(',')]
+    check(before != moved('pan')[0], 'panning moves the target')
+    near = float(cameras[-1].split(':')[4])
+    browser.mouse('mouseWheel', x + w / 2, y + h / 2, button='none', buttons=0, deltaX=0, deltaY=-200)
+    check(moved('zoom')[3][0] < near, 'the wheel goes nearer')
+    browser.key('f')
+    moved('fit')
+    browser.key('1')
+    check(moved('front')[1] == [0, -1, 0], 'the front looks along y')
+    browser.key('5')
+    browser.wait('document.body.dataset.camera.startsWith("parallel")')
+
+
+def test_point_stays_under_the_pointer(browser, viewer):
+    """Panning: what was under the pointer when it went down is under it afterwards."""
+    start(browser, viewer)
+    browser.key('1')
+    browser.wait('document.body.dataset.camera.split(":")[2] === "0,-1,0"')
+    x, y, w, h = browser.box('#scene')
+    before = [float(v) for v in browser.value('document.body.dataset.camera').split(':')[1].split(',')]
+    distance = float(browser.value('document.body.dataset.camera').split(':')[4])
+    radius = shown(browser)
+    browser.drag((x + w / 2, y + h / 2), (x + w / 2 + 100, y + h / 2), modifiers=SHIFT)
+    browser.wait(f'Math.abs(Number(document.body.dataset.camera.split(":")[1].split(",")[0]) - {before[0]}) > 0.01')
+    browser.value('new Promise(done => setTimeout(done, 100))')
+    after = [float(v) for v in browser.value('document.body.dataset.camera').split(':')[1].split(',')]
+    depth = distance - radius if radius < 1 else distance  # of the near side of the sphere, or of the middle
+    expected = -100 / h * 2 * depth * 0.22169466264  # tan(12.5 degrees)
+    check(abs(after[0] - before[0] - expected) < 0.03 * abs(expected), f'{after[0] - before[0]} in place of {expected}')
+
+
+def test_keyboard_only(browser, viewer):
+    start(browser, viewer)
+    for _ in range(40):
+        if browser.value('document.activeElement.id') == 'slider':
+            break
+        browser.key('Tab')
+    check(browser.value('document.activeElement.id') == 'slider', 'Tab leads to the slider')
+    check(browser.value('getComputedStyle(document.activeElement).outlineStyle') != 'none', 'the focus is visible')
+    before = shown(browser)
+    browser.key('ArrowRight')
+    browser.wait(f'Number(document.body.dataset.shown) > {before}')
+    at_rest(browser)
+    coarse = shown(browser) - before
+    middle = shown(browser)
+    browser.key('ArrowRight', modifiers=SHIFT)
+    browser.wait(f'Number(document.body.dataset.shown) > {middle}')
+    at_rest(browser)
+    check(0 < shown(browser) - middle < 0.3 * coarse, 'Shift is finer')
+    middle = shown(browser)
+    browser.key('PageDown')
+    browser.wait(f'Number(document.body.dataset.shown) < {middle}')
+    at_rest(browser)
+    check(middle - shown(browser) > 5 * coarse, 'Page Down is coarser')
+    browser.key('p')
+    browser.wait('document.querySelectorAll("#surfaces li").length === 2')
+    missing = browser.value('[...document.querySelectorAll("button, input, select, [role=slider], canvas[tabindex]")].filter(e => '
+                            '!(e.getAttribute("aria-label") || e.labels?.length || e.textContent.trim())).map(e => e.id || e.outerHTML)')
+    check(missing == [], f'controls without a name: {missing}')
+
+
+def test_pins_undo_and_address(browser, viewer):
+    start(browser, viewer)
+    first = shown(browser)
+    browser.click('#pin')
+    x, y, w, h = browser.box('#slider')
+    browser.drag((x + 0.2 * w, y + h / 2), (x + 0.4 * w, y + h / 2), steps=4)
+    at_rest(browser)
+    second = shown(browser)
+    check(second != first, 'the slider goes on')
+    check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'the pinned surface stays')
+    browser.wait(f'location.hash.includes("i={second}") && location.hash.includes("pin=")')
+    browser.picture(pictures and f'{pictures}/pins.png')
+    browser.value('history.back()')
+    at_rest(browser, first)
+    browser.value('history.forward()')
+    at_rest(browser, second)
+    browser.call('Page.reload')
+    browser.wait('document.readyState === "complete" && document.body.dataset.shown !== undefined')
+    at_rest(browser, second)
+    check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'a reloaded page has its pins')
+
+
+def test_colour_by_field(browser, viewer):
+    start(browser, viewer)
+    plain = browser.picture()
+    browser.value('(() => { const s = document.getElementById("color-by"); s.value = "gyroid"; s.dispatchEvent(new Event("change")); })()')
+    browser.wait('document.getElementById("range-upper").value !== ""')
+    at_rest(browser)
+    browser.value('new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))')
+    colored = browser.picture(pictures and f'{pictures}/color.png')
+    check(plain != colored, 'the picture has other colours')
+    colors = {row[i:i + 3] for row in pixels(colored)[2][200:500:10] for i in range(600, 2400, 30)}
+    check(len(colors) > 40, f'a colour map has many colours: {len(colors)}')
+    browser.value('document.getElementById("range-upper").select()')
+    browser.click('#range-upper')
+    browser.value('document.getElementById("range-upper").select()')
+    browser.type('-9')
+    browser.key('Enter')
+    browser.wait('document.getElementById("message").textContent.includes("smaller one first")')
+
+
+def test_commands(browser, viewer):
+    start(browser, viewer)
+    browser.click('#copy-extract')
+    browser.wait('document.getElementById("copied").textContent.includes("isotet extract")')
+    text = browser.value('document.getElementById("copied").textContent')
+    check(f'--isovalue {browser.value("document.body.dataset.shown")}' in text, text)
+    browser.click('#copy-render')
+    browser.wait('document.getElementById("copied").textContent.includes("--camera")')
+    browser.click('#command')
+    browser.type('isotet render x.vtu -f gyroid -i 0.25,0.5 --color-by sphere')
+    browser.key('Enter')
+    at_rest(browser, 0.25)
+    check(browser.value('document.body.dataset.field') == 'gyroid', 'the field follows')
+    check(browser.value('document.querySelectorAll("#surfaces li").length') == 2, 'a surface an isovalue')
+    check(browser.value('document.getElementById("color-by").value') == 'sphere', 'the colours follow')
+
+
+def test_reconnect(browser, viewer):
+    """A connection that is lost comes back, with what was shown, and the slider works again."""
+    script = browser.call('Page.addScriptToEvaluateOnNewDocument', source='window.sockets = []; window.WebSocket = class extends '
+                          'WebSocket { constructor(...all) { super(...all); sockets.push(this); } };')['identifier']
+    start(browser, viewer)
+    browser.call('Page.removeScriptToEvaluateOnNewDocument', identifier=script)
+    browser.click('#pin')
+    before = shown(browser)
+    browser.value('window.lost = 0; new MutationObserver(() => { if (document.body.dataset.link === "lost") ++lost; })'
+                  '.observe(document.body, {attributes: true, attributeFilter: ["data-link"]})')
+    frame = int(browser.value('document.body.dataset.frame'))
+    browser.value('sockets[0].close()')
+    browser.wait('lost === 1')
+    browser.wait('document.body.dataset.link === "open"')
+    browser.wait(f'Number(document.body.dataset.frame) > {frame}')
+    at_rest(browser, before)
+    browser.value('document.getElementById("slider").focus()')
+    browser.key('PageDown')
+    browser.wait(f'Number(document.body.dataset.shown) < {before}')
+
+
+def test_wrong_token(browser, viewer):
+    browser.call('Page.navigate', url='about:blank')
+    browser.open(viewer.address.split('#')[0] + '#0123456789')
+    browser.wait('document.getElementById("message").textContent.includes("earlier run")')
+
+
+def overlaps(browser):
+    """Texts that are cut, and controls over others."""
+    return browser.value('''(() => {
+      const bad = [], seen = [...document.querySelectorAll('#panel button, #panel input, #panel select, #panel h2, #slider')]
+        .filter(e => e.getClientRects().length && !e.closest('.unseen')).map(e => [e, e.getBoundingClientRect()]);
+      for (const [e, b] of seen) {
+        if (b.left < -0.5 || b.right > innerWidth + 0.5) bad.push('outside: ' + (e.id || e.textContent));
+        if (e.scrollWidth > e.clientWidth + 1 && e.tagName === 'BUTTON') bad.push('cut: ' + (e.id || e.textContent));
+      }
+      for (let i = 0; i < seen.length; ++i) for (let j = i + 1; j < seen.length; ++j) {
+        const [a, p] = seen[i], [b, q] = seen[j];
+        if (a.contains(b) || b.contains(a)) continue;
+        if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1)
+          bad.push('over each other: ' + (a.id || a.textContent) + ', ' + (b.id || b.textContent));
+      }
+      if (document.documentElement.scrollWidth > innerWidth) bad.push('the page scrolls sideways');
+      return bad;
+    })()''')
+
+
+def test_layout(browser, viewer):
+    for width, height, ratio in ((1280, 720, 1), (390, 844, 1), (1280, 720, 2)):
+        browser.resize(width, height, ratio)
+        try:
+            start(browser, viewer)
+            browser.click('#pin')
+            browser.wait(f'scene.width === {ratio} * scene.clientWidth')  # the pixels of the screen, at rest
+            check(overlaps(browser) == [], f'{width} x {height}: {overlaps(browser)}')
+            browser.picture(pictures and f'{pictures}/{width}x{height}@{ratio}.png')
+        finally:
+            browser.resize(1280, 720)
+
+
+def contrasts(browser):
+    """Texts below 4.5 : 1 against what is behind them."""
+    return browser.value('''(() => {
+      const rgb = t => t.match(/[\\d.]+/g).map(Number);
+      const light = c => { const [r, g, b] = c.map(v => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+      const behind = e => { for (; e; e = e.parentElement) { const c = rgb(getComputedStyle(e).backgroundColor); if (c.length === 3 || c[3] > 0) return c.slice(0, 3); } return [255, 255, 255]; };
+      const bad = [];
+      for (const e of document.querySelectorAll('h1, h2, span, label, button, select, input, p, li')) {
+        if (!e.getClientRects().length || e.matches('[type=color], [type=range], [type=checkbox]')) continue;
+        const a = light(rgb(getComputedStyle(e).color).slice(0, 3)), b = light(behind(e));
+        const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+        if (ratio < 4.5) bad.push((e.id || e.textContent || e.tagName) + ' ' + ratio.toFixed(2));
+      }
+      return bad;
+    })()''')
+
+
+def test_contrast_light_and_dark(browser, viewer):
+    for scheme in ('light', 'dark'):
+        browser.call('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': scheme}])
+        start(browser, viewer)
+        check(contrasts(browser) == [], f'{scheme}: {contrasts(browser)}')
+        browser.picture(pictures and f'{pictures}/{scheme}.png')
+    browser.call('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': 'light'}])
+
+
+def test_end(browser, viewer):
+    start(browser, viewer)
+    check(viewer.stop() == 0, 'Ctrl-C ends it without an error')
+    browser.wait('document.getElementById("link").textContent !== ""')
+
+
+def main():
+    wanted = sys.argv[1:]
+    tests = [f for name, f in globals().items() if name.startswith('test_') and (not wanted or name in wanted)]
+    failed = 0
+    with Viewer(GRID) as viewer:
+        browser = Browser()
+        try:
+            for test in tests:
+                try:
+                    browser.errors.clear()
+                    test(browser, viewer)
+                    errors = [e for e in browser.errors if 'WebSocket connection' not in e]
+                    check(not errors, f'errors of the page: {errors}')
+                    print('ok', test.__name__, flush=True)
+                except Exception:
+                    failed += 1
+                    print('FAILED', test.__name__)
+                    traceback.print_exc(file=sys.stdout)
+        finally:
+            browser.close()
+    return 1 if failed else 0
+
+
+sys.exit(main())
