@@ -140,6 +140,8 @@ struct PointField {
 /// What a name means that is both a point and a cell field.
 struct FindFieldOptions {
     Association prefer = Association::point;
+    bool for_pieces = false; ///< average a cell field so that pieces with a layer of ghost cells get the values of the
+                             ///< whole grid, bit for bit: cells are added in the order of their values
 };
 
 /// Finds the scalar field called `name` on a grid.

@@ -9,6 +9,7 @@
 #include "core/incidence.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
+#include "core/renumber.hpp"
 
 namespace isotet::core {
 
@@ -60,12 +61,16 @@ Incidence<Index> cells_around_points(const CellReader& cells, const Buffer<doubl
 }
 
 template <class Value, class Index>
-Array average(const CellReader& cells, const Buffer<double>& volumes, const Array& values, Scalar scalar) {
+Array average(const CellReader& cells, const Buffer<double>& volumes, const Array& values, Scalar scalar,
+              bool by_value) {
     Incidence<Index> around = cells_around_points<Index>(cells, volumes);
     Buffer<Value> means(cells.points());
     parallel_each(means.size(), grain, [&](std::size_t point) {
         const std::span<Index> list = around.of(point);
         std::ranges::sort(list);
+        if (by_value)
+            std::ranges::sort(list, {},
+                              [&](Index cell) { return std::pair(scalar_at(values, scalar, cell), volumes[cell]); });
         const bool flat = std::ranges::all_of(list, [&](Index cell) { return volumes[cell] == 0; });
         RunningMean mean;
         for (const Index cell : list) mean.add(scalar_at(values, scalar, cell), flat ? 1 : volumes[cell]);
@@ -76,14 +81,20 @@ Array average(const CellReader& cells, const Buffer<double>& volumes, const Arra
 
 } // namespace
 
-Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar) {
-    const Buffer<double> volumes = volumes_of(grid, cells, values, scalar);
+Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar, bool by_value) {
+    Buffer<double> volumes;
+    if (by_value && !grid.point_numbers.empty()) {
+        const Renumbered sorted = sort_points_by_number(grid).value();
+        volumes = volumes_of(sorted.grid, CellReader::open(sorted.grid).value(), values, scalar);
+    } else {
+        volumes = volumes_of(grid, cells, values, scalar);
+    }
     const bool narrow = cells.count() <= std::numeric_limits<std::uint32_t>::max();
     if (values.type() == ScalarType::float32)
-        return narrow ? average<float, std::uint32_t>(cells, volumes, values, scalar)
-                      : average<float, std::uint64_t>(cells, volumes, values, scalar);
-    return narrow ? average<double, std::uint32_t>(cells, volumes, values, scalar)
-                  : average<double, std::uint64_t>(cells, volumes, values, scalar);
+        return narrow ? average<float, std::uint32_t>(cells, volumes, values, scalar, by_value)
+                      : average<float, std::uint64_t>(cells, volumes, values, scalar, by_value);
+    return narrow ? average<double, std::uint32_t>(cells, volumes, values, scalar, by_value)
+                  : average<double, std::uint64_t>(cells, volumes, values, scalar, by_value);
 }
 
 } // namespace isotet::core

@@ -19,6 +19,10 @@ namespace isotet::core {
 ///              mean is their value exactly
 /// Cost         two passes over the cells and one over the points; 8 bytes a cell, 8 a point and 4 a corner (8 above
 ///              2^32 cells) beside the result, which is float32 for float32 and float64 for all other types
-Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar);
+///
+/// `by_value`   cells around a point are added in the order of their values and volumes, not of their numbers, and
+///              volumes follow from Grid::point_numbers: pieces with ghost cells get the values of the whole
+Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
+                        bool by_value = false);
 
 } // namespace isotet::core

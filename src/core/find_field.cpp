@@ -58,13 +58,15 @@ Result<void> check_length(const Field& field, std::string_view what, std::size_t
                                         what));
 }
 
-Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar) {
-    const Grid bare{grid.points, grid.cells, {}, {}};
+Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar, bool by_value) {
+    const Grid bare{grid.points, grid.cells, {}, {}, grid.point_numbers};
     const auto cells = core::CellReader::open(bare);
     if (!cells) return cells.error();
     if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
     if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
-    return core::average_to_points(bare, *cells, field.values, scalar);
+    if (by_value && !grid.point_numbers.empty())
+        if (auto numbers = core::check_point_numbers(bare); !numbers) return numbers.error();
+    return core::average_to_points(bare, *cells, field.values, scalar, by_value);
 }
 
 Result<PointField> coordinate(const Grid& grid, std::string_view name) {
@@ -75,7 +77,7 @@ Result<PointField> coordinate(const Grid& grid, std::string_view name) {
     return PointField{std::string(name), core::scalar_of(grid.points, *core::parse_scalar(name)), false, {}};
 }
 
-Result<PointField> find_by_name(const Grid& grid, std::string_view name, Association prefer) {
+Result<PointField> find_by_name(const Grid& grid, std::string_view name, const FindFieldOptions& options) {
     const std::vector<std::string> names = names_of(grid);
     if (name.empty()) {
         if (names.size() != 1)
@@ -93,14 +95,14 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Associa
                 : fmt::format("the field is '{}', but the grid has {}", name, in_quotes(nearest_first(name, names))));
     const Field* of_points = find(grid.point_fields, match->field);
     const Field* of_cells = find(grid.cell_fields, match->field);
-    const bool take_cells = of_cells && (!of_points || prefer == Association::cell);
+    const bool take_cells = of_cells && (!of_points || options.prefer == Association::cell);
     const Field& field = take_cells ? *of_cells : *of_points;
     const auto scalar = choose_scalar(field, match->component);
     if (!scalar) return scalar.error();
 
     PointField found{std::string(name), {}, take_cells, {}};
     if (take_cells) {
-        auto values = average(grid, field, *scalar);
+        auto values = average(grid, field, *scalar, options.for_pieces);
         if (!values) return values.error();
         found.values = std::move(*values);
     } else {
@@ -118,7 +120,7 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, Associa
 Result<PointField> find_field(const Grid& grid, std::string_view name, const FindFieldOptions& options,
                               const Run& run) {
     return core::carry_out("finding the field", run,
-                           [&](const Progress&) { return find_by_name(grid, name, options.prefer); });
+                           [&](const Progress&) { return find_by_name(grid, name, options); });
 }
 
 } // namespace isotet

@@ -1,6 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Directions of the gradient at points: the sum over the valid tets of each point, in stored order, of the tet's
-// gradient times its volume, in double.
+// gradient times its volume, in double; of a piece with a frame, in the order of the terms' values.
 #include <vector>
 
 #include "core/local_values.hpp"
@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "core/storage.hpp"
 #include "core/stored_cells.hpp"
+#include "core/sum_of_terms.hpp"
 #include "core/tet_gradient.hpp"
 
 namespace isotet::core {
@@ -55,23 +56,41 @@ public:
 private:
     void one_cluster(std::size_t c) {
         const ClusterHeader& h = packed_.headers[c];
+        if (packed_.frame) return one_cluster_of_piece(c);
         Point sums[max_cluster_points] = {};
-        add_tets(c, h.ghost_points, h.own_points, sums);
-        for (std::uint64_t i = borrowers_.first[c]; i < borrowers_.first[c + 1]; ++i) {
-            const Borrower& borrower = borrowers_.list[i];
-            Point borrowed[max_cluster_points];
-            const auto links = packed_.cluster_links(borrower.cluster);
-            for (std::size_t k = 0; k < borrower.points; ++k)
-                borrowed[k] = sums[links.ghost_points[borrower.first_local + k]];
-            add_tets(borrower.cluster, borrower.first_local, borrower.points, borrowed);
-            for (std::size_t k = 0; k < borrower.points; ++k)
-                sums[links.ghost_points[borrower.first_local + k]] = borrowed[k];
-        }
+        add_all_tets(c, [&](std::size_t own, const Point& gradient) {
+            for (std::size_t axis = 0; axis < 3; ++axis) sums[own][axis] += gradient[axis];
+        });
         for (std::size_t k = 0; k < h.own_points; ++k) packed_.gradients[h.first_point + k] = encode_normal(sums[k]);
     }
 
-    /// Adds the tets of a cluster to the sums of its local points [first, first + count).
-    void add_tets(std::size_t cluster, std::size_t first, std::size_t count, Point* sums) const {
+    /// In an order that all pieces have alike.
+    void one_cluster_of_piece(std::size_t c) {
+        const ClusterHeader& h = packed_.headers[c];
+        std::vector<std::vector<Point>> terms(h.own_points);
+        add_all_tets(c, [&](std::size_t own, const Point& gradient) { terms[own].push_back(gradient); });
+        for (std::size_t k = 0; k < h.own_points; ++k)
+            packed_.gradients[h.first_point + k] = encode_normal(sum_of_terms(terms[k]));
+    }
+
+    /// Calls add(own point, term) for all tets of the cluster's own points.
+    template <class Add>
+    void add_all_tets(std::size_t c, const Add& add) const {
+        const ClusterHeader& h = packed_.headers[c];
+        add_tets(c, h.ghost_points, h.own_points, add);
+        for (std::uint64_t i = borrowers_.first[c]; i < borrowers_.first[c + 1]; ++i) {
+            const Borrower& borrower = borrowers_.list[i];
+            const auto links = packed_.cluster_links(borrower.cluster);
+            add_tets(borrower.cluster, borrower.first_local, borrower.points,
+                     [&](std::size_t k, const Point& gradient) {
+                         add(links.ghost_points[borrower.first_local + k], gradient);
+                     });
+        }
+    }
+
+    /// Calls add(place among them, term) for the tets of a cluster at its local points [first, first + count).
+    template <class Add>
+    void add_tets(std::size_t cluster, std::size_t first, std::size_t count, const Add& add) const {
         Real values[max_cluster_points], positions[3 * max_cluster_points];
         load_values(packed_, cluster, values);
         load_positions(packed_, cluster, positions);
@@ -93,8 +112,7 @@ private:
             if (others && six_volumes(corners[0], corners[1], corners[2], corners[3]) < 0)
                 for (double& x : gradient) x = -x;
             for (const std::uint8_t corner : v)
-                if (wanted(corner))
-                    for (std::size_t axis = 0; axis < 3; ++axis) sums[corner - first][axis] += gradient[axis];
+                if (wanted(corner)) add(corner - first, gradient);
         });
     }
 

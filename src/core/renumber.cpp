@@ -67,13 +67,19 @@ Array in_order(const Array& values, const Buffer<std::uint64_t>& original) {
     });
 }
 
-Result<Renumbered> sort_points_by_number(const Grid& grid) {
+Result<void> check_point_numbers(const Grid& grid) {
     const Array& numbers = grid.point_numbers;
     if (is_floating(numbers.type()) || size_of(numbers.type()) < 4 || numbers.components() != 1 ||
         numbers.tuples() != grid.points.tuples())
         return invalid_data(fmt::format("the point numbers are {} x {} {}, but must be {} 32- or 64-bit integers",
                                         numbers.tuples(), numbers.components(), name_of(numbers.type()),
                                         grid.points.tuples()));
+    return {};
+}
+
+Result<Renumbered> sort_points_by_number(const Grid& grid) {
+    if (auto ok = check_point_numbers(grid); !ok) return ok.error();
+    const Array& numbers = grid.point_numbers;
     Renumbered out;
     out.original = order_of(numbers);
     const IndexColumn connectivity(grid.cells.connectivity);

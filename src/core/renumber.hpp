@@ -15,8 +15,11 @@ struct Renumbered {
     Buffer<std::uint64_t> original; ///< new index -> index in the user's grid
 };
 
-/// `grid`   checked (check_cells), with point numbers
 /// Errors   invalid_data when the numbers are not 32- or 64-bit integers, one a point
+Result<void> check_point_numbers(const Grid& grid);
+
+/// `grid`   checked (check_cells), with point numbers
+/// Errors   as check_point_numbers()
 Result<Renumbered> sort_points_by_number(const Grid& grid);
 
 /// Tuples in the new order.

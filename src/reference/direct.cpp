@@ -14,6 +14,7 @@
 #include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/storage.hpp"
+#include "core/sum_of_terms.hpp"
 #include "core/tet_gradient.hpp"
 #include "reference/triangles.hpp"
 
@@ -169,6 +170,7 @@ public:
         rounds_ = input.grid.points.type() == ScalarType::float64 && precision == Precision::float32;
         if (rounds_) origin_ = input.frame ? core::origin_in(input.frame->whole) : origin_of(points_, used_);
         result.origin = origin_;
+        is_piece_ = input.frame != nullptr;
         for (const std::uint64_t point : used_) {
             values_[point] = core::store_value<Real>(field_.at(point), storage_);
             result.field.flushed += values_[point] == 0 && field_.at(point) != storage_.offset;
@@ -205,6 +207,7 @@ private:
     std::set<std::uint64_t> used_;
     core::Storage storage_;
     bool rounds_ = false; ///< coordinates
+    bool is_piece_ = false;
     std::array<double, 3> origin_{};
     std::map<std::uint64_t, Real> values_; ///< stored ones, of the used points
 };
@@ -259,6 +262,7 @@ void StoredGrid<Real>::report_ties(double isovalue, const core::StoredIsovalue<R
 template <class Real>
 std::map<std::uint64_t, std::uint32_t> StoredGrid<Real>::gradients() const {
     std::map<std::uint64_t, Point> sums;
+    std::map<std::uint64_t, std::vector<Point>> terms;
     for (const UserTet& tet : tets_) {
         if (!is_valid(tet)) continue;
         std::array<Point, 4> corners;
@@ -269,9 +273,13 @@ std::map<std::uint64_t, std::uint32_t> StoredGrid<Real>::gradients() const {
             values[k] = values_.at(tet.corners[k]);
         }
         const Point gradient = core::six_volumes_times_gradient(corners, values);
-        for (const std::uint64_t corner : tet.corners)
+        for (const std::uint64_t corner : tet.corners) {
+            terms[corner].push_back(gradient);
             for (std::size_t axis = 0; axis < 3; ++axis) sums[corner][axis] += gradient[axis];
+        }
     }
+    if (is_piece_)
+        for (auto& [point, list] : terms) sums[point] = core::sum_of_terms(list);
     std::map<std::uint64_t, std::uint32_t> codes;
     for (const auto& [point, sum] : sums) codes[point] = core::encode_normal(sum);
     return codes;

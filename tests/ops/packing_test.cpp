@@ -139,7 +139,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
                                         q = locals[c].at(cell.corners[face.corners[(k + 1) % face.count]]);
                     edge_holders[{std::min(p, q), std::max(p, q)}].insert(c);
                 }
-            const core::WholeCell user = core::user_cell(packed, locals[c].data(), cell);
+            const core::WholeCell user = core::ranked_cell(packed, locals[c].data(), cell);
             stored.emplace(std::vector<std::uint64_t>(user.corners.begin(), user.corners.begin() + cell.corners.size()),
                            static_cast<std::int64_t>(packed.user_cell(packed.first_word(c) + cell.word)));
         });

@@ -52,7 +52,9 @@ TEST(SessionsOfPieces, GiveTheSurfaceOfTheWholeOverTimeSteps) {
             ContourOptions options;
             options.method = method;
             if (!whole) whole = Contour::create(input_of(grid, at_time(grid, time)), options).value();
-            else EXPECT_EQ(whole->set(input_of(grid, at_time(grid, time))).value() == ContourUpdate::grid, method == Method::direct);
+            else
+                EXPECT_EQ(whole->set(input_of(grid, at_time(grid, time))).value() == ContourUpdate::grid,
+                          method == Method::direct);
             std::vector<Survey> surveys;
             for (const Grid& piece : pieces) surveys.push_back(survey_piece(piece, at_time(piece, time)).value());
             options.frame = make_frame(surveys).value();

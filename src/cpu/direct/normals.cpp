@@ -8,6 +8,7 @@
 #include "core/bits.hpp"
 #include "core/incidence.hpp"
 #include "core/parallel.hpp"
+#include "core/sum_of_terms.hpp"
 #include "core/tet_gradient.hpp"
 
 namespace isotet::cpu::direct {
@@ -73,9 +74,14 @@ public:
             const std::span<Index> around = cells_around.of(number);
             std::sort(around.begin(), around.end());
             core::Point sum{};
+            std::vector<core::Point> terms; // of a piece
+            const auto add = [&](const core::Point& gradient) {
+                if (source_.input().frame) return terms.push_back(gradient);
+                for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += gradient[axis];
+            };
             for (std::size_t i = 0; i < around.size(); ++i)
-                if (i == 0 || around[i] != around[i - 1]) add_cell(around[i], point, sum); // once, with all its pieces
-            codes[number] = core::encode_normal(sum);
+                if (i == 0 || around[i] != around[i - 1]) add_cell(around[i], point, add); // once, with all its pieces
+            codes[number] = core::encode_normal(source_.input().frame ? core::sum_of_terms(terms) : sum);
         });
         return codes;
     }
@@ -86,7 +92,8 @@ private:
         return std::none_of(tet.begin(), tet.end(), [&](std::uint64_t point) { return sides_[point] & side::no_data; });
     }
 
-    void add_cell(std::size_t cell, std::uint64_t point, core::Point& sum) {
+    template <class Add>
+    void add_cell(std::size_t cell, std::uint64_t point, const Add& add) {
         const core::CellTets pieces = cells_.tets(cell);
         core::Orienter::Counts counts;
         for (int piece = 0; piece < pieces.count; ++piece) {
@@ -100,8 +107,7 @@ private:
                 corners[k] = {position[0], position[1], position[2]};
                 values[k] = source_.value(stored[k]);
             }
-            const core::Point gradient = core::six_volumes_times_gradient(corners, values);
-            for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += gradient[axis];
+            add(core::six_volumes_times_gradient(corners, values));
         }
         if (counts.flat) saw_flat_.store(true, std::memory_order_relaxed);
     }
