@@ -31,11 +31,17 @@ ISOTET_API std::string name_of_cell_type(std::uint8_t vtk_type);
 /// `offsets`       int32, uint32, int64 or uint64, one component, one more than there are cells; or empty: then every
 ///                 cell is a `uniform_type` and cell c starts at c times its number of corners
 /// `types`         uint8, one a cell (VTK's numbers); or empty: every cell is a `uniform_type`
+/// `faces`         empty, or as the connectivity: the faces of polyhedra (VTK's 42). A cell has its number of faces, then
+///                 for each face its number of points and these points, in any winding
+/// `face_offsets`  empty, or as the offsets, one more than there are cells: where each cell's part of `faces` starts; cells
+///                 of other types have none. A polyhedron's own points stand in the connectivity, each once
 struct ISOTET_API Cells {
     Array connectivity;
     Array offsets;
     Array types;
     CellType uniform_type = CellType::tetrahedron;
+    Array faces = {};
+    Array face_offsets = {};
 
     std::size_t count() const noexcept;
 };
