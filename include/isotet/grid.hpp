@@ -62,8 +62,8 @@ struct GridReport {
     std::size_t points = 0;
     std::size_t cells = 0;
     std::map<std::uint8_t, std::size_t> cells_by_type; ///< VTK's number -> cells
-    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic,
-                                                       ///< polyhedral)
+    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic), and
+                                                       ///< polyhedra without faces that close
     std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones
                                                        ///< counted
     std::size_t collapsed_tets = 0;         ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
@@ -84,7 +84,7 @@ struct SurveyOptions {
     bool faces = true; ///< count repeated tets, duplicate points and boundary faces, too
 };
 
-/// Checks a grid and counts what is in it.
+/// Checks a grid and counts what is in it. Polyhedra are counted as tets of what linearize() makes of them.
 ///
 /// Guarantees   the same counts for any thread count
 /// Cost         O(n): two passes over the cells and one over the points, a byte a point; with `faces` every tet, face
