@@ -64,7 +64,7 @@ struct CheckOptions {
 ///
 /// Blamed are edges as the options ask (without `closed` and `grid`: none), triangles with two equal corners, and
 /// triangles that repeat an earlier one, except, with `grid`, on a face that two valid cells use from one side. Cells
-/// count as they are stored: each upright, repeated ones once. With `weld` all numbers are those after welding.
+/// count as they are stored: each upright, repeated ones once; polyhedra as a session makes them linear. With `weld` all numbers are those after welding.
 ///
 /// Guarantees   the same report for any number of threads
 /// Errors   invalid_data when a triangle has a vertex out of range or a position is not finite; invalid_argument when

@@ -17,6 +17,7 @@
 #include <isotet/export.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/plan.hpp>
 #include <isotet/progress.hpp>
@@ -74,6 +75,10 @@ struct ContourResult {
 };
 
 /// Answers isovalues for one grid at a time, and keeps what may be kept when the grid or the field changes.
+///
+/// Polyhedra are made linear cells first (linearize()): fields are continued for derived points, source_cells are the
+/// user's, and edge ends from the number of the user's points on are derived points, which linear_grid() tells. packed() and
+/// use_grid() have the linear cells. The same cells keep their derived points when fields, steps or points change.
 ///
 /// Guarantees   the same calls give the same bytes, on every machine, for any thread count and on every engine, except
 ///              where a note says that another method was taken for want of memory
@@ -140,6 +145,9 @@ public:
 
     /// The packed grid; nothing where surfaces are extracted directly, or before the first of them.
     std::optional<PackedGrid> packed() const;
+
+    /// The linear cells that were made of the grid; null where all its cells are linear.
+    std::shared_ptr<const LinearGrid> linear_grid() const;
 
     /// Engine::name() of the one that extracts next: "cpu" after a device failed and the CPU took over.
     std::string_view engine() const;

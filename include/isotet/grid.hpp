@@ -31,11 +31,17 @@ ISOTET_API std::string name_of_cell_type(std::uint8_t vtk_type);
 /// `offsets`       int32, uint32, int64 or uint64, one component, one more than there are cells; or empty: then every
 ///                 cell is a `uniform_type` and cell c starts at c times its number of corners
 /// `types`         uint8, one a cell (VTK's numbers); or empty: every cell is a `uniform_type`
+/// `faces`         empty, or as the connectivity: the faces of polyhedra (VTK's 42). A cell has its number of faces, then
+///                 for each face its number of points and these points, in any winding
+/// `face_offsets`  empty, or as the offsets, one more than there are cells: where each cell's part of `faces` starts; cells
+///                 of other types have none. A polyhedron's own points stand in the connectivity, each once
 struct ISOTET_API Cells {
     Array connectivity;
     Array offsets;
     Array types;
     CellType uniform_type = CellType::tetrahedron;
+    Array faces = {};
+    Array face_offsets = {};
 
     std::size_t count() const noexcept;
 };
@@ -61,8 +67,8 @@ struct GridReport {
     std::size_t points = 0;
     std::size_t cells = 0;
     std::map<std::uint8_t, std::size_t> cells_by_type; ///< VTK's number -> cells
-    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic,
-                                                       ///< polyhedral)
+    std::size_t cells_left_out = 0;                    ///< cells of types that are not contoured (2D, quadratic), and
+                                                       ///< polyhedra without faces that close
     std::size_t tets = 0;                              ///< after splitting, collapsed ones dropped, repeated ones
                                                        ///< counted
     std::size_t collapsed_tets = 0;         ///< tets with a repeated corner, dropped (of a collapsed hexahedron, say)
@@ -86,7 +92,7 @@ struct SurveyOptions {
     bool faces = true; ///< count repeated tets, duplicate points and boundary faces, too
 };
 
-/// Checks a grid and counts what is in it.
+/// Checks a grid and counts what is in it. Polyhedra are counted as tets of what linearize() makes of them.
 ///
 /// Guarantees   the same counts for any thread count
 /// Cost         O(n): two passes over the cells and one over the points, a byte a point; with `faces` every tet, face

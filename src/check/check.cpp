@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <fmt/core.h>
+
+#include <isotet/linear_cells.hpp>
 
 #include "check/components.hpp"
 #include "check/grid_faces.hpp"
@@ -252,9 +255,35 @@ Result<void> check_edge_ends(const Array& ends, const Mesh& mesh) {
                     ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertex_count())};
 }
 
+/// A grid with linear cells, and the field on it.
+struct LinearOrigin {
+    Grid grid;
+    PointField field;
+};
+
+Result<LinearOrigin> linear_origin(const Grid& grid, const PointField* field, const Run& run) {
+    auto linear = linearize(grid, {}, run);
+    if (!linear) return linear.error();
+    LinearOrigin origin{linear->grid, field ? *field : PointField{}};
+    if (!field) return origin;
+    auto longer = linear->extend(field->values, run);
+    if (!longer) return longer.error();
+    origin.field.values = *std::move(longer);
+    return origin;
+}
+
 } // namespace
 
-Result<SurfaceReport> check(const Surface& surface, const CheckOptions& options, const Run& run) {
+Result<SurfaceReport> check(const Surface& surface, const CheckOptions& user_options, const Run& run) {
+    CheckOptions options = user_options;
+    std::optional<LinearOrigin> linear;
+    if (options.grid && has_cells_to_linearize(options.grid->cells)) {
+        auto made = linear_origin(*options.grid, options.field, run);
+        if (!made) return made.error();
+        linear = *std::move(made);
+        options.grid = &linear->grid;
+        if (options.field) options.field = &linear->field;
+    }
     return core::carry_out("checking the surface", run, [&](const Progress& progress) -> Result<SurfaceReport> {
         const auto mesh = Mesh::open(surface);
         if (!mesh) return mesh.error();

@@ -18,15 +18,20 @@ namespace {
 constexpr std::size_t grain = 1 << 14;
 constexpr double left_out = -1; // a volume that no cell has
 
-Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar) {
+double volume_of(const CellReader& cells, const PointReader& points, std::size_t cell) {
+    if (!is_contoured(cells.type(cell))) return left_out;
+    double volume = 0;
+    for (const Tet& tet : cells.tets(cell)) volume += std::abs(points.six_volumes(tet));
+    return volume;
+}
+
+Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
+                          std::span<const double> known) {
     const PointReader points(grid.points);
     Buffer<double> volumes(cells.count());
     parallel_each(cells.count(), grain, [&](std::size_t cell) {
-        volumes[cell] = left_out;
-        if (!is_contoured(cells.type(cell)) || std::isnan(scalar_at(values, scalar, cell))) return;
-        double volume = 0;
-        for (const Tet& tet : cells.tets(cell)) volume += std::abs(points.six_volumes(tet));
-        volumes[cell] = volume;
+        if (std::isnan(scalar_at(values, scalar, cell))) volumes[cell] = left_out;
+        else volumes[cell] = known.empty() ? volume_of(cells, points, cell) : known[cell];
     });
     return volumes;
 }
@@ -81,13 +86,29 @@ Array average(const CellReader& cells, const Buffer<double>& volumes, const Arra
 
 } // namespace
 
-Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar, bool by_value) {
+std::vector<double> volumes_by_source(const LinearGrid& linear) {
+    const PointReader points(linear.grid.points);
+    const auto cells = CellReader::open(linear.grid);
+    std::vector<double> volumes(linear.user_cells, left_out);
+    if (!cells) return volumes;
+    const auto sources = linear.source_cells.as<std::uint64_t>();
+    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
+        const double volume = volume_of(*cells, points, cell);
+        if (volume == left_out) continue;
+        double& sum = volumes[linear.source_cells.empty() ? cell : sources[cell]];
+        sum = sum == left_out ? volume : sum + volume;
+    }
+    return volumes;
+}
+
+Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar, bool by_value,
+                        std::span<const double> known) {
     Buffer<double> volumes;
-    if (by_value && !grid.point_numbers.empty()) {
+    if (by_value && known.empty() && !grid.point_numbers.empty()) {
         const Renumbered sorted = sort_points_by_number(grid).value();
-        volumes = volumes_of(sorted.grid, CellReader::open(sorted.grid).value(), values, scalar);
+        volumes = volumes_of(sorted.grid, CellReader::open(sorted.grid).value(), values, scalar, {});
     } else {
-        volumes = volumes_of(grid, cells, values, scalar);
+        volumes = volumes_of(grid, cells, values, scalar, known);
     }
     const bool narrow = cells.count() <= std::numeric_limits<std::uint32_t>::max();
     if (values.type() == ScalarType::float32)

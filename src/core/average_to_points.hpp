@@ -2,7 +2,11 @@
 // Cell values averaged to points.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "core/cells.hpp"
 #include "core/scalar_of.hpp"
@@ -14,15 +18,18 @@ namespace isotet::core {
 /// left out; a point without a cell left is NaN.
 ///
 /// `grid`, `cells`   checked (check_cells); a tuple of `values` for each cell
+/// `volumes`         empty, or of each cell, negative where it is left out: then cells need not be contoured ones
 ///
 /// Guarantees   the same bytes for any thread count: cells are added in ascending order; where all cells agree, the
 ///              mean is their value exactly
 /// Cost         two passes over the cells and one over the points; 8 bytes a cell, 8 a point and 4 a corner (8 above
 ///              2^32 cells) beside the result, which is float32 for float32 and float64 for all other types
-///
-/// `by_value`   cells around a point are added in the order of their values and volumes, not of their numbers, and
-///              volumes follow from Grid::point_numbers: pieces with ghost cells get the values of the whole
+/// `by_value`        cells around a point are added in the order of their values and volumes, not of their numbers, and
+///                   volumes follow from Grid::point_numbers: pieces with ghost cells get the values of the whole
 Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
-                        bool by_value = false);
+                        bool by_value = false, std::span<const double> volumes = {});
+
+/// The volumes of the user's cells, from those of the linear cells that they became; -1 where there is none.
+std::vector<double> volumes_by_source(const LinearGrid& linear);
 
 } // namespace isotet::core

@@ -229,8 +229,9 @@ Error nothing_to_contour(const Grid& grid, const CellReader& cells) {
     return {ErrorCode::invalid_data,
             fmt::format(
                 "the grid with {} points has no cell that can be contoured ({}); tetrahedra, hexahedra, voxels, wedges "
-                "and pyramids can",
-                grid.points.tuples(), list.empty() ? "no cells at all" : list)};
+                "and pyramids can{}",
+                grid.points.tuples(), list.empty() ? "no cells at all" : list,
+                counts[42] && !grid.cells.faces.empty() ? ", and polyhedra after linearize()" : "")};
 }
 
 } // namespace core

@@ -5,11 +5,13 @@
 #include <fmt/core.h>
 
 #include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "core/average_to_points.hpp"
 #include "core/carry_out.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 #include "core/scalar_of.hpp"
 
 namespace isotet {
@@ -64,6 +66,11 @@ Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar,
     if (!cells) return cells.error();
     if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
     if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
+    if (has_cells_to_linearize(grid.cells)) {
+        const auto linear = linearize(bare, {}, {.threads = core::threads_here()});
+        if (!linear) return linear.error();
+        return core::average_to_points(bare, *cells, field.values, scalar, by_value, core::volumes_by_source(*linear));
+    }
     if (by_value && !grid.point_numbers.empty())
         if (auto numbers = core::check_point_numbers(bare); !numbers) return numbers.error();
     return core::average_to_points(bare, *cells, field.values, scalar, by_value);

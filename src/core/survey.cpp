@@ -2,6 +2,9 @@
 // survey() and split(): what a grid holds, without packing it.
 #include <algorithm>
 
+#include <isotet/grid_counts.hpp>
+#include <isotet/linear_cells.hpp>
+
 #include "core/carry_out.hpp"
 #include "core/duplicate_points.hpp"
 #include "core/faces.hpp"
@@ -71,12 +74,29 @@ Result<TetList> split(const Grid& grid, const Progress& progress) {
     return list;
 }
 
+/// Tets, faces and bounds are those of the linear cells; points and cells are counted as the user has them.
+Result<GridReport> survey_linear(const Grid& grid, const SurveyOptions& options, const Progress& progress) {
+    const auto linear = linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = threads_here(), .progress = {}});
+    if (!linear) return linear.error();
+    auto report = survey(linear->grid, options, progress);
+    if (!report) return report;
+    report->points = grid.points.tuples();
+    report->cells = linear->user_cells;
+    report->cells_by_type.clear();
+    for (const auto& [type, count] : count_cells_by_type(grid.cells)) report->cells_by_type[type] = count;
+    return report;
+}
+
 } // namespace
 } // namespace core
 
 Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Run& run) {
     return core::carry_out("checking the grid", run,
-                           [&](const Progress& progress) { return core::survey(grid, options, progress); });
+                           [&](const Progress& progress) {
+                               return has_cells_to_linearize(grid.cells)
+                                          ? core::survey_linear(grid, options, progress)
+                                          : core::survey(grid, options, progress);
+                           });
 }
 
 Result<TetList> split(const Grid& grid, const Run& run) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/parallel.hpp"
 #include "core/rising_progress.hpp"
@@ -69,7 +70,8 @@ Result<void> check_names(const std::vector<std::string>& asked, Association asso
 Result<void> check_grid(const Grid& grid, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
-    return core::check_cells(grid, *cells, progress);
+    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound;
+    return core::check_faces(grid, *cells, progress);
 }
 
 /// Adds a vector field to the coordinates, in double.

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include <isotet/extract_direct.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "core/errors.hpp"
 
@@ -39,8 +40,13 @@ Result<std::vector<std::uint64_t>> cells_of(const Surface& boundary, const Grid&
             faces.emplace(face, i);
         }
     });
-    const Result<TetList> tets = split(grid, run);
+    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
+    if (!linear) return linear.error();
+    const Result<TetList> tets = split(linear->grid, run);
     if (!tets) return tets.error();
+    const auto user_cell = [&](std::uint64_t cell) {
+        return linear->source_cells.empty() ? cell : linear->source_cells.as<std::uint64_t>()[cell];
+    };
     std::vector<std::uint64_t> cells(boundary.triangle_count(), UINT64_MAX);
     for (std::size_t tet = 0; tet < tets->tets.size(); ++tet) {
         for (std::size_t left_out = 0; left_out < 4; ++left_out) {
@@ -49,7 +55,7 @@ Result<std::vector<std::uint64_t>> cells_of(const Surface& boundary, const Grid&
                 if (k != left_out) face[to++] = tets->tets[tet][k];
             std::ranges::sort(face);
             const auto found = faces.find(face);
-            if (found != faces.end()) cells[found->second] = std::min(cells[found->second], tets->cells[tet]);
+            if (found != faces.end()) cells[found->second] = std::min(cells[found->second], user_cell(tets->cells[tet]));
         }
     }
     return cells;
@@ -88,18 +94,23 @@ Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorFiel
 }
 
 Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
-    std::vector<double> heights(grid.points.tuples());
-    grid.points.visit([&](auto scalars) {
+    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
+    if (!linear) return linear.error();
+    std::vector<double> heights(linear->grid.points.tuples());
+    linear->grid.points.visit([&](auto scalars) {
         for (std::size_t i = 0; i < heights.size(); ++i)
             for (std::size_t axis = 0; axis < 3; ++axis)
                 heights[i] += plane.normal[axis] * static_cast<double>(scalars[3 * i + axis]);
     });
     DirectOptions options;
-    if (field && field->association == Association::point)
-        options.extract.point_fields = {{field->name, field->values}};
-    if (field && field->association == Association::cell) options.extract.cell_fields = {{field->name, field->values}};
+    if (field) {
+        const bool of_points = field->association == Association::point;
+        const Result<Array> values = of_points ? linear->extend(field->values, run) : linear->of_cells(field->values, run);
+        if (!values) return values.error();
+        (of_points ? options.extract.point_fields : options.extract.cell_fields) = {{field->name, *values}};
+    }
     const double offset = plane.offset;
-    Result<DirectExtraction> cut = extract_direct(grid, {"height", Array::own(std::move(heights)), false, {}},
+    Result<DirectExtraction> cut = extract_direct(linear->grid, {"height", Array::own(std::move(heights)), false, {}},
                                                   std::span(&offset, 1), options, run);
     if (!cut) return cut.error();
     return std::move(cut->surfaces.front().surface);

@@ -17,6 +17,7 @@
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
 #include "session/fingerprint.hpp"
+#include "session/linear_input.hpp"
 
 namespace isotet {
 
@@ -105,7 +106,8 @@ ContourUpdate update_for(const std::optional<Frame>& before, const std::optional
 
 struct Contour::Data {
     std::mutex mutex;   ///< of all that follows
-    ContourInput input; ///< without the grid when that is packed
+    session::LinearInput linear;
+    ContourInput input; ///< with linear cells; without the grid when that is packed
     ContourOptions options;
     FieldSample sample;
     std::uint64_t asked = 0; ///< surfaces so far
@@ -119,6 +121,7 @@ struct Contour::Data {
     double update_seconds = 0;
     std::vector<std::string> notes;
 
+    void note_new_cells();
     Method method_of_next(std::size_t isovalues) const;
     Result<void> prepare(std::size_t isovalues, const Run& run);
     Result<void> bring_up_to_date(const Run& run);
@@ -147,6 +150,10 @@ Result<ContourResult> extract_directly(const ContourInput& input, const ContourO
 }
 
 } // namespace
+
+void Contour::Data::note_new_cells() {
+    if (linear.is_new()) std::ranges::move(linear.grid()->report.notes(), std::back_inserter(notes));
+}
 
 Method Contour::Data::method_of_next(std::size_t isovalues) const {
     if (!options.engine->extracts_directly()) return Method::clusters;
@@ -289,10 +296,13 @@ Result<void> Contour::Data::extract_from_grid(std::span<const double> isovalues,
 Result<Contour> Contour::create(ContourInput input, const ContourOptions& options) {
     return core::guarded("starting to contour", [&]() -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
-        Result<FieldSample> sample = FieldSample::create(input.grid, input.field, options.split_cells);
-        if (!sample) return sample.error();
         auto data = std::make_unique<Data>();
-        data->input = std::move(input);
+        Result<ContourInput> linear = data->linear.make(std::move(input), {});
+        if (!linear) return linear.error();
+        data->input = *std::move(linear);
+        data->note_new_cells();
+        Result<FieldSample> sample = FieldSample::create(data->input.grid, data->input.field, options.split_cells);
+        if (!sample) return sample.error();
         data->options = options;
         data->sample = *std::move(sample);
         return Contour(std::move(data));
@@ -318,6 +328,9 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
         if (auto ok = check(options); !ok) return ok.error();
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
+        session::LinearInput linear = data.linear;
+        if (Result<ContourInput> made = linear.make(std::move(input), run); made) input = *std::move(made);
+        else return made.error();
         ContourUpdate update = ContourUpdate::grid;
         const bool usable = data.packed && data.options.split_cells == options.split_cells &&
                             has_what_is_needed(*data.packed, options, input) &&
@@ -344,6 +357,8 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
         if (data.options.engine != options.engine) data.grid.reset();
         data.options = options;
         data.behind = update;
+        data.linear = std::move(linear);
+        data.note_new_cells();
         data.input = std::move(input);
         if (update == ContourUpdate::nothing && options.method != Method::direct) data.input.grid = {};
         return update;
@@ -369,6 +384,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         const auto start = std::chrono::steady_clock::now();
         const Method method = data.method_of_next(0);
+        const std::shared_ptr<const LinearGrid> linear = data.linear.grid();
         ContourResult head;
         head.notes = std::exchange(data.notes, {});
         head.pack_seconds = std::exchange(data.update_seconds, 0);
@@ -398,6 +414,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             }
         }
         if (!result) return result;
+        if (linear) session::map_source_cells(*linear, result->surfaces);
         result->method = method;
         result->extract_seconds = seconds_since(start);
         result->pack_seconds = head.pack_seconds;
@@ -467,6 +484,12 @@ std::optional<PackedGrid> Contour::packed() const {
     if (!data_) return std::nullopt;
     const std::lock_guard lock(data_->mutex);
     return data_->behind == ContourUpdate::nothing ? data_->packed : std::nullopt;
+}
+
+std::shared_ptr<const LinearGrid> Contour::linear_grid() const {
+    if (!data_) return nullptr;
+    const std::lock_guard lock(data_->mutex);
+    return data_->linear.grid();
 }
 
 std::string_view Contour::engine() const {

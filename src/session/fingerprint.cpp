@@ -67,7 +67,7 @@ Fingerprint fingerprint(const Array& array) {
 
 Fingerprint fingerprint(const Cells& cells) {
     Fingerprint print{static_cast<std::uint64_t>(cells.uniform_type), 0};
-    for (const Array* array : {&cells.connectivity, &cells.offsets, &cells.types}) {
+    for (const Array* array : {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets}) {
         const Fingerprint part = fingerprint(*array);
         stir(print, part.low);
         stir(print, part.high);

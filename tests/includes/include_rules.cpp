@@ -22,6 +22,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"include/", {}},
         {"src/core/", {"core/"}},
         {"src/check/", {"check/", "core/"}},
+        {"src/linear/", {"linear/", "core/"}},
         {"src/make/", {"make/", "core/"}},
         {"src/ops/", {"ops/", "core/"}},
         {"src/reference/", {"reference/", "ops/", "core/"}},
@@ -76,9 +77,9 @@ const std::vector<LibraryRule>& library_rules() {
 }
 
 /// Folders that includes begin with; what begins otherwise is a public header, a library, or a neighbour in a test.
-constexpr std::array<std::string_view, 16> folders_of_includes = {
-    "core/",    "check/", "make/",   "ops/",    "reference/", "cpu/",   "api/", "device/",
-    "session/", "io/",    "search/", "vulkan/", "render/",    "scene/", "cli/", "view/"};
+constexpr std::array<std::string_view, 17> folders_of_includes = {
+    "core/", "check/",  "make/",   "ops/",    "reference/", "cpu/",   "api/", "device/", "session/",
+    "io/",   "linear/", "search/", "vulkan/", "render/",    "scene/", "cli/", "view/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(),

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "io/own/escape.hpp"
+#include "io/own/face_streams.hpp"
 #include "io/own/join.hpp"
 #include "io/own/point_numbers.hpp"
 
@@ -113,8 +114,11 @@ void each_kept(const KeptCells& kept, std::size_t p, std::size_t count, Visit vi
 
 std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const PointNumbers& numbers,
                                         const KeptCells& kept, std::vector<std::int64_t>& connectivity,
-                                        std::vector<std::int64_t>& offsets, std::vector<std::uint8_t>& types) {
+                                        std::vector<std::int64_t>& offsets, std::vector<std::uint8_t>& types,
+                                        FaceStreams& faces) {
     const CellView cells(piece.grid.cells);
+    if (const auto sound = check_face_streams(piece.grid.cells, piece.grid.points.tuples()); !sound)
+        return sound.error().message;
     const auto size = static_cast<std::int64_t>(piece.grid.cells.connectivity.size());
     const std::uint64_t points = piece.grid.points.tuples();
     std::optional<std::string> problem;
@@ -136,6 +140,7 @@ std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const
             }
             offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
             types.push_back(cells.type(cell));
+            faces.add_cell(piece.grid.cells, cell, [&](std::uint64_t point) { return numbers(p, point); });
         });
     });
     return problem;
@@ -355,10 +360,11 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     const PointNumbers numbers = number_points(pieces, by_coordinates, result.notes);
     std::vector<std::int64_t> connectivity, offsets{0};
     std::vector<std::uint8_t> types;
+    FaceStreams faces;
     std::vector<std::size_t> first_cell;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         first_cell.push_back(types.size());
-        if (auto problem = append_cells(pieces[p], p, numbers, kept, connectivity, offsets, types))
+        if (auto problem = append_cells(pieces[p], p, numbers, kept, connectivity, offsets, types, faces))
             return Error{ErrorCode::invalid_data, fmt::format("piece \"{}\": {}", escaped(pieces[p].name), *problem)};
     }
     const std::size_t cell_count = types.size();
@@ -373,6 +379,7 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     result.grid.cell_fields =
         joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, [](const Field&) {}, result.notes);
     result.grid.cells = compact(std::move(connectivity), std::move(offsets), std::move(types));
+    std::move(faces).give_to(result.grid.cells);
     for (Piece& piece : pieces) piece.grid.cells = Cells();
     result.grid.point_fields = joined_fields(
         pieces, &Grid::point_fields, "point", numbers.count, points_of,

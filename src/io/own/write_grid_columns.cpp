@@ -68,7 +68,8 @@ Result<void> check_offsets(const Cells& cells) {
 }
 
 Result<void> check_cells(const Cells& cells, std::size_t points) {
-    const auto& [connectivity, offsets, types, uniform_type] = cells;
+    const Array &connectivity = cells.connectivity, &offsets = cells.offsets, &types = cells.types;
+    const CellType uniform_type = cells.uniform_type;
     if (!connectivity.empty() && (!holds_indices(connectivity.type()) || connectivity.components() != 1)) {
         return invalid_argument(
             fmt::format("the connectivity is {} with {} components, not one of 32- or 64-bit integers",

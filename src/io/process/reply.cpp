@@ -106,6 +106,8 @@ public:
         array(grid.cells.offsets);
         array(grid.cells.types);
         out_.number(grid.cells.uniform_type);
+        array(grid.cells.faces);
+        array(grid.cells.face_offsets);
         fields(grid.point_fields);
         fields(grid.cell_fields);
     }
@@ -172,6 +174,8 @@ public:
         grid.cells.offsets = array();
         grid.cells.types = array();
         grid.cells.uniform_type = in_.number<CellType>();
+        grid.cells.faces = array();
+        grid.cells.face_offsets = array();
         grid.point_fields = fields();
         grid.cell_fields = fields();
         return result;

@@ -6,6 +6,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataArraySelection.h>
+#include <vtkIdTypeArray.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
@@ -66,6 +67,30 @@ bool is_uniform(const Array& offsets, const std::uint8_t* types, std::int64_t co
     });
 }
 
+/// The faces of polyhedra: VTK tells where the part of each cell begins, or -1.
+void add_faces(vtkUnstructuredGrid* grid, Cells& cells) {
+    vtkIdTypeArray *stream = grid->GetFaces(), *begins = grid->GetFaceLocations();
+    const vtkIdType count = grid->GetNumberOfCells();
+    if (!stream || !begins || begins->GetNumberOfTuples() != count) return;
+    const vtkIdType size = stream->GetNumberOfValues();
+    std::vector<std::int64_t> faces, offsets{0};
+    for (vtkIdType cell = 0; cell < count; ++cell) {
+        vtkIdType at = begins->GetValue(cell);
+        if (at >= 0 && at < size) {
+            const vtkIdType of_cell = stream->GetValue(at++);
+            faces.push_back(of_cell);
+            for (vtkIdType face = 0; face < of_cell && at < size; ++face) {
+                const vtkIdType points = stream->GetValue(at++);
+                faces.push_back(points);
+                for (vtkIdType i = 0; i < points && at < size; ++i) faces.push_back(stream->GetValue(at++));
+            }
+        }
+        offsets.push_back(static_cast<std::int64_t>(faces.size()));
+    }
+    cells.faces = Array::own(std::move(faces));
+    cells.face_offsets = Array::own(std::move(offsets));
+}
+
 Result<Cells> cells_of(vtkUnstructuredGrid* grid) {
     Cells cells;
     const vtkIdType count = grid->GetNumberOfCells();
@@ -88,6 +113,7 @@ Result<Cells> cells_of(vtkUnstructuredGrid* grid) {
             cells.uniform_type = static_cast<CellType>(type);
             break;
         }
+    if (!cells.types.empty()) add_faces(grid, cells);
     return cells;
 }
 

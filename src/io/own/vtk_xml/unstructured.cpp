@@ -8,8 +8,10 @@
 
 #include <fmt/core.h>
 
+#include "core/cell_faces.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "io/own/face_streams.hpp"
 #include "io/own/surface_scalars.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/vtk_xml/load.hpp"
@@ -82,10 +84,92 @@ public:
         auto connectivity = indices("connectivity", *size);
         if (!connectivity) return connectivity.error();
         cells.connectivity = std::move(*connectivity);
+        if (auto read = read_faces(cells); !read) return read.error();
         return cells;
     }
 
 private:
+    bool has(std::string_view name) const {
+        return std::ranges::find(section_.arrays, name, &DataArray::name) != section_.arrays.end();
+    }
+
+    /// Of polyhedra, where there are some: VTK 9.4 stores each face once, older versions a stream of faces for each cell.
+    Result<void> read_faces(Cells& cells) const {
+        if (cells.types.empty()) return {};
+        const auto types = cells.types.as<std::uint8_t>();
+        if (std::ranges::find(types, core::polyhedron_type) == types.end()) return {};
+        if (has("faces") && has("faceoffsets")) return read_face_streams(cells);
+        if (has("face_connectivity") && has("polyhedron_to_faces")) return read_shared_faces(cells);
+        return {};
+    }
+
+    Result<void> read_face_streams(Cells& cells) const {
+        const auto ends = numbers("faceoffsets", count_);
+        if (!ends) return ends.error();
+        std::vector<std::int64_t> offsets{0}; // a cell without faces ends at -1 in the file
+        offsets.reserve(ends->size() + 1);
+        for (const std::int64_t end : *ends) offsets.push_back(end < 0 ? offsets.back() : end);
+        if (!std::ranges::is_sorted(offsets)) return invalid_data("Cells 'faceoffsets' falls");
+        auto faces = indices("faces", static_cast<std::uint64_t>(offsets.back()));
+        if (!faces) return faces.error();
+        cells.faces = std::move(*faces);
+        cells.face_offsets = Array::own(std::move(offsets));
+        return {};
+    }
+
+    Result<void> read_shared_faces(Cells& cells) const {
+        const auto cell_ends = numbers("polyhedron_offsets", count_);
+        if (!cell_ends) return cell_ends.error();
+        const auto faces = numbers("polyhedron_to_faces", last_end(*cell_ends));
+        if (!faces) return faces.error();
+        const std::int64_t most = faces->empty() ? -1 : *std::ranges::max_element(*faces);
+        const auto face_ends = numbers("face_offsets", static_cast<std::uint64_t>(most + 1));
+        if (!face_ends) return face_ends.error();
+        const auto points = numbers("face_connectivity", last_end(*face_ends));
+        if (!points) return points.error();
+        for (const auto* list : {&*cell_ends, &*face_ends})
+            if (!std::ranges::is_sorted(*list) || (!list->empty() && list->front() < 0))
+                return invalid_data("the offsets of faces fall");
+        if (std::ranges::any_of(*faces, [](std::int64_t face) { return face < 0; }))
+            return invalid_data("Cells 'polyhedron_to_faces' has a negative face");
+        std::vector<std::int64_t> stream, offsets{0};
+        std::int64_t next = 0;
+        for (const std::int64_t end : *cell_ends) {
+            if (end > next) stream.push_back(end - next);
+            for (; next < end; ++next) {
+                const auto face = static_cast<std::size_t>((*faces)[static_cast<std::size_t>(next)]);
+                const std::int64_t from = face ? (*face_ends)[face - 1] : 0, to = (*face_ends)[face];
+                if (stream.size() + static_cast<std::size_t>(to - from) > max_stream(points->size(), faces->size()))
+                    return invalid_data("polyhedra share their faces more often than twice");
+                stream.push_back(to - from);
+                stream.insert(stream.end(), points->begin() + from, points->begin() + to);
+            }
+            offsets.push_back(static_cast<std::int64_t>(stream.size()));
+        }
+        cells.faces = Array::own(std::move(stream));
+        cells.face_offsets = Array::own(std::move(offsets));
+        return {};
+    }
+
+    /// Faces have two sides: what is longer would let a small file fill any memory.
+    static std::size_t max_stream(std::size_t points, std::size_t faces) { return 16 * (points + faces) + 1024; }
+
+    static std::uint64_t last_end(const std::vector<std::int64_t>& ends) {
+        return ends.empty() || ends.back() < 0 ? 0 : static_cast<std::uint64_t>(ends.back());
+    }
+
+    Result<std::vector<std::int64_t>> numbers(const char* name, std::uint64_t size) const {
+        std::vector<std::int64_t> out;
+        if (size == 0) return out;
+        const auto array = indices(name, size);
+        if (!array) return array.error();
+        array->visit([&](auto values) {
+            out.reserve(values.size());
+            for (const auto value : values) out.push_back(static_cast<std::int64_t>(value));
+        });
+        return out;
+    }
+
     Result<DataArray> find(const char* name) const {
         const auto found = std::ranges::find(section_.arrays, name, &DataArray::name);
         if (found == section_.arrays.end())
@@ -210,6 +294,7 @@ private:
     Cells join_as(const std::vector<std::uint64_t>& points_of_parts) const {
         std::vector<Index> connectivity, offsets{0};
         std::vector<std::uint8_t> types;
+        FaceStreams faces;
         connectivity.reserve(corners_);
         offsets.reserve(cells_ + 1);
         types.reserve(cells_);
@@ -235,6 +320,7 @@ private:
                 const auto own = part.types.as<std::uint8_t>();
                 types.insert(types.end(), own.begin(), own.end());
             }
+            faces.add(part, [&](std::uint64_t point) { return point + first_point; });
             first_point += points_of_parts[p];
         }
         Cells cells;
@@ -247,6 +333,7 @@ private:
             cells.offsets = Array::own(std::move(offsets));
             cells.types = Array::own(std::move(types));
         }
+        std::move(faces).give_to(cells);
         return cells;
     }
 
@@ -266,7 +353,7 @@ Result<void> check_corners(const Cells& cells, std::uint64_t points) {
         return std::ranges::all_of(corners, [&](auto corner) { return static_cast<std::uint64_t>(corner) < points; });
     });
     if (!in_range) return invalid_data(fmt::format("a cell of a piece has a point that is not among its {}", points));
-    return {};
+    return check_face_streams(cells, points);
 }
 
 } // namespace

@@ -1,0 +1,93 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Cells that are not linear as cells that are: polyhedra as pyramids and tets around a derived point.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/export.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+/// Points made of the user's, D of them. Derived point d is the sum of weights[i] times point points[i] for
+/// first[d] <= i < first[d + 1]; its weights have the sum 1.
+///
+/// `first`     uint64, D + 1, ascending from 0;  `points`  uint64, user's point numbers;  `weights`  float64
+struct DerivedPoints {
+    Array first;
+    Array points;
+    Array weights;
+
+    std::uint64_t count() const noexcept { return first.empty() ? 0 : first.tuples() - 1; }
+};
+
+/// What linearize() did, in cells of the user's grid.
+struct LinearizeReport {
+    std::uint64_t polyhedra = 0;     ///< cells that are polyhedra, with their faces
+    std::uint64_t known_shapes = 0;  ///< of these: tetrahedra, pyramids, wedges and hexahedra, which stay whole
+    std::uint64_t centred = 0;       ///< of these: split around a derived point
+    std::uint64_t moved_centres = 0; ///< of these: that point is not the mean of the corners, but moved to see all faces
+    std::uint64_t folded = 0;        ///< centred ones where no point was found that sees all faces
+    std::uint64_t open = 0;          ///< polyhedra left out: some edge is not in two faces, or the faces are not one shell
+    std::uint64_t cells = 0;         ///< linear cells that polyhedra became
+
+    /// Sentences for the user, what was split and what was left out.
+    ISOTET_API std::vector<std::string> notes() const;
+};
+
+/// A grid of linear cells, and what connects it with the grid that it was made of. A handle on arrays: copying shares them.
+struct ISOTET_API LinearGrid {
+    Grid grid;                      ///< the user's points, then the derived ones; linear cells; no fields
+    std::uint64_t user_points = 0;  ///< grid.points from this number on are derived: row 0, 1, ...
+    std::uint64_t user_cells = 0;
+    DerivedPoints derived;
+    Array source_cells;             ///< uint64, the user's cell of each cell of `grid`, ascending; empty: they are the same
+    LinearizeReport report;
+
+    /// An array of one tuple a user's point, continued for the derived points: computed in double, rounded once.
+    /// float32 and float64 keep their type; integers become float64. NaN at a derived point where one of its points has NaN.
+    ///
+    /// Guarantees   linear fields stay linear, constant ones constant; the same bytes for any thread count
+    /// Cost         one pass; a copy of the array, and the derived tuples
+    /// Errors       invalid_argument when it has not one tuple a user's point; out_of_memory; cancelled
+    Result<Array> extend(const Array& values, const Run& run = {}) const;
+
+    /// An array of one tuple a user's cell, for the cells of `grid`, in its own type.
+    /// Errors   invalid_argument when it has not one tuple a user's cell; out_of_memory; cancelled
+    Result<Array> of_cells(const Array& values, const Run& run = {}) const;
+};
+
+struct LinearizeOptions {
+    bool known_shapes = true; ///< false: every polyhedron is split around a derived point
+};
+
+/// True when some cells are polyhedra with faces: linearize() makes linear cells of them.
+/// Cost   a parallel pass over the types
+ISOTET_API bool has_cells_to_linearize(const Cells& cells);
+
+/// Makes every cell linear that can be. Linear cells stay as they are, in their order; each polyhedron is replaced by what
+/// it becomes:
+///
+///   a known shape   a tetrahedron, pyramid, wedge or hexahedron given by its faces is that cell
+///   any other       pyramids on its quadrilaterals and tets on its triangles, around a derived point: the mean of its
+///                   corners, moved where it does not see all faces. Larger faces are cut into triangles, from the lowest
+///                   point number, or by ears where that would fold: by the face alone, so neighbours agree
+///   open            left out: type 0 (empty), without corners
+///
+/// Faces may be wound in any way and stand in any order: the result is the same.
+///
+/// `grid`       its fields are not looked at
+/// Guarantees   a conforming grid stays conforming; the same bytes for any thread count
+/// Cost         O(n); 20 to 30 bytes a linear cell and 8 + 16 bytes a corner of a centred polyhedron
+/// Errors       invalid_data as survey(), and for faces that are not there or have points out of range; out_of_memory;
+///              cancelled
+/// Threads      safe from many threads on one grid
+/// Method       docs/cells.md
+ISOTET_API Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options = {}, const Run& run = {});
+
+} // namespace isotet

@@ -1,0 +1,92 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "linear/derived.hpp"
+
+#include <cstring>
+#include <type_traits>
+
+#include <fmt/core.h>
+
+#include <isotet/linear_cells.hpp>
+
+#include "core/buffer.hpp"
+#include "core/carry_out.hpp"
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet {
+
+namespace {
+
+constexpr std::size_t derived_grain = 1 << 14;
+
+template <class To, class From>
+Array extended(const DerivedPoints& derived, std::span<const From> from, std::size_t components,
+               const Progress& progress) {
+    const std::size_t users = from.size() / components, rows = derived.count();
+    core::Buffer<To> to((users + rows) * components);
+    core::parallel_pieces(from.size(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+        if constexpr (std::is_same_v<To, From>) std::memcpy(&to[begin], &from[begin], (end - begin) * sizeof(To));
+        else
+            for (std::size_t i = begin; i < end; ++i) to[i] = static_cast<To>(from[i]);
+    });
+    if (rows == 0) return std::move(to).to_array(components);
+    const auto first = derived.first.as<std::uint64_t>(), points = derived.points.as<std::uint64_t>();
+    const auto weights = derived.weights.as<double>();
+    core::parallel_pieces(rows, derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row)
+            for (std::size_t c = 0; c < components; ++c)
+                to[(users + row) * components + c] = static_cast<To>(linear::weighted_sum(
+                    first[row + 1] - first[row], [&](std::size_t i) { return weights[first[row] + i]; },
+                    [&](std::size_t i) { return static_cast<double>(from[points[first[row] + i] * components + c]); }));
+    });
+    return std::move(to).to_array(components);
+}
+
+template <std::size_t size>
+void gather(const Array& values, std::span<const std::uint64_t> sources, std::byte* to, const Progress& progress) {
+    const auto* const from = static_cast<const std::byte*>(values.data());
+    const std::size_t tuple = size * values.components();
+    core::parallel_pieces(sources.size(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) std::memcpy(to + i * tuple, from + sources[i] * tuple, tuple);
+    });
+}
+
+Result<void> has_tuples(const Array& values, std::uint64_t expected, const char* what) {
+    if (values.tuples() == expected && values.components() > 0) return {};
+    return invalid_argument(fmt::format("the array has {} tuples, but the user's grid has {} {}s", values.tuples(),
+                                        expected, what));
+}
+
+Error cancelled_extension() { return {ErrorCode::cancelled, "extending an array was cancelled"}; }
+
+} // namespace
+
+Result<Array> LinearGrid::extend(const Array& values, const Run& run) const {
+    return core::carry_out("extending an array", run, [&](const Progress& progress) -> Result<Array> {
+        if (auto fits = has_tuples(values, user_points, "point"); !fits) return fits.error();
+        if (derived.count() == 0) return values;
+        Array out = values.visit([&]<class T>(std::span<const T> from) {
+            using To = std::conditional_t<std::is_floating_point_v<T>, T, double>;
+            return extended<To>(derived, from, values.components(), progress);
+        });
+        if (progress.cancelled()) return cancelled_extension();
+        return out;
+    });
+}
+
+Result<Array> LinearGrid::of_cells(const Array& values, const Run& run) const {
+    return core::carry_out("extending an array", run, [&](const Progress& progress) -> Result<Array> {
+        if (auto fits = has_tuples(values, user_cells, "cell"); !fits) return fits.error();
+        if (source_cells.empty()) return values;
+        const auto sources = source_cells.as<std::uint64_t>();
+        Array out = values.visit([&]<class T>(std::span<const T>) {
+            core::Buffer<T> to(sources.size() * values.components());
+            gather<sizeof(T)>(values, sources, reinterpret_cast<std::byte*>(to.data()), progress);
+            return std::move(to).to_array(values.components());
+        });
+        if (progress.cancelled()) return cancelled_extension();
+        return out;
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,23 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The value at a derived point.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+namespace isotet::linear {
+
+/// The sum of weight(i) * at(i) for i < count, where weights have the sum 1: by differences to the first value, so that
+/// equal values give just that value.
+template <class Weight, class At>
+double weighted_sum(std::size_t count, const Weight& weight, const At& at) {
+    const double first = at(0);
+    double sum = 0;
+    for (std::size_t i = 1; i < count; ++i) sum += weight(i) * (at(i) - first);
+    if (std::isfinite(first + sum)) return first + sum;
+    sum = 0; // a difference overflowed, or there are values that are not finite
+    for (std::size_t i = 0; i < count; ++i) sum += weight(i) * at(i);
+    return sum;
+}
+
+} // namespace isotet::linear

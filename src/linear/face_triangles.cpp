@@ -1,0 +1,98 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "linear/face_triangles.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "linear/vector.hpp"
+
+namespace isotet::linear {
+
+namespace {
+
+constexpr std::size_t max_ear_points = 64; // ears cost the cube
+constexpr double least_share = 1e-9;       // of the face's area, for a triangle with an area
+
+/// A face in the making: its points, and areas along its normal.
+class FaceCutter {
+public:
+    FaceCutter(std::span<const std::uint64_t> loop, const core::PointReader& points) {
+        const Point origin = points[loop[0]];
+        places_.reserve(loop.size());
+        for (const std::uint64_t point : loop) places_.push_back(minus(points[point], origin));
+        for (std::size_t i = 0; i < places_.size(); ++i) { // Newell's normal
+            const Point part = cross(places_[i], places_[(i + 1) % places_.size()]);
+            for (std::size_t axis = 0; axis < 3; ++axis) normal_[axis] += part[axis];
+        }
+        least_ = least_share * dot(normal_, normal_);
+    }
+
+    bool is_fan_upright() const {
+        for (std::uint32_t i = 1; i + 1 < places_.size(); ++i)
+            if (!(area(0, i, i + 1) > least_)) return false;
+        return true;
+    }
+
+    void cut_ears(std::vector<LoopTriangle>& out) const {
+        std::vector<std::uint32_t> left(places_.size());
+        std::iota(left.begin(), left.end(), 0U);
+        while (left.size() > 3) {
+            const std::size_t ear = best_ear(left);
+            if (ear == left.size()) break;
+            const std::size_t n = left.size();
+            out.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
+            left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+        }
+        for (std::size_t i = 1; i + 1 < left.size(); ++i) out.push_back({left[0], left[i], left[i + 1]});
+    }
+
+private:
+    /// Twice the area as seen along the normal, times the normal's length.
+    double area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        return dot(cross(minus(places_[b], places_[a]), minus(places_[c], places_[a])), normal_);
+    }
+
+    bool holds_a_point(const std::vector<std::uint32_t>& left, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        return std::ranges::any_of(left, [&](std::uint32_t p) {
+            return p != a && p != b && p != c && area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
+        });
+    }
+
+    /// The position of the tip of the ear with the largest angle-like quality; the number of points where there is none.
+    std::size_t best_ear(const std::vector<std::uint32_t>& left) const {
+        const std::size_t n = left.size();
+        std::size_t best = n;
+        double best_quality = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint32_t a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
+            const double size = area(a, b, c);
+            if (!(size > least_)) continue;
+            const double longest = std::max({core::squared_distance(places_[a], places_[b]),
+                                             core::squared_distance(places_[b], places_[c]),
+                                             core::squared_distance(places_[c], places_[a])});
+            const double quality = size / longest;
+            if (quality > best_quality && !holds_a_point(left, a, b, c)) {
+                best = i;
+                best_quality = quality;
+            }
+        }
+        return best;
+    }
+
+    std::vector<Point> places_; ///< from the first one
+    Point normal_{};
+    double least_ = 0;
+};
+
+} // namespace
+
+void triangulate(std::span<const std::uint64_t> loop, const core::PointReader& points, std::vector<LoopTriangle>& out) {
+    const auto n = static_cast<std::uint32_t>(loop.size());
+    if (n > 3 && n <= max_ear_points) {
+        const FaceCutter cutter(loop, points);
+        if (!cutter.is_fan_upright()) return cutter.cut_ears(out);
+    }
+    for (std::uint32_t i = 1; i + 1 < n; ++i) out.push_back({0, i, i + 1});
+}
+
+} // namespace isotet::linear

@@ -1,0 +1,106 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/linear_cells.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "core/carry_out.hpp"
+#include "core/cell_faces.hpp"
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "linear/parts.hpp"
+#include "linear/polyhedron.hpp"
+
+namespace isotet {
+
+namespace linear {
+
+namespace {
+
+constexpr std::size_t cells_per_block = 1024;
+
+Error linearizing_cancelled() { return {ErrorCode::cancelled, "making linear cells was cancelled"}; }
+
+/// A cell that stays as it is.
+void keep_cell(const core::CellReader& cells, std::size_t cell, std::vector<std::uint64_t>& corners, Parts& out) {
+    corners.clear();
+    const std::uint64_t first = cells.first(cell), count = cells.corners(cell);
+    for (std::uint64_t i = 0; i < count; ++i) corners.push_back(cells.corner(first + i));
+    out.add_cell(cells.type(cell), corners, cell);
+}
+
+/// Nothing can be contoured: says why.
+Error nothing_left(const Grid& grid, const LinearizeReport& report) {
+    return invalid_data(fmt::format("the grid with {} points and {} cells has no cell that can be contoured: the faces of "
+                                    "{} of its {} polyhedra do not close",
+                                    grid.points.tuples(), grid.cells.count(), report.open, report.polyhedra));
+}
+
+Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
+    const Grid grid{user.points, user.cells, {}, {}};
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (!has_cells_to_linearize(grid.cells)) {
+        LinearGrid same;
+        same.grid = grid;
+        same.user_points = grid.points.tuples();
+        same.user_cells = cells->count();
+        return same;
+    }
+    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
+    if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
+    const auto faces = core::FaceReader::open(grid.cells);
+    if (!faces) return faces.error();
+    progress("linearize", 0.1);
+
+    std::vector<Parts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
+    core::parallel_pieces(blocks.size(), 4, progress, [&](std::size_t begin, std::size_t end) {
+        PolyhedronSplitter splitter(grid, *cells, *faces, options);
+        std::vector<std::uint64_t> corners;
+        for (std::size_t b = begin; b < end; ++b) {
+            const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
+            for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
+                if (cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell))
+                    splitter.split(cell, blocks[b]);
+                else keep_cell(*cells, cell, corners, blocks[b]);
+            }
+        }
+    });
+    if (progress.cancelled()) return linearizing_cancelled();
+    progress("linearize", 0.8);
+    LinearGrid out = joined(blocks, grid.points.tuples());
+    out.user_cells = cells->count();
+    const auto types = out.grid.cells.types.as<std::uint8_t>();
+    if (std::ranges::none_of(types, core::is_contoured)) return nothing_left(grid, out.report);
+    auto points = out.extend(grid.points, {.threads = core::threads_here()});
+    if (!points) return points.error();
+    out.grid.points = *std::move(points);
+    progress("linearize", 1);
+    return out;
+}
+
+} // namespace
+
+} // namespace linear
+
+bool has_cells_to_linearize(const Cells& cells) {
+    if (cells.faces.empty() || cells.types.type() != ScalarType::uint8) return false;
+    const auto types = cells.types.as<std::uint8_t>();
+    std::atomic<bool> found{false};
+    core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
+        const auto part = types.subspan(begin, end - begin);
+        if (std::ranges::find(part, core::polyhedron_type) != part.end())
+            found.store(true, std::memory_order_relaxed);
+    });
+    return found;
+}
+
+Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Run& run) {
+    return core::carry_out("making linear cells", run,
+                           [&](const Progress& progress) { return linear::linearize(grid, options, progress); });
+}
+
+} // namespace isotet

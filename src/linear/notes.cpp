@@ -1,0 +1,22 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <isotet/linear_cells.hpp>
+
+namespace isotet {
+
+std::vector<std::string> LinearizeReport::notes() const {
+    std::vector<std::string> out;
+    if (centred > 0)
+        out.push_back(fmt::format("{} of {} polyhedra were split around a point inside, whose values are means of the "
+                                  "corners': with the others they are {} linear cells (docs/cells.md)",
+                                  centred, polyhedra, cells));
+    if (folded > 0)
+        out.push_back(fmt::format("{} polyhedra have no point that sees all their faces: the surface may be folded there",
+                                  folded));
+    if (open > 0)
+        out.push_back(fmt::format("{} of {} polyhedra were left out: their faces do not close", open, polyhedra));
+    return out;
+}
+
+} // namespace isotet

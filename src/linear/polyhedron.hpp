@@ -1,0 +1,46 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// One polyhedron as linear cells.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "linear/centre.hpp"
+#include "linear/face_triangles.hpp"
+#include "linear/parts.hpp"
+#include "linear/shell.hpp"
+
+namespace isotet::linear {
+
+/// Splits polyhedra, one after another, and keeps its memory between them. Borrows all it is given.
+class PolyhedronSplitter {
+public:
+    PolyhedronSplitter(const Grid& grid, const core::CellReader& cells, const core::FaceReader& faces,
+                       const LinearizeOptions& options)
+        : cells_(cells),
+          faces_(faces),
+          options_(options),
+          points_(grid.points),
+          single_(grid.points.type() == ScalarType::float32) {}
+
+    /// Adds what the cell becomes; an open one becomes a cell of type 0.
+    void split(std::size_t cell, Parts& out);
+
+private:
+    bool keep_known_shape(std::size_t cell, Parts& out);
+    void find_triangles();
+    void split_around_centre(std::size_t cell, Parts& out);
+
+    const core::CellReader& cells_;
+    const core::FaceReader& faces_;
+    const LinearizeOptions& options_;
+    core::PointReader points_;
+    bool single_;
+    Shell shell_;
+    std::vector<LoopTriangle> loop_triangles_;
+    std::vector<std::size_t> triangle_ends_; ///< of each face
+    std::vector<OutwardTriangle> triangles_;
+    std::vector<std::uint64_t> listed_;
+};
+
+} // namespace isotet::linear

@@ -1,0 +1,87 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "session/linear_input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/buffer.hpp"
+#include "core/parallel.hpp"
+
+namespace isotet::session {
+
+namespace {
+
+std::array<const Array*, 5> arrays_of(const Cells& cells) {
+    return {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets};
+}
+
+} // namespace
+
+bool LinearInput::knows(const Cells& cells) const {
+    if (!linear_) return false;
+    const auto arrays = arrays_of(cells);
+    bool same = true;
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+        same = same && (arrays[i]->empty() ? arrays_[i].is_empty() : arrays_[i].is(*arrays[i]));
+    return same || print_ == fingerprint(cells);
+}
+
+Result<ContourInput> LinearInput::make(ContourInput input, const Run& run) {
+    is_new_ = false;
+    if (!has_cells_to_linearize(input.grid.cells)) {
+        linear_.reset();
+        return input;
+    }
+    LinearInput next = *this;
+    next.points_.emplace(input.grid.points);
+    bool known = false;
+    core::with_threads(run.threads, [&] { known = knows(input.grid.cells); });
+    if (!known || linear_->user_points != input.grid.points.tuples()) {
+        auto made = linearize(input.grid, {}, run);
+        if (!made) return made.error();
+        next.linear_ = std::make_shared<const LinearGrid>(*std::move(made));
+        next.arrays_.clear();
+        for (const Array* array : arrays_of(input.grid.cells)) next.arrays_.emplace_back(*array);
+        core::with_threads(run.threads, [&] { next.print_ = fingerprint(input.grid.cells); });
+        next.is_new_ = true;
+    } else if (!points_->is(input.grid.points)) {
+        auto moved = linear_->extend(input.grid.points, run);
+        if (!moved) return moved.error();
+        LinearGrid copy = *linear_;
+        copy.grid.points = *std::move(moved);
+        next.linear_ = std::make_shared<const LinearGrid>(std::move(copy));
+    }
+    input.grid = next.linear_->grid;
+    const auto replace = [&](Array& array, bool of_cells) -> Result<void> {
+        auto longer = of_cells ? next.linear_->of_cells(array, run) : next.linear_->extend(array, run);
+        if (!longer) return longer.error();
+        array = *std::move(longer);
+        return {};
+    };
+    if (auto done = replace(input.field.values, false); !done) return done.error();
+    for (Field& field : input.point_fields)
+        if (auto done = replace(field.values, false); !done) return done.error();
+    for (Field& field : input.cell_fields)
+        if (auto done = replace(field.values, true); !done) return done.error();
+    *this = std::move(next);
+    return input;
+}
+
+void map_source_cells(const LinearGrid& linear, std::vector<Extraction>& surfaces) {
+    if (linear.source_cells.empty()) return;
+    const auto sources = linear.source_cells.as<std::uint64_t>();
+    for (Extraction& extraction : surfaces) {
+        Array& cells = extraction.surface.source_cells;
+        if (cells.empty()) continue;
+        core::Buffer<std::int64_t> of_user(cells.tuples());
+        cells.visit([&](auto numbers) {
+            core::parallel_each(numbers.size(), 1 << 16, [&](std::size_t i) {
+                of_user[i] = static_cast<std::int64_t>(sources[static_cast<std::size_t>(numbers[i])]);
+            });
+        });
+        cells = std::move(of_user).to_array();
+    }
+}
+
+} // namespace isotet::session

@@ -1,0 +1,44 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a session is given, with linear cells: everything behind it sees no others.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <isotet/contour.hpp>
+#include <isotet/linear_cells.hpp>
+
+#include "core/array_identity.hpp"
+#include "session/fingerprint.hpp"
+
+namespace isotet::session {
+
+/// A grid that was made linear, known again by its cells. Copying shares it.
+class LinearInput {
+public:
+    /// The input with linear cells: fields continued for derived points and cells; itself where all cells are linear. The
+    /// same cells as before keep their derived points, also when the user's points moved.
+    ///
+    /// Errors   as linearize() and LinearGrid::extend()
+    Result<ContourInput> make(ContourInput input, const Run& run);
+
+    /// Null where all cells of the last input were linear.
+    const std::shared_ptr<const LinearGrid>& grid() const { return linear_; }
+    /// True when the last input was the first with its cells.
+    bool is_new() const { return is_new_; }
+
+private:
+    bool knows(const Cells& cells) const;
+
+    std::shared_ptr<const LinearGrid> linear_;
+    std::vector<core::ArrayIdentity> arrays_; ///< of the user's cells
+    Fingerprint print_;
+    std::optional<core::ArrayIdentity> points_;
+    bool is_new_ = false;
+};
+
+/// Writes the user's cell numbers over those of linear cells.
+void map_source_cells(const LinearGrid& linear, std::vector<Extraction>& surfaces);
+
+} // namespace isotet::session
