@@ -75,6 +75,14 @@ Color color_of(const std::vector<double>& isovalues, std::size_t which, ColorMap
     return color_at(map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(isovalues.size() - 1));
 }
 
+/// Triangles of a surface above which a preview is sent.
+std::uint64_t limit_of(const ShowMessage& message, const GridViewOptions& options) {
+    constexpr std::uint64_t least = 10'000;
+    const std::uint64_t own = message.moving ? options.preview_triangles : options.max_triangles;
+    return std::clamp<std::uint64_t>(message.most.value_or(own), std::min<std::uint64_t>(least, own),
+                                     options.max_triangles);
+}
+
 bool holds(const std::vector<std::string>& keys, const std::string& key) {
     return std::ranges::find(keys, key) != keys.end();
 }
@@ -224,10 +232,7 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
     if (!scale) return scale.error();
     Result<Source*> source = source_for(state, run);
     if (!source) return source.error();
-    constexpr std::uint64_t least_of_previews = 10'000;
-    const std::uint64_t preview_limit = std::clamp<std::uint64_t>(
-        message.preview.value_or(options_.preview_triangles),
-        std::min<std::uint64_t>(least_of_previews, options_.preview_triangles), options_.max_triangles);
+    const std::uint64_t most = limit_of(message, options_);
     FrameFacts facts;
     facts.number = message.number;
     facts.wait_seconds = wait_seconds;
@@ -242,7 +247,6 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
         if (!mesh) return mesh.error();
         FrameSurface surface{key, state.isovalues[i], color_of(state.isovalues, i, state.map), nullptr,
                              (*mesh)->triangle_count()};
-        const std::size_t most = message.moving ? preview_limit : options_.max_triangles;
         const bool has_it_in_full = holds(known, key);
         if (!has_it_in_full && surface.triangles > most && !(*mesh)->flat) {
             facts.preview = true;

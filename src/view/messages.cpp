@@ -45,7 +45,7 @@ Result<PageMessage> parse_show(const Json& json) {
     message.state = *std::move(state);
     const Json* moving = find(json, "moving");
     message.moving = moving && moving->is_boolean() && moving->get<bool>();
-    if (const Json* preview = find(json, "preview")) message.preview = whole_number(*preview);
+    if (const Json* most = find(json, "most")) message.most = whole_number(*most);
     return PageMessage(std::move(message));
 }
 

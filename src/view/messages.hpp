@@ -23,12 +23,13 @@ struct HelloMessage {
     std::string token;
 };
 
-/// {"do": "show", "number": n, "state": ..., "moving": true, "preview": N}: what the page wants to see. `number` grows.
+/// {"do": "show", "number": n, "state": ..., "moving": true, "most": N}: what the page wants to see. `number` grows.
 struct ShowMessage {
     std::uint64_t number = 0;
     ViewState state;
-    bool moving = false;                  ///< a preview will do
-    std::optional<std::uint64_t> preview; ///< triangles that the page draws quickly; nothing: the server's limit
+    bool moving = false; ///< a preview will do
+    std::optional<std::uint64_t>
+        most; ///< triangles of a surface that the page draws in time; nothing: the server's limit
 };
 
 /// {"do": "shown", "number": n}: the page has drawn frame n.

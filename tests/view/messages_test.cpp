@@ -14,10 +14,11 @@ using namespace view;
 
 TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(std::get<HelloMessage>(*parse_page_message(R"({"do":"hello","token":"abc"})")).token, "abc");
-    const auto show = std::get<ShowMessage>(
-        *parse_page_message(R"({"do":"show","number":7,"moving":true,"state":{"field":"p","isovalues":[0.5]}})"));
+    const auto show = std::get<ShowMessage>(*parse_page_message(
+        R"({"do":"show","number":7,"moving":true,"most":900,"state":{"field":"p","isovalues":[0.5]}})"));
     EXPECT_EQ(show.number, 7U);
     EXPECT_TRUE(show.moving);
+    EXPECT_EQ(show.most, 900U);
     EXPECT_EQ(show.state.isovalues, std::vector<double>{0.5});
     EXPECT_EQ(std::get<ShownMessage>(*parse_page_message(R"({"do":"shown","number":7})")).number, 7U);
     EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p"})")).field, "p");

@@ -71,6 +71,7 @@ function draw() {
   scene.finish();
   const took = performance.now() - start;
   if (scene.scale === 1) slow = took > 50;
+  measureSpeed(took);
   if (frame && !frame.acknowledged) {
     frame.acknowledged = true;
     frame.draw_ms = took;
@@ -80,6 +81,15 @@ function draw() {
     tellFacts();
   }
   document.body.dataset.camera = camera.text();
+}
+
+function measureSpeed(took) {
+  const drawn = (frame?.surfaces || []).reduce((sum, {key}) => sum + (scene.meshes.get(key)?.count || 0) / 3, 0);
+  if (drawn < 20000) return;
+  speed = speed === null ? drawn / took : 0.7 * speed + 0.3 * drawn / took;
+  // A preview from before the speed was known is replaced.
+  const settled = frame.preview && frame.number === number && sent?.endsWith('|rest');
+  if (settled && mostTriangles(false) > lastMost) { sent = null; restSoon(); }
 }
 
 function drawSoon() {
@@ -141,15 +151,24 @@ function stopWaiting() {
 /** What a frame depends on. */
 const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic]);
 
+/** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 0.6 s for one that rests. In few steps. */
+let speed = null, lastMost = 0; // triangles a ms
+function mostTriangles(moving) {
+  const [ms, least, limit] = moving ? [40, 30000, 600000] : [600, 150000, 8e6];
+  const most = speed === null ? 100000 : Math.max(least, Math.min(limit, speed * ms));
+  return Math.round(10000 * 2 ** Math.floor(Math.log2(most / 10000)));
+}
+
 function wish(moving) {
   wishPlanned = false;
   if (!grid || !state.field || state.value === null) return;
   const what = wanted() + (moving ? '' : '|rest');
   if (what === sent || (moving && sent === wanted() + '|rest')) return;
-  const message = {do: 'show', number: number + 1, state: toMessage(state), moving, preview: slow ? 100000 : 600000};
+  const message = {do: 'show', number: number + 1, state: toMessage(state), moving, most: mostTriangles(moving)};
   delete message.state.camera;
   if (!link.send(message)) return;
   sent = what;
+  lastMost = message.most;
   sentAt.set(++number, performance.now());
   if (!waiting) waiting = setTimeout(() => { id('stage').classList.add('waiting'); id('bar').hidden = false; }, 100);
 }
