@@ -438,5 +438,33 @@ TEST_F(Program, ExtractListsFieldsForAWrongDisplacement) {
     EXPECT_TRUE(is_one_error(run, "--displace takes a point field: there is no field 'shft': the grid has 'shift', 'p'"));
 }
 
+TEST_F(Program, PiecesAreTogetherTheSurfaceOfTheWhole) {
+    for (const std::string shape : {"make:mixed:6:gyroid", "make:kuhn:6:wavelet"}) {
+        const json whole = json_of({"extract", shape, path("whole.vtp"), "--levels", "1", "--edge-ends"});
+        std::vector<std::string> files;
+        std::uint64_t triangles = 0;
+        for (const std::string piece : {"1/3", "2/3", "3/3"}) {
+            files.push_back(path("part-" + piece.substr(0, 1) + ".vtp"));
+            const json part =
+                json_of({"extract", shape, files.back(), "--levels", "1", "--edge-ends", "--piece", piece});
+            triangles += part["surfaces"][0]["triangles"].get<std::uint64_t>();
+            EXPECT_EQ(part["surfaces"][0]["isovalue"], whole["surfaces"][0]["isovalue"]);
+        }
+        EXPECT_EQ(triangles, whole["surfaces"][0]["triangles"]);
+        const json checked_whole = json_of({"check", path("whole.vtp"), "--grid", shape});
+        const json together = json_of({"check", files[0], files[1], files[2], "--grid", shape});
+        EXPECT_EQ(together["more_files"].size(), 2u);
+        for (const char* key : {"vertices", "triangles", "boundary_edges", "components", "euler", "sound"})
+            EXPECT_EQ(together[key], checked_whole[key]) << key;
+        const json alone = json_of({"check", files[0]});
+        EXPECT_GT(alone["boundary_edges"], 0);
+    }
+}
+
+TEST_F(Program, PiecesAreCountedFromOne) {
+    for (const char* piece : {"0/3", "4/3", "1", "1/", "/3", "1/3x", "-1/3", "1/0"})
+        EXPECT_EQ(isotet({"extract", "make:kuhn:2:gyroid", "-i", "0", "--piece", piece}).status, 2) << piece;
+}
+
 } // namespace
 } // namespace isotet::test
