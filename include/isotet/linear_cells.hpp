@@ -28,13 +28,14 @@ struct DerivedPoints {
 
 /// What linearize() did, in cells of the user's grid.
 struct LinearizeReport {
-    std::uint64_t polyhedra = 0;     ///< cells that are polyhedra, with their faces
-    std::uint64_t known_shapes = 0;  ///< of these: tetrahedra, pyramids, wedges and hexahedra, which stay whole
-    std::uint64_t centred = 0;       ///< of these: split around a derived point
-    std::uint64_t moved_centres = 0; ///< of these: that point is not the mean of the corners, but moved to see all faces
-    std::uint64_t folded = 0;        ///< centred ones where no point was found that sees all faces
-    std::uint64_t open = 0;          ///< polyhedra left out: some edge is not in two faces, or the faces are not one shell
-    std::uint64_t cells = 0;         ///< linear cells that polyhedra became
+    std::uint64_t polyhedra = 0;    ///< cells that are polyhedra, with their faces
+    std::uint64_t known_shapes = 0; ///< of these: tetrahedra, pyramids, wedges and hexahedra, which stay whole
+    std::uint64_t centred = 0;      ///< of these: split around a derived point
+    std::uint64_t moved_centres =
+        0;                    ///< of these: that point is not the mean of the corners, but moved to see all faces
+    std::uint64_t folded = 0; ///< centred ones where no point was found that sees all faces
+    std::uint64_t open = 0;   ///< polyhedra left out: some edge is not in two faces, or the faces are not one shell
+    std::uint64_t cells = 0;  ///< linear cells that polyhedra became
 
     /// Sentences for the user, what was split and what was left out.
     ISOTET_API std::vector<std::string> notes() const;
@@ -42,11 +43,11 @@ struct LinearizeReport {
 
 /// A grid of linear cells, and what connects it with the grid that it was made of. A handle on arrays: copying shares them.
 struct ISOTET_API LinearGrid {
-    Grid grid;                      ///< the user's points, then the derived ones; linear cells; no fields
-    std::uint64_t user_points = 0;  ///< grid.points from this number on are derived: row 0, 1, ...
+    Grid grid;                     ///< the user's points, then the derived ones; linear cells; no fields
+    std::uint64_t user_points = 0; ///< grid.points from this number on are derived: row 0, 1, ...
     std::uint64_t user_cells = 0;
     DerivedPoints derived;
-    Array source_cells;             ///< uint64, the user's cell of each cell of `grid`, ascending; empty: they are the same
+    Array source_cells; ///< uint64, the user's cell of each cell of `grid`, ascending; empty: they are the same
     LinearizeReport report;
 
     /// An array of one tuple a user's point, continued for the derived points: computed in double, rounded once.
@@ -76,7 +77,7 @@ ISOTET_API bool has_cells_to_linearize(const Cells& cells);
 ///   a known shape   a tetrahedron, pyramid, wedge or hexahedron given by its faces is that cell
 ///   any other       pyramids on its quadrilaterals and tets on its triangles, around a derived point: the mean of its
 ///                   corners, moved where it does not see all faces. Larger faces are cut into triangles, from the lowest
-///                   point number, or by ears where that would fold: by the face alone, so neighbours agree
+///                   point number, or by ears where that would be thin or fold: by the face alone, so neighbours agree
 ///   open            left out: type 0 (empty), without corners
 ///
 /// Faces may be wound in any way and stand in any order: the result is the same.

@@ -192,14 +192,13 @@ Result<Surface> boundary_of_grid(const Grid& grid, const Progress& progress) {
 } // namespace core
 
 Result<Surface> boundary_of(const Grid& grid, const Run& run) {
-    return core::carry_out("finding the boundary", run,
-                           [&](const Progress& progress) -> Result<Surface> {
-                               if (!has_cells_to_linearize(grid.cells)) return core::boundary_of_grid(grid, progress);
-                               const auto linear = linearize({grid.points, grid.cells, {}, {}}, {},
-                                                             {.threads = core::threads_here(), .progress = {}});
-                               if (!linear) return linear.error();
-                               return core::boundary_of_grid(linear->grid, progress);
-                           });
+    return core::carry_out("finding the boundary", run, [&](const Progress& progress) -> Result<Surface> {
+        if (!has_cells_to_linearize(grid.cells)) return core::boundary_of_grid(grid, progress);
+        const auto linear =
+            linearize({grid.points, grid.cells, {}, {}}, {}, {.threads = core::threads_here(), .progress = {}});
+        if (!linear) return linear.error();
+        return core::boundary_of_grid(linear->grid, progress);
+    });
 }
 
 Result<Surface> boundary_of(const PackedGrid& packed, const Run& run) {

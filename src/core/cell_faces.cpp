@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "core/errors.hpp"
+#include "core/orientation.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet::core {
@@ -21,13 +22,15 @@ bool holds_face_indices(const Array& array) {
 }
 
 std::string fault_of_point(const Grid& grid, std::uint64_t point) {
+    constexpr double limit = 0x1p91;
+    if (point < grid.points.tuples()) {
+        const Point place = PointReader(grid.points)[point];
+        if (std::abs(place[0]) < limit && std::abs(place[1]) < limit && std::abs(place[2]) < limit) return {};
+    }
     if (point >= grid.points.tuples())
         return fmt::format("has point {}, but the grid has {} points", static_cast<std::int64_t>(point),
                            grid.points.tuples());
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!(std::abs(grid.points.at(point, axis)) < 0x1p91))
-            return fmt::format("has point {}, whose coordinates are not finite and below 2^91", point);
-    return {};
+    return fmt::format("has point {}, whose coordinates are not finite and below 2^91", point);
 }
 
 /// What is wrong with a cell; empty: nothing.
@@ -73,12 +76,14 @@ Result<FaceReader> FaceReader::open(const Cells& cells) {
     FaceReader reader;
     if (cells.faces.empty()) return reader;
     if (!holds_face_indices(cells.faces) || !holds_face_indices(cells.face_offsets))
-        return invalid_data(fmt::format("faces are {} with offsets of {}, but both must be 32- or 64-bit integers with 1 "
-                                        "component",
-                                        name_of(cells.faces.type()), name_of(cells.face_offsets.type())));
+        return invalid_data(
+            fmt::format("faces are {} with offsets of {}, but both must be 32- or 64-bit integers with 1 "
+                        "component",
+                        name_of(cells.faces.type()), name_of(cells.face_offsets.type())));
     if (cells.face_offsets.tuples() != cells.count() + 1)
-        return invalid_data(fmt::format("there are {} offsets of faces for {} cells, but there must be one more than cells",
-                                        cells.face_offsets.tuples(), cells.count()));
+        return invalid_data(
+            fmt::format("there are {} offsets of faces for {} cells, but there must be one more than cells",
+                        cells.face_offsets.tuples(), cells.count()));
     reader.stream_ = IndexColumn(cells.faces);
     reader.offsets_ = IndexColumn(cells.face_offsets);
     reader.size_ = cells.faces.tuples();

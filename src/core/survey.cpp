@@ -91,12 +91,10 @@ Result<GridReport> survey_linear(const Grid& grid, const SurveyOptions& options,
 } // namespace core
 
 Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const Run& run) {
-    return core::carry_out("checking the grid", run,
-                           [&](const Progress& progress) {
-                               return has_cells_to_linearize(grid.cells)
-                                          ? core::survey_linear(grid, options, progress)
-                                          : core::survey(grid, options, progress);
-                           });
+    return core::carry_out("checking the grid", run, [&](const Progress& progress) {
+        return has_cells_to_linearize(grid.cells) ? core::survey_linear(grid, options, progress)
+                                                  : core::survey(grid, options, progress);
+    });
 }
 
 Result<TetList> split(const Grid& grid, const Run& run) {

@@ -13,7 +13,8 @@ namespace isotet::linear {
 namespace {
 
 constexpr int max_moves = 200;
-constexpr double thinnest = 1e-18; // squared area over the fourth power of the longest edge: no place can see such a triangle
+constexpr double thinnest =
+    1e-18; // squared area over the fourth power of the longest edge: no place can see such a triangle
 
 /// The outer side of a triangle's plane.
 struct Wall {

@@ -53,8 +53,8 @@ void gather(const Array& values, std::span<const std::uint64_t> sources, std::by
 
 Result<void> has_tuples(const Array& values, std::uint64_t expected, const char* what) {
     if (values.tuples() == expected && values.components() > 0) return {};
-    return invalid_argument(fmt::format("the array has {} tuples, but the user's grid has {} {}s", values.tuples(),
-                                        expected, what));
+    return invalid_argument(
+        fmt::format("the array has {} tuples, but the user's grid has {} {}s", values.tuples(), expected, what));
 }
 
 Error cancelled_extension() { return {ErrorCode::cancelled, "extending an array was cancelled"}; }

@@ -2,6 +2,7 @@
 #include "linear/face_triangles.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "linear/vector.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t max_ear_points = 64; // ears cost the cube
 constexpr double least_share = 1e-9;       // of the face's area, for a triangle with an area
+constexpr double least_quality = 0.1;      // of a fan's triangle: twice its area over the square of its longest edge
 
 /// A face in the making: its points, and areas along its normal.
 class FaceCutter {
@@ -27,9 +29,11 @@ public:
         least_ = least_share * dot(normal_, normal_);
     }
 
-    bool is_fan_upright() const {
+    /// A point nearly on the line of its neighbours, a hanging one say, makes a thin triangle of any direction.
+    bool is_fan_good() const {
+        const double least = least_quality * std::sqrt(dot(normal_, normal_));
         for (std::uint32_t i = 1; i + 1 < places_.size(); ++i)
-            if (!(area(0, i, i + 1) > least_)) return false;
+            if (!(quality(0, i, i + 1) > least)) return false;
         return true;
     }
 
@@ -52,28 +56,33 @@ private:
         return dot(cross(minus(places_[b], places_[a]), minus(places_[c], places_[a])), normal_);
     }
 
-    bool holds_a_point(const std::vector<std::uint32_t>& left, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    /// Twice the area over the square of the longest edge, times the normal's length; 0 where there is hardly an area.
+    double quality(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        const double size = area(a, b, c);
+        if (!(size > least_)) return 0;
+        return size /
+               std::max({core::squared_distance(places_[a], places_[b]), core::squared_distance(places_[b], places_[c]),
+                         core::squared_distance(places_[c], places_[a])});
+    }
+
+    bool holds_a_point(const std::vector<std::uint32_t>& left, std::uint32_t a, std::uint32_t b,
+                       std::uint32_t c) const {
         return std::ranges::any_of(left, [&](std::uint32_t p) {
             return p != a && p != b && p != c && area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
         });
     }
 
-    /// The position of the tip of the ear with the largest angle-like quality; the number of points where there is none.
+    /// The position of the tip of the best-shaped ear; the number of points where there is none.
     std::size_t best_ear(const std::vector<std::uint32_t>& left) const {
         const std::size_t n = left.size();
         std::size_t best = n;
         double best_quality = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint32_t a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
-            const double size = area(a, b, c);
-            if (!(size > least_)) continue;
-            const double longest = std::max({core::squared_distance(places_[a], places_[b]),
-                                             core::squared_distance(places_[b], places_[c]),
-                                             core::squared_distance(places_[c], places_[a])});
-            const double quality = size / longest;
-            if (quality > best_quality && !holds_a_point(left, a, b, c)) {
+            const double shape = quality(a, b, c);
+            if (shape > best_quality && !holds_a_point(left, a, b, c)) {
                 best = i;
-                best_quality = quality;
+                best_quality = shape;
             }
         }
         return best;
@@ -90,7 +99,7 @@ void triangulate(std::span<const std::uint64_t> loop, const core::PointReader& p
     const auto n = static_cast<std::uint32_t>(loop.size());
     if (n > 3 && n <= max_ear_points) {
         const FaceCutter cutter(loop, points);
-        if (!cutter.is_fan_upright()) return cutter.cut_ears(out);
+        if (!cutter.is_fan_good()) return cutter.cut_ears(out);
     }
     for (std::uint32_t i = 1; i + 1 < n; ++i) out.push_back({0, i, i + 1});
 }

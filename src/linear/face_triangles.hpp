@@ -14,9 +14,9 @@ namespace isotet::linear {
 /// Positions in a loop.
 using LoopTriangle = std::array<std::uint32_t, 3>;
 
-/// Appends the n - 2 triangles of a loop of n >= 3 points: a fan from its first point; where one of these would have no
-/// area or be turned against the face's normal, ears, the best-shaped first. A fan where ears do not succeed either, and
-/// for loops of more than 64 points.
+/// Appends the n - 2 triangles of a loop of n >= 3 points: a fan from its first point; where one of these would be thin or
+/// turned against the face's normal, ears, the best-shaped first. A fan of what is left where no ear is, and for loops of
+/// more than 64 points.
 ///
 /// `loop`     in canonical form (Shell): both cells of a face have it alike
 void triangulate(std::span<const std::uint64_t> loop, const core::PointReader& points, std::vector<LoopTriangle>& out);

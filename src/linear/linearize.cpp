@@ -34,9 +34,10 @@ void keep_cell(const core::CellReader& cells, std::size_t cell, std::vector<std:
 
 /// Nothing can be contoured: says why.
 Error nothing_left(const Grid& grid, const LinearizeReport& report) {
-    return invalid_data(fmt::format("the grid with {} points and {} cells has no cell that can be contoured: the faces of "
-                                    "{} of its {} polyhedra do not close",
-                                    grid.points.tuples(), grid.cells.count(), report.open, report.polyhedra));
+    return invalid_data(
+        fmt::format("the grid with {} points and {} cells has no cell that can be contoured: the faces of "
+                    "{} of its {} polyhedra do not close",
+                    grid.points.tuples(), grid.cells.count(), report.open, report.polyhedra));
 }
 
 Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
@@ -92,8 +93,7 @@ bool has_cells_to_linearize(const Cells& cells) {
     std::atomic<bool> found{false};
     core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
         const auto part = types.subspan(begin, end - begin);
-        if (std::ranges::find(part, core::polyhedron_type) != part.end())
-            found.store(true, std::memory_order_relaxed);
+        if (std::ranges::find(part, core::polyhedron_type) != part.end()) found.store(true, std::memory_order_relaxed);
     });
     return found;
 }

@@ -12,8 +12,8 @@ std::vector<std::string> LinearizeReport::notes() const {
                                   "corners': with the others they are {} linear cells (docs/cells.md)",
                                   centred, polyhedra, cells));
     if (folded > 0)
-        out.push_back(fmt::format("{} polyhedra have no point that sees all their faces: the surface may be folded there",
-                                  folded));
+        out.push_back(fmt::format(
+            "{} polyhedra have no point that sees all their faces: the surface may be folded there", folded));
     if (open > 0)
         out.push_back(fmt::format("{} of {} polyhedra were left out: their faces do not close", open, polyhedra));
     return out;

@@ -68,7 +68,8 @@ void PolyhedronSplitter::split_around_centre(std::size_t cell, Parts& out) {
         } else {
             for (std::size_t i = next; i < triangle_ends_[face]; ++i) {
                 const OutwardTriangle& t = triangles_[i];
-                out.add_cell(static_cast<std::uint8_t>(CellType::tetrahedron), std::array{t[0], t[2], t[1], apex}, cell);
+                out.add_cell(static_cast<std::uint8_t>(CellType::tetrahedron), std::array{t[0], t[2], t[1], apex},
+                             cell);
                 ++out.report.cells;
             }
         }

@@ -55,7 +55,8 @@ Result<std::vector<std::uint64_t>> cells_of(const Surface& boundary, const Grid&
                 if (k != left_out) face[to++] = tets->tets[tet][k];
             std::ranges::sort(face);
             const auto found = faces.find(face);
-            if (found != faces.end()) cells[found->second] = std::min(cells[found->second], user_cell(tets->cells[tet]));
+            if (found != faces.end())
+                cells[found->second] = std::min(cells[found->second], user_cell(tets->cells[tet]));
         }
     }
     return cells;
@@ -105,7 +106,8 @@ Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField*
     DirectOptions options;
     if (field) {
         const bool of_points = field->association == Association::point;
-        const Result<Array> values = of_points ? linear->extend(field->values, run) : linear->of_cells(field->values, run);
+        const Result<Array> values =
+            of_points ? linear->extend(field->values, run) : linear->of_cells(field->values, run);
         if (!values) return values.error();
         (of_points ? options.extract.point_fields : options.extract.cell_fields) = {{field->name, *values}};
     }

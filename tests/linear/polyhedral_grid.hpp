@@ -76,7 +76,8 @@ inline Grid as_polyhedra(const Grid& grid, Listed listed, unsigned seed) {
         CellFaces faces;
         for (const core::CellFace& face : core::shape_of(whole.kind).faces()) {
             FaceLoop& loop = faces.emplace_back();
-            for (const std::uint8_t corner : face.all()) loop.push_back(static_cast<std::int64_t>(whole.corners[corner]));
+            for (const std::uint8_t corner : face.all())
+                loop.push_back(static_cast<std::int64_t>(whole.corners[corner]));
         }
         std::vector<std::int64_t> corners;
         if (listed == Listed::as_corners)

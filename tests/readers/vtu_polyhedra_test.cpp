@@ -24,12 +24,12 @@ std::string face_array(std::string_view name, std::string_view values, std::stri
 /// A tetrahedron as it is, then one by its faces.
 struct FacesFile {
     std::string faces = "4 3 1 2 3 3 1 2 4 3 1 3 4 3 2 3 4", faceoffsets = "-1 17";
-    std::string shared; ///< arrays of VTK 9.4 instead
+    std::string shared = {}; ///< arrays of VTK 9.4 instead
     int pieces = 1;
 
     std::string text() const {
-        const std::string arrays = shared.empty() ? face_array("faces", faces) + face_array("faceoffsets", faceoffsets)
-                                                  : shared;
+        const std::string arrays =
+            shared.empty() ? face_array("faces", faces) + face_array("faceoffsets", faceoffsets) : shared;
         const std::string piece =
             "<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\"><PointData/><Points><DataArray type=\"Float64\" "
             "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells>" +
@@ -75,7 +75,9 @@ TEST(VtuPolyhedra, HaveSharedFacesSinceVtk94) {
     expect_two_tets(read_text(FacesFile{.shared = shared}.text()).value().grid, 1);
 }
 
-TEST(VtuPolyhedra, ArePartsOfSeveralPieces) { expect_two_tets(read_text(FacesFile{.pieces = 3}.text()).value().grid, 3); }
+TEST(VtuPolyhedra, ArePartsOfSeveralPieces) {
+    expect_two_tets(read_text(FacesFile{.pieces = 3}.text()).value().grid, 3);
+}
 
 TEST(VtuPolyhedra, WithoutFacesAreLeftOut) {
     const Grid grid = read_text(FacesFile{.shared = " "}.text()).value().grid;
