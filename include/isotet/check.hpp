@@ -56,7 +56,8 @@ struct CheckOptions {
                                 ///< cells; needs surface.edge_ends
     const PointField* field = nullptr; ///< with `grid`: cells with a corner of no data are not valid
     bool split_cells = false;          ///< with `grid`: the surface was made with PackOptions::split_cells
-    bool weld = false;                 ///< weld by exact coordinates first (STL)
+    bool weld = false;                 ///< weld first: by edge ends where there are some (pieces), else by exact
+                                       ///< coordinates (STL)
     int max_findings = 5;              ///< of each kind
 };
 

@@ -2,6 +2,9 @@
 #include "check/weld.hpp"
 
 #include <algorithm>
+#include <compare>
+
+#include <tbb/parallel_sort.h>
 
 #include "core/parallel.hpp"
 #include "core/same_place.hpp"
@@ -24,10 +27,35 @@ Array keep_leaders(const Array& array, const std::vector<std::uint64_t>& lowest)
     });
 }
 
+/// For each vertex the lowest one that lies on the same edge of the grid.
+std::vector<std::uint64_t> lowest_on_same_edge(const Array& edge_ends) {
+    struct OnEdge {
+        double ends[2]; // exact below 2^53, and in one order for all
+        std::uint64_t vertex;
+        auto operator<=>(const OnEdge&) const = default;
+    };
+    std::vector<OnEdge> vertices(edge_ends.tuples());
+    core::parallel_each(vertices.size(), 1 << 14, [&](std::size_t v) {
+        const auto [low, high] = std::minmax({edge_ends.at(v, 0), edge_ends.at(v, 1)});
+        vertices[v] = {{low, high}, v};
+    });
+    tbb::parallel_sort(vertices.begin(), vertices.end(), [](const OnEdge& a, const OnEdge& b) { return a < b; });
+    std::vector<std::uint64_t> lowest(vertices.size());
+    std::uint64_t first = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const bool same = i > 0 && std::ranges::equal(vertices[i].ends, vertices[i - 1].ends);
+        if (!same) first = vertices[i].vertex;
+        lowest[vertices[i].vertex] = first;
+    }
+    return lowest;
+}
+
 } // namespace
 
 Welded weld(const Surface& surface, const Mesh& mesh) {
-    const std::vector<std::uint64_t> lowest = core::lowest_at_same_place(surface.positions);
+    const bool has_ends = !surface.edge_ends.empty() && surface.edge_ends.tuples() == surface.positions.tuples();
+    const std::vector<std::uint64_t> lowest =
+        has_ends ? lowest_on_same_edge(surface.edge_ends) : core::lowest_at_same_place(surface.positions);
     std::vector<std::uint64_t> numbers(lowest.size());
     std::uint64_t count = 0;
     for (std::size_t v = 0; v < lowest.size(); ++v) numbers[v] = lowest[v] == v ? count++ : numbers[lowest[v]];

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/check.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 
@@ -86,16 +87,22 @@ TEST_P(RealGrid, HasSurfacesThatAreClosedOffItsBoundary) {
     ASSERT_TRUE(read) << read.error().message;
     const Grid& grid = read->grid;
     const PointField field = find_field(grid, fields_to_contour(grid).front()).value();
-    const PackedGrid packed = pack(grid, field).value();
-    for (const double isovalue : isovalues_of(packed, field))
-        for (const Ties ties : {Ties::keep, Ties::merge}) {
-            ExtractOptions options;
-            options.ties = ties;
-            options.edge_ends = true;
-            const SurfaceReport report =
-                check(extract(packed, isovalue, options).value().surface, {.grid = &grid, .field = &field}).value();
+    for (const Ties ties : {Ties::keep, Ties::merge}) {
+        ContourOptions options;
+        options.method = Method::clusters;
+        options.ties = ties;
+        options.edge_ends = true;
+        ContourInput input;
+        input.grid = grid;
+        input.field = field;
+        Contour contour = Contour::create(std::move(input), options).value();
+        ASSERT_TRUE(contour.prepare());
+        for (const double isovalue : isovalues_of(*contour.packed(), field)) {
+            const ContourResult result = contour.extract(isovalue).value();
+            const SurfaceReport report = check(result.surfaces[0].surface, {.grid = &grid, .field = &field}).value();
             EXPECT_TRUE(report.sound) << isovalue << ": " << (report.findings.empty() ? "" : report.findings[0].what);
         }
+    }
 }
 
 void expect_random_grid_equal_to_vtk(std::uint32_t seed, const NastyOptions& nasty,

@@ -41,7 +41,7 @@ struct FacesFile {
     }
 };
 
-Result<ReadResult> read_text(const std::string& text) {
+Result<ReadResult> read_faces_file(const std::string& text) {
     const TemporaryFolder folder;
     const std::string path = folder.file("faces.vtu");
     std::ofstream(path) << text;
@@ -49,7 +49,7 @@ Result<ReadResult> read_text(const std::string& text) {
 }
 
 std::string error_of_faces(const FacesFile& file) {
-    const auto result = read_text(file.text());
+    const auto result = read_faces_file(file.text());
     return result ? "no error" : result.error().message.substr(result.error().message.find(".vtu: ") + 6);
 }
 
@@ -68,19 +68,19 @@ void expect_two_tets(const Grid& grid, std::size_t pieces) {
     EXPECT_EQ(survey(grid).value().upper[0], 1);
 }
 
-TEST(VtuPolyhedra, HaveTheirFacesInStreams) { expect_two_tets(read_text(FacesFile().text()).value().grid, 1); }
+TEST(VtuPolyhedra, HaveTheirFacesInStreams) { expect_two_tets(read_faces_file(FacesFile().text()).value().grid, 1); }
 
 TEST(VtuPolyhedra, HaveSharedFacesSinceVtk94) {
     const std::string shared = shared_faces("1 2 3 1 2 4 1 3 4 2 3 4", "3 6 9 12", "3 2 1 0", "0 4");
-    expect_two_tets(read_text(FacesFile{.shared = shared}.text()).value().grid, 1);
+    expect_two_tets(read_faces_file(FacesFile{.shared = shared}.text()).value().grid, 1);
 }
 
 TEST(VtuPolyhedra, ArePartsOfSeveralPieces) {
-    expect_two_tets(read_text(FacesFile{.pieces = 3}.text()).value().grid, 3);
+    expect_two_tets(read_faces_file(FacesFile{.pieces = 3}.text()).value().grid, 3);
 }
 
 TEST(VtuPolyhedra, WithoutFacesAreLeftOut) {
-    const Grid grid = read_text(FacesFile{.shared = " "}.text()).value().grid;
+    const Grid grid = read_faces_file(FacesFile{.shared = " "}.text()).value().grid;
     EXPECT_FALSE(has_cells_to_linearize(grid.cells));
     EXPECT_EQ(survey(grid).value().cells_left_out, 1u);
 }
