@@ -15,9 +15,7 @@
 
 namespace isotet::core {
 
-namespace {
-
-Bounds bounds_of(const PointReader& points, const Buffer<std::uint8_t>& used) {
+Bounds bounds_of_used(const PointReader& points, const Buffer<std::uint8_t>& used) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, used.size(), 1 << 16), Bounds{},
         [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
@@ -30,6 +28,8 @@ Bounds bounds_of(const PointReader& points, const Buffer<std::uint8_t>& used) {
             return a;
         });
 }
+
+namespace {
 
 /// Maps points to a Hilbert curve through the cube around the grid, 2^21 steps a side, the same scale on all axes.
 class Curve {
@@ -67,7 +67,7 @@ Buffer<Keyed> sort_points(const PointReader& points, const Buffer<std::uint8_t>&
     });
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) first[chunk + 1] += first[chunk];
 
-    const Curve curve(bounds_of(points, used));
+    const Curve curve(bounds_of_used(points, used));
     Buffer<Keyed> sorted(first[chunks]), scratch(first[chunks]);
     parallel_each(chunks, 1, [&](std::size_t chunk) {
         Keyed* out = sorted.data() + first[chunk];

@@ -4,11 +4,15 @@
 
 #include <cstdint>
 
+#include "core/bounds.hpp"
 #include "core/buffer.hpp"
 #include "core/orientation.hpp"
 #include "core/radix_sort.hpp"
 
 namespace isotet::core {
+
+/// The box around the used points. Parallel; the same for any thread count.
+Bounds bounds_of_used(const PointReader& points, const Buffer<std::uint8_t>& used);
 
 /// The used points along a Hilbert curve, each with its place there as the key; those of equal keys by number.
 /// Parallel; the same for any thread count.

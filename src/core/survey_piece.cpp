@@ -9,10 +9,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
-#include "core/bounds.hpp"
 #include "core/carry_out.hpp"
 #include "core/errors.hpp"
 #include "core/frame.hpp"
+#include "core/point_order.hpp"
 #include "core/tet_survey.hpp"
 #include "core/value_summary.hpp"
 
@@ -23,20 +23,6 @@ namespace core {
 namespace {
 
 constexpr std::size_t piece_grain = 1 << 15;
-
-Bounds bounds_of_used(const PointReader& points, const Buffer<std::uint8_t>& used) {
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, used.size(), piece_grain), Bounds{},
-        [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                if (used[i]) bounds.add(points[i]);
-            return bounds;
-        },
-        [](Bounds a, const Bounds& b) {
-            a.combine(b);
-            return a;
-        });
-}
 
 ValueSummary summary_of_used(const Array& values, const Buffer<std::uint8_t>& used) {
     const std::size_t components = values.components();

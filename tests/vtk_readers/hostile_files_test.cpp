@@ -37,17 +37,7 @@ protected:
         std::filesystem::create_directories(folder_.file("case"));
         const std::string path = folder_.file("case/a.hdf");
         Hdf5Writer file(path);
-        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
-            file.group(name);
-        file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-        file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
-        file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {5}, {1});
-        file.data<std::int64_t>("/VTKHDF/NumberOfCells", {2}, {1});
-        file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", {8}, {1});
-        file.data<double>("/VTKHDF/Points", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1}, {5, 3});
-        file.data<std::uint8_t>("/VTKHDF/Types", {10, 10}, {2});
-        file.data<std::int64_t>("/VTKHDF/Connectivity", {0, 1, 2, 3, 0, 2, 1, 4}, {8});
-        file.data<std::int64_t>("/VTKHDF/Offsets", {0, 4, 8}, {3});
+        write_two_tets(file);
         add(file);
         return path;
     }

@@ -141,17 +141,7 @@ TEST(ReadVtkhdf, GivesPointsCellsAndFields) {
     const TemporaryFolder folder;
     {
         Hdf5Writer file(folder.file("a.hdf"));
-        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
-            file.group(name);
-        file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-        file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
-        file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {5}, {1});
-        file.data<std::int64_t>("/VTKHDF/NumberOfCells", {2}, {1});
-        file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", {8}, {1});
-        file.data<double>("/VTKHDF/Points", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1}, {5, 3});
-        file.data<std::uint8_t>("/VTKHDF/Types", {10, 10}, {2});
-        file.data<std::int64_t>("/VTKHDF/Connectivity", {0, 1, 2, 3, 0, 2, 1, 4}, {8});
-        file.data<std::int64_t>("/VTKHDF/Offsets", {0, 4, 8}, {3});
+        write_two_tets(file);
         file.data<double>("/VTKHDF/PointData/p", {1, 2, 3, 4, 5}, {5});
         file.data<float>("/VTKHDF/CellData/c", {1, 2}, {2});
     }
