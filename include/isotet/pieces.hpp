@@ -37,6 +37,12 @@ ISOTET_API Result<Grid> take_piece(const Grid& grid, const PieceOf& which, const
 /// The number of the first cell of a piece.
 ISOTET_API std::uint64_t first_cell_of(const Grid& grid, const PieceOf& which) noexcept;
 
+/// As survey_piece() (frame.hpp), of what a session will contour: the field and the carried fields, Survey::max_fields at
+/// most, also at the derived points of polyhedra (linear_cells.hpp).
+/// Errors   as survey_piece() and linearize()
+ISOTET_API Result<Survey> survey_piece(const ContourInput& piece, const SurveyPieceOptions& options = {},
+                                       const Run& run = {});
+
 /// A piece of what a session contours, and the frame of the whole.
 struct FramedPiece {
     ContourInput input; ///< its fields are those of the piece
@@ -52,9 +58,9 @@ ISOTET_API Result<FramedPiece> take_piece(const ContourInput& whole, const Piece
 /// The surface of a piece with edge ends and source cells as in the whole grid: two vertices of different pieces are
 /// the same when their edge ends are.
 ///
-/// `point_numbers`   of the piece; empty: edge ends stay
-/// `first_cell`      is added to source cells
-/// Errors            invalid_argument when there is no number for an edge end
+/// `point_numbers`   of the piece's own points; empty: edge ends stay. Ends in derived points of polyhedra get numbers
+///                   from 2^62 on, other ones in each piece
+/// `first_cell`      of the piece in the whole grid: is added to source cells
 ISOTET_API Result<Surface> number_as_whole(const Surface& surface, const Array& point_numbers,
                                            std::uint64_t first_cell = 0);
 

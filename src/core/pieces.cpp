@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/carry_out.hpp"
+#include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/radix_sort.hpp"
@@ -58,9 +59,40 @@ Result<core::Buffer<std::uint64_t>> used_points(const core::CellReader& cells, s
     return out;
 }
 
-Cells cells_of(const Grid& grid, const core::CellReader& cells, std::uint64_t first, std::uint64_t last,
-               const core::Buffer<std::uint64_t>& points) {
-    core::Buffer<std::int64_t> place(cells.points());
+/// The faces of some cells, where `renumber` has their points.
+template <class Renumber>
+Result<void> take_faces(const Grid& grid, std::uint64_t first, std::uint64_t last, Renumber&& renumber, Cells& out) {
+    const auto faces = core::FaceReader::open(grid.cells);
+    if (!faces) return faces.error();
+    if (!faces->has_faces()) return {};
+    std::vector<std::int64_t> stream, offsets{0};
+    for (std::uint64_t cell = first; cell < last; ++cell) {
+        if (const std::string fault = core::fault_of_faces(*faces, cell, grid.points.tuples()); !fault.empty())
+            return invalid_data(fmt::format("cells[{}] {}", cell, fault));
+        std::uint64_t at = faces->begin(cell);
+        const std::uint64_t end = faces->end(cell);
+        if (at < end) stream.push_back(static_cast<std::int64_t>(faces->at(at++)));
+        while (at < end) {
+            const std::uint64_t count = faces->at(at++);
+            stream.push_back(static_cast<std::int64_t>(count));
+            for (std::uint64_t i = 0; i < count; ++i) {
+                const std::uint64_t point = faces->at(at++);
+                stream.push_back(renumber(point));
+                if (stream.back() < 0)
+                    return invalid_data(
+                        fmt::format("cells[{}] has a face with point {}, which its connectivity has not", cell, point));
+            }
+        }
+        offsets.push_back(static_cast<std::int64_t>(stream.size()));
+    }
+    out.faces = Array::own(std::move(stream));
+    out.face_offsets = Array::own(std::move(offsets));
+    return {};
+}
+
+Result<Cells> cells_of(const Grid& grid, const core::CellReader& cells, std::uint64_t first, std::uint64_t last,
+                       const core::Buffer<std::uint64_t>& points) {
+    std::vector<std::int64_t> place(cells.points(), -1);
     for (std::size_t i = 0; i < points.size(); ++i) place[points[i]] = static_cast<std::int64_t>(i);
     std::uint64_t corners = 0;
     for (std::uint64_t cell = first; cell < last; ++cell) corners += cells.corners(cell);
@@ -77,6 +109,8 @@ Cells cells_of(const Grid& grid, const core::CellReader& cells, std::uint64_t fi
     out.connectivity = std::move(connectivity).to_array();
     if (!grid.cells.offsets.empty()) out.offsets = std::move(offsets).to_array();
     if (!grid.cells.types.empty()) out.types = core::in_order(grid.cells.types, run_of(first, last));
+    const auto renumber = [&](std::uint64_t point) { return place[point]; };
+    if (auto taken = take_faces(grid, first, last, renumber, out); !taken) return taken.error();
     return out;
 }
 
@@ -99,8 +133,10 @@ Result<Grid> take(const Grid& grid, std::uint64_t first, std::uint64_t last) {
     const auto points = used_points(*cells, first, last);
     if (!points) return points.error();
     Grid out;
+    auto taken = cells_of(grid, *cells, first, last, *points);
+    if (!taken) return taken.error();
     out.points = core::in_order(grid.points, *points);
-    out.cells = cells_of(grid, *cells, first, last, *points);
+    out.cells = *std::move(taken);
     out.point_fields = in_order(grid.point_fields, *points);
     out.cell_fields = in_order(grid.cell_fields, run_of(first, last));
     out.point_numbers = numbers_of(grid, *points);

@@ -11,6 +11,7 @@
 #include "core/cell_faces.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "linear/by_numbers.hpp"
 #include "linear/parts.hpp"
 #include "linear/polyhedron.hpp"
 
@@ -40,17 +41,10 @@ Error nothing_left(const Grid& grid, const LinearizeReport& report) {
                     grid.points.tuples(), grid.cells.count(), report.open, report.polyhedra));
 }
 
-Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
-    const Grid grid{user.points, user.cells, {}, {}};
+/// Where numbers decide, they are the indices of points.
+Result<LinearGrid> linearize_in_order(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
-    if (!has_cells_to_linearize(grid.cells)) {
-        LinearGrid same;
-        same.grid = grid;
-        same.user_points = grid.points.tuples();
-        same.user_cells = cells->count();
-        return same;
-    }
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
     if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
     const auto faces = core::FaceReader::open(grid.cells);
@@ -81,6 +75,25 @@ Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, 
     out.grid.points = *std::move(points);
     progress("linearize", 1);
     return out;
+}
+
+Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
+    const Grid grid{user.points, user.cells, {}, {}, user.point_numbers};
+    if (!has_cells_to_linearize(grid.cells)) {
+        const auto cells = core::CellReader::open(grid);
+        if (!cells) return cells.error();
+        LinearGrid same;
+        same.grid = grid;
+        same.user_points = grid.points.tuples();
+        same.user_cells = cells->count();
+        return same;
+    }
+    if (grid.point_numbers.empty()) return linearize_in_order(grid, options, progress);
+    const auto sorted = sort_by_numbers(grid, progress);
+    if (!sorted) return sorted.error();
+    auto linear = linearize_in_order(sorted->grid, options, progress);
+    if (!linear) return linear.error();
+    return in_users_order(*std::move(linear), grid, sorted->original);
 }
 
 } // namespace

@@ -12,19 +12,20 @@ namespace isotet::session {
 
 namespace {
 
-std::array<const Array*, 5> arrays_of(const Cells& cells) {
-    return {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets};
+std::array<const Array*, 6> arrays_of(const Grid& grid) {
+    const Cells& cells = grid.cells;
+    return {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets, &grid.point_numbers};
 }
 
 } // namespace
 
-bool LinearInput::knows(const Cells& cells) const {
+bool LinearInput::knows(const Grid& grid) const {
     if (!linear_) return false;
-    const auto arrays = arrays_of(cells);
+    const auto arrays = arrays_of(grid);
     bool same = true;
     for (std::size_t i = 0; i < arrays.size(); ++i)
         same = same && (arrays[i]->empty() ? arrays_[i].is_empty() : arrays_[i].is(*arrays[i]));
-    return same || print_ == fingerprint(cells);
+    return same || (cells_print_ == fingerprint(grid.cells) && numbers_print_ == fingerprint(grid.point_numbers));
 }
 
 Result<ContourInput> LinearInput::make(ContourInput input, const Run& run) {
@@ -36,14 +37,17 @@ Result<ContourInput> LinearInput::make(ContourInput input, const Run& run) {
     LinearInput next = *this;
     next.points_.emplace(input.grid.points);
     bool known = false;
-    core::with_threads(run.threads, [&] { known = knows(input.grid.cells); });
+    core::with_threads(run.threads, [&] { known = knows(input.grid); });
     if (!known || linear_->user_points != input.grid.points.tuples()) {
         auto made = linearize(input.grid, {}, run);
         if (!made) return made.error();
         next.linear_ = std::make_shared<const LinearGrid>(*std::move(made));
         next.arrays_.clear();
-        for (const Array* array : arrays_of(input.grid.cells)) next.arrays_.emplace_back(*array);
-        core::with_threads(run.threads, [&] { next.print_ = fingerprint(input.grid.cells); });
+        for (const Array* array : arrays_of(input.grid)) next.arrays_.emplace_back(*array);
+        core::with_threads(run.threads, [&] {
+            next.cells_print_ = fingerprint(input.grid.cells);
+            next.numbers_print_ = fingerprint(input.grid.point_numbers);
+        });
         next.is_new_ = true;
     } else if (!points_->is(input.grid.points)) {
         auto moved = linear_->extend(input.grid.points, run);

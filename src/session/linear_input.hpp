@@ -29,11 +29,11 @@ public:
     bool is_new() const { return is_new_; }
 
 private:
-    bool knows(const Cells& cells) const;
+    bool knows(const Grid& grid) const;
 
     std::shared_ptr<const LinearGrid> linear_;
-    std::vector<core::ArrayIdentity> arrays_; ///< of the user's cells
-    Fingerprint print_;
+    std::vector<core::ArrayIdentity> arrays_; ///< of the user's cells and point numbers
+    Fingerprint cells_print_, numbers_print_;
     std::optional<core::ArrayIdentity> points_;
     bool is_new_ = false;
 };

@@ -9,24 +9,34 @@
 
 #include "core/errors.hpp"
 #include "core/guard.hpp"
+#include "session/linear_input.hpp"
 
 namespace isotet {
 
 namespace {
 
 /// The field that is contoured, then the others, each name once.
-std::vector<Field> framed_fields(const ContourInput& whole) {
-    std::vector<Field> fields{{whole.field.name, whole.field.values}};
-    for (const Field& field : whole.point_fields)
-        if (field.name != whole.field.name && fields.size() < Survey::max_fields) fields.push_back(field);
+std::vector<Field> framed_fields(const ContourInput& piece) {
+    std::vector<Field> fields{{piece.field.name, piece.field.values}};
+    for (const Field& field : piece.point_fields)
+        if (field.name != piece.field.name && fields.size() < Survey::max_fields) fields.push_back(field);
     return fields;
 }
 
+/// Above all numbers of points. Polyhedra have one derived point at most, so pieces have different ones.
+constexpr std::uint64_t first_derived_end = std::uint64_t{1} << 62;
+
 } // namespace
+
+Result<Survey> survey_piece(const ContourInput& piece, const SurveyPieceOptions& options, const Run& run) {
+    const auto linear = session::LinearInput{}.make(piece, run);
+    if (!linear) return linear.error();
+    return survey_piece(linear->grid, framed_fields(*linear), options, run);
+}
 
 Result<FramedPiece> take_piece(const ContourInput& whole, const PieceOf& which, const SurveyPieceOptions& options,
                                const Run& run) {
-    const auto survey = survey_piece(whole.grid, framed_fields(whole), options, run);
+    const auto survey = survey_piece(whole, options, run);
     if (!survey) return survey.error();
     const auto frame = make_frame({&*survey, 1});
     if (!frame) return frame.error();
@@ -60,9 +70,12 @@ Result<Surface> number_as_whole(const Surface& surface, const Array& point_numbe
         if (surface.edge_ends.empty() || point_numbers.empty()) return out;
         std::vector<std::int64_t> ends;
         for (const std::int64_t end : surface.edge_ends.as<std::int64_t>()) {
-            if (static_cast<std::uint64_t>(end) >= point_numbers.tuples())
-                return invalid_argument(fmt::format("the surface has an end in point {}, but {} points have numbers",
-                                                    end, point_numbers.tuples()));
+            const auto point = static_cast<std::uint64_t>(end);
+            if (point >= point_numbers.tuples()) {
+                ends.push_back(
+                    static_cast<std::int64_t>(first_derived_end + first_cell + point - point_numbers.tuples()));
+                continue;
+            }
             ends.push_back(point_numbers.visit(
                 [&](auto numbers) { return static_cast<std::int64_t>(numbers[static_cast<std::size_t>(end)]); }));
         }

@@ -239,6 +239,31 @@ TEST(UnionOfPieces, HoldsWithPointsNumberedByCoordinates) {
     }
 }
 
+/// What pieces take is needed: without it the same comparison fails.
+TEST(UnionOfPieces, IsAnotherSurfaceWithoutFrameOrNumbers) {
+    const NastyGrid g =
+        changed(mixed_grid(3, {.side = 5, .values = 0, .moved = 0.2}), PointsAre::far_away, ValuesAre::pressures);
+    const double isovalue = isovalues_of(g.field)[1];
+    auto pieces = partition(g.grid, g.field, 4, 3);
+    const Frame frame = frame_of(pieces, {.split_cells = true});
+    const auto together = [&](const std::optional<Frame>& framed) {
+        std::vector<TriangleBits> out;
+        for (const GridPiece& piece : pieces) {
+            PackOptions options;
+            options.split_cells = true;
+            options.frame = framed;
+            add_triangles(extract(pack(piece.grid, piece.field, options).value(), isovalue).value().surface, out);
+        }
+        return sorted(std::move(out));
+    };
+    const auto whole =
+        triangle_set(extract(pack(g.grid, g.field, {.split_cells = true}).value(), isovalue).value().surface);
+    EXPECT_EQ(together(frame), whole);
+    EXPECT_NE(together({}), whole);
+    for (GridPiece& piece : pieces) piece.grid.point_numbers = {};
+    EXPECT_NE(together(frame), whole);
+}
+
 /// Each vertex and each carried value, too; vertices keep the user's numbers of their ends.
 TEST(UnionOfPieces, CarriesTheValuesOfTheWhole) {
     const NastyGrid g =
