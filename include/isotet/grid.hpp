@@ -113,7 +113,8 @@ struct TetList {
 /// The tets that isotet makes of a grid, in the user's order: each cell's tets one after another, collapsed ones
 /// dropped, corners in the order of the file (tetrahedra) or of the splitting; orientation is not changed.
 ///
-/// Hexahedra, voxels, wedges and pyramids are split by the rule of the lowest point number on each quadrilateral face
+/// Hexahedra, voxels, wedges and pyramids are split by the rule of the lowest point number (Grid::point_numbers, or else
+/// the index) on each quadrilateral face
 /// (Dompierre, Labbé, Vallet, Camarero 1999), so that neighbours always agree, whatever their types.
 ///
 /// Guarantees   the same tets for any thread count

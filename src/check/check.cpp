@@ -19,6 +19,7 @@
 #include "check/weld.hpp"
 #include "core/carry_out.hpp"
 #include "core/parallel.hpp"
+#include "core/renumber.hpp"
 #include "core/same_place.hpp"
 
 namespace isotet {
@@ -255,16 +256,17 @@ Result<void> check_edge_ends(const Array& ends, const Mesh& mesh) {
                     ends.tuples(), ends.components(), name_of(ends.type()), mesh.vertex_count())};
 }
 
-/// A grid with linear cells, and the field on it.
-struct LinearOrigin {
+/// The grid that a surface was extracted from, and the field on it, prepared for checking.
+struct Origin {
     Grid grid;
     PointField field;
 };
 
-Result<LinearOrigin> linear_origin(const Grid& grid, const PointField* field, const Run& run) {
+/// With linear cells.
+Result<Origin> linear_origin(const Grid& grid, const PointField* field, const Run& run) {
     auto linear = linearize(grid, {}, run);
     if (!linear) return linear.error();
-    LinearOrigin origin{linear->grid, field ? *field : PointField{}};
+    Origin origin{linear->grid, field ? *field : PointField{}};
     if (!field) return origin;
     auto longer = linear->extend(field->values, run);
     if (!longer) return longer.error();
@@ -272,11 +274,33 @@ Result<LinearOrigin> linear_origin(const Grid& grid, const PointField* field, co
     return origin;
 }
 
+/// With points in the order of their numbers. The ends of a surface's vertices become the new indices.
+Result<Origin> sorted_origin(const Grid& grid, const PointField* field, Array& ends, const Progress& progress) {
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
+    if (field && field->values.tuples() != cells->points())
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("the field '{}' has {} values, but the grid has {} points", field->name,
+                                 field->values.tuples(), cells->points())};
+    auto sorted = core::sort_points_by_number(grid);
+    if (!sorted) return sorted.error();
+    std::vector<std::int64_t> ranks(sorted->original.size()), out;
+    for (std::size_t i = 0; i < ranks.size(); ++i) ranks[sorted->original[i]] = static_cast<std::int64_t>(i);
+    const core::IndexColumn users(ends);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        out.push_back(users[i] < ranks.size() ? ranks[users[i]] : static_cast<std::int64_t>(users[i]));
+    ends = Array::own(std::move(out), 2);
+    Origin origin{std::move(sorted->grid), field ? *field : PointField{}};
+    if (field) origin.field.values = core::in_order(field->values, sorted->original);
+    return origin;
+}
+
 } // namespace
 
-Result<SurfaceReport> check(const Surface& surface, const CheckOptions& user_options, const Run& run) {
+Result<SurfaceReport> check(const Surface& user_surface, const CheckOptions& user_options, const Run& run) {
     CheckOptions options = user_options;
-    std::optional<LinearOrigin> linear;
+    std::optional<Origin> linear, sorted;
     if (options.grid && has_cells_to_linearize(options.grid->cells)) {
         auto made = linear_origin(*options.grid, options.field, run);
         if (!made) return made.error();
@@ -285,10 +309,18 @@ Result<SurfaceReport> check(const Surface& surface, const CheckOptions& user_opt
         if (options.field) options.field = &linear->field;
     }
     return core::carry_out("checking the surface", run, [&](const Progress& progress) -> Result<SurfaceReport> {
+        Surface surface = user_surface;
         const auto mesh = Mesh::open(surface);
         if (!mesh) return mesh.error();
         if (options.grid)
             if (auto fits = check_edge_ends(surface.edge_ends, *mesh); !fits) return fits.error();
+        if (options.grid && !options.grid->point_numbers.empty()) {
+            auto made = sorted_origin(*options.grid, options.field, surface.edge_ends, progress);
+            if (!made) return made.error();
+            sorted = *std::move(made);
+            options.grid = &sorted->grid;
+            if (options.field) options.field = &sorted->field;
+        }
         if (progress.cancelled()) return cancelled();
         if (!options.weld || mesh->vertex_count() == 0) return Checker(surface, *mesh, options, progress).run();
         const Welded welded = weld(surface, *mesh);

@@ -10,6 +10,7 @@
 #include "core/faces.hpp"
 #include "core/memory.hpp"
 #include "core/mixed_faces.hpp"
+#include "core/renumber.hpp"
 #include "core/tet_survey.hpp"
 
 namespace isotet {
@@ -60,7 +61,7 @@ Result<GridReport> survey(const Grid& grid, const SurveyOptions& options, const 
     return report;
 }
 
-Result<TetList> split(const Grid& grid, const Progress& progress) {
+Result<TetList> split_by_index(const Grid& grid, const Progress& progress) {
     auto cells = CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
@@ -71,6 +72,20 @@ Result<TetList> split(const Grid& grid, const Progress& progress) {
             list.cells.push_back(cell);
         }
     if (list.tets.empty()) return nothing_to_contour(grid, *cells);
+    return list;
+}
+
+Result<TetList> split(const Grid& grid, const Progress& progress) {
+    if (grid.point_numbers.empty()) return split_by_index(grid, progress);
+    const auto cells = CellReader::open(grid);
+    if (!cells) return cells.error();
+    if (auto ok = check_cells(grid, *cells, progress); !ok) return ok.error();
+    const auto sorted = sort_points_by_number(grid);
+    if (!sorted) return sorted.error();
+    auto list = split_by_index(sorted->grid, progress);
+    if (!list) return list;
+    for (auto& tet : list->tets)
+        for (std::uint64_t& corner : tet) corner = sorted->original[corner];
     return list;
 }
 

@@ -435,7 +435,8 @@ TEST_F(Program, ExtractListsFieldsForAWrongDisplacement) {
     put_content(path("g.msh"), small_grid({{"p", {0, 1, 1, 1, 2}}, {"shift", {5, 6, 7, 8, 9}}}));
     const RunResult run = isotet({"extract", path("g.msh"), "-f", "p", "-i", "0.5", "--displace", "shft"});
     EXPECT_EQ(run.status, 2);
-    EXPECT_TRUE(is_one_error(run, "--displace takes a point field: there is no field 'shft': the grid has 'shift', 'p'"));
+    EXPECT_TRUE(
+        is_one_error(run, "--displace takes a point field: there is no field 'shft': the grid has 'shift', 'p'"));
 }
 
 TEST_F(Program, PiecesAreTogetherTheSurfaceOfTheWhole) {
@@ -458,6 +459,25 @@ TEST_F(Program, PiecesAreTogetherTheSurfaceOfTheWhole) {
             EXPECT_EQ(together[key], checked_whole[key]) << key;
         const json alone = json_of({"check", files[0]});
         EXPECT_GT(alone["boundary_edges"], 0);
+    }
+}
+
+TEST_F(Program, PiecesOfFilesAreTogetherTheSurfaceOfTheWhole) {
+    const std::string data = (source_folder() / "data").string();
+    const std::string files[][2] = {{data + "/vtkhdf/can_hex.hdf", "DISPL:z"},
+                                    {data + "/vtu/polyhedron_two_pieces.vtu", "x"}};
+    for (const auto& [file, field] : files) {
+        const json whole = json_of({"extract", file, path("whole.vtp"), "-f", field, "--levels", "1", "--edge-ends"});
+        std::vector<std::string> command{"check"};
+        for (const std::string piece : {"1/2", "2/2"}) {
+            command.push_back(path("part-" + piece.substr(0, 1) + ".vtp"));
+            json_of({"extract", file, command.back(), "-f", field, "--levels", "1", "--edge-ends", "--piece", piece});
+        }
+        const json checked_whole = json_of({"check", path("whole.vtp")});
+        const json together = json_of(command);
+        for (const char* key : {"vertices", "triangles", "boundary_edges", "components", "euler", "area"})
+            EXPECT_EQ(together[key], checked_whole[key]) << file << " " << key;
+        EXPECT_GT(checked_whole["triangles"], 0);
     }
 }
 

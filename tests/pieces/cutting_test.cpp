@@ -2,6 +2,7 @@
 // Cutting grids, numbering points, leaving out cells and triangles.
 #include <gtest/gtest.h>
 
+#include <isotet/check.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
 #include <isotet/pieces.hpp>
@@ -134,6 +135,36 @@ TEST(LeavingOutCells, NeedsAMarkForEach) {
     ASSERT_GT(surface.triangle_count(), 3u);
     EXPECT_EQ(leave_out_triangles(surface, few).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(leave_out_triangles(extract(packed, 0.1).value().surface, few).error().code, ErrorCode::invalid_argument);
+}
+
+/// A piece that is split by its numbers is checked against the faces of the same tets.
+TEST(PointNumbers, DecideForSplittingAndChecking) {
+    const Grid whole = made_grid("hex", 5, {"gyroid"});
+    Grid piece = take_piece(whole, {1, 3}).value();
+    std::vector<std::int64_t> scattered;
+    for (std::size_t i = 0; i < piece.points.tuples(); ++i)
+        scattered.push_back(static_cast<std::int64_t>(i * 480'271 % 1'000'003) - 500'000);
+    const auto by_index = split(take_piece(whole, {1, 3}).value()).value();
+    piece.point_numbers = Array::own(std::move(scattered));
+    EXPECT_NE(split(piece).value().tets, by_index.tets);
+
+    const PointField field = point_field(piece);
+    PackOptions options;
+    options.split_cells = true;
+    ExtractOptions with_ends;
+    with_ends.edge_ends = true;
+    const Surface surface = extract(pack(piece, field, options).value(), 0.1, with_ends).value().surface;
+    CheckOptions check_options;
+    check_options.grid = &piece;
+    check_options.field = &field;
+    check_options.split_cells = true;
+    const SurfaceReport report = check(surface, check_options).value();
+    EXPECT_GT(report.boundary_edges, 0u);
+    EXPECT_EQ(report.blamed_edges, 0u);
+    Grid by_other_numbers = piece;
+    by_other_numbers.point_numbers = {};
+    check_options.grid = &by_other_numbers;
+    EXPECT_GT(check(surface, check_options).value().blamed_edges, 0u);
 }
 
 } // namespace
