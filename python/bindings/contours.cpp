@@ -38,7 +38,7 @@ Surface join_all(std::vector<Extraction>&& extractions, const std::vector<double
 
 ContourOptions contour_options(std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                                std::string_view precision, std::optional<std::string_view> method,
-                               std::uint64_t surfaces, bool split_cells) {
+                               std::uint64_t surfaces, bool split_cells, const Frame* frame) {
     ContourOptions options;
     if (method) options.method = choice("method", *method, words_of_method);
     options.surfaces = surfaces;
@@ -48,12 +48,13 @@ ContourOptions contour_options(std::string_view normals, bool edge_ends, bool so
     options.edge_ends = edge_ends;
     options.source_cells = source_cells;
     options.split_cells = split_cells;
+    if (frame) options.frame = *frame;
     return options;
 }
 
 ContourInput contour_input(const Grid& grid, const PointField& field, const FieldsIn& fields,
                            const FieldsIn& cell_fields) {
-    return {{grid.points, grid.cells, {}, {}}, field, fields_in(fields), fields_in(cell_fields)};
+    return {{grid.points, grid.cells, {}, {}, grid.point_numbers}, field, fields_in(fields), fields_in(cell_fields)};
 }
 
 nb::dict field_out(const FieldReport& report) {
@@ -113,12 +114,12 @@ void add_sessions(nb::module_& module) {
             "__init__",
             [](ContourOptions* self, std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces,
-               bool split_cells) {
-                new (self) ContourOptions(
-                    contour_options(normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells));
+               bool split_cells, const Frame* frame) {
+                new (self) ContourOptions(contour_options(normals, edge_ends, source_cells, ties, precision, method,
+                                                          surfaces, split_cells, frame));
             },
             "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a,
-            "split_cells"_a = false);
+            "split_cells"_a = false, "frame"_a.none() = nb::none());
 
     nb::class_<Contour>(module, "Contour")
         .def(
@@ -194,6 +195,12 @@ void add_packed_grids(nb::module_& module) {
             },
             "points"_a, "call"_a)
         .def(
+            "with_frame",
+            [](const PackedGrid& self, const Frame* frame) {
+                return self.with_frame(frame ? std::optional<Frame>(*frame) : std::nullopt);
+            },
+            "frame"_a.none())
+        .def(
             "extract",
             [](const PackedGrid& self, const std::vector<double>& isovalues, const FieldsIn& fields,
                const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
@@ -215,15 +222,17 @@ void add_packed_grids(nb::module_& module) {
     module.def(
         "pack",
         [](const Grid& grid, const PointField& field, std::string_view precision, bool source_cells, bool split_cells,
-           bool gradients, const CallOptions& how) {
+           bool gradients, const Frame* frame, const CallOptions& how) {
             PackOptions options;
             options.precision = choice("precision", precision, words_of_precision);
             options.source_cells = source_cells;
             options.split_cells = split_cells;
             options.gradients = gradients;
+            if (frame) options.frame = *frame;
             return call(how, [&](const Run& run) { return pack(grid, field, options, run); });
         },
-        "grid"_a, "field"_a, "precision"_a, "source_cells"_a, "split_cells"_a, "gradients"_a, "call"_a);
+        "grid"_a, "field"_a, "precision"_a, "source_cells"_a, "split_cells"_a, "gradients"_a, "frame"_a.none(),
+        "call"_a);
 }
 
 } // namespace

@@ -101,12 +101,16 @@ void add_grids(nb::module_& module) {
         .def(
             "__init__",
             [](Grid* self, const ArrayIn& points, const Cells& cells, const FieldsIn& fields,
-               const FieldsIn& cell_fields) {
-                new (self) Grid{array_in(points), cells, fields_in(fields), fields_in(cell_fields)};
+               const FieldsIn& cell_fields, const std::optional<ArrayIn>& point_numbers) {
+                new (self) Grid{array_in(points), cells, fields_in(fields), fields_in(cell_fields), {}};
+                if (point_numbers) self->point_numbers = array_in(*point_numbers);
             },
-            "points"_a, "cells"_a, "fields"_a, "cell_fields"_a)
+            "points"_a, "cells"_a, "fields"_a, "cell_fields"_a, "point_numbers"_a.none() = nb::none())
         .def_prop_ro("points", [](const Grid& self) { return array_out(self.points); })
         .def_prop_ro("cells", [](const Grid& self) { return self.cells; }) // shares the arrays
+        .def_prop_ro(
+            "point_numbers",
+            [](const Grid& self) { return self.point_numbers.empty() ? nb::none() : array_out(self.point_numbers); })
         .def_prop_ro("fields", [](const Grid& self) { return fields_out(self.point_fields); })
         .def_prop_ro("cell_fields", [](const Grid& self) { return fields_out(self.cell_fields); });
 
@@ -124,10 +128,12 @@ void add_grids(nb::module_& module) {
 
     module.def(
         "find_field",
-        [](const Grid& grid, const std::string& name, const CallOptions& options) {
-            return call(options, [&](const Run& run) { return find_field(grid, name, {}, run); });
+        [](const Grid& grid, const std::string& name, bool for_pieces, const CallOptions& options) {
+            FindFieldOptions how;
+            how.for_pieces = for_pieces;
+            return call(options, [&](const Run& run) { return find_field(grid, name, how, run); });
         },
-        "grid"_a, "name"_a, "call"_a);
+        "grid"_a, "name"_a, "for_pieces"_a, "call"_a);
 
     module.def(
         "read",

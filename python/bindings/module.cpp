@@ -14,5 +14,7 @@ NB_MODULE(_isotet, module) {
     prepare_calls(module);
     add_grids(module);
     add_surfaces(module);
+    add_pieces(module);
+    add_pictures(module);
     add_contours(module);
 }

@@ -22,9 +22,11 @@ Errors are ValueError (wrong arguments, broken data), TypeError (what is no numb
 
 from ._grid import Contour, Grid, PackedGrid, contour, formats, inspect, make, pack, read
 from ._isotet import Error, __version__
+from ._picture import render
+from ._pieces import Frame, make_frame, number_points
 from ._surface import Surface, SurfaceReport, check, read_surface
 
 __all__ = [
-    "Contour", "Error", "Grid", "PackedGrid", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
-    "inspect", "make", "pack", "read", "read_surface",
+    "Contour", "Error", "Frame", "Grid", "PackedGrid", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
+    "inspect", "make", "make_frame", "number_points", "pack", "read", "read_surface", "render",
 ]  # fmt: skip

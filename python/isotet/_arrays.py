@@ -62,6 +62,14 @@ def scalars_in(what: str, values) -> np.ndarray:
     return array.reshape(-1)
 
 
+def numbers_in(what: str, numbers) -> np.ndarray:
+    """One integer each."""
+    array = _native(what, numbers, integers_only=True)
+    if array.ndim != 1:
+        raise ValueError(f"{what} has shape {array.shape}, but must have one dimension")
+    return array
+
+
 def fields_in(what: str, fields) -> list[tuple[str, np.ndarray]]:
     """Names and arrays, of a mapping."""
     if not fields:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from . import _isotet
-from ._arrays import cells_in, fields_in, isovalues_in, points_in, scalars_in
+from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in
+from ._pieces import Frame
 from ._surface import Surface, call_options
 
 Progress = Callable[[str, float], object]
@@ -28,6 +29,9 @@ class Grid:
         not contoured are left out.
     fields, cell_fields
         Mappings from names to arrays: one row a point, one row a cell.
+    point_numbers
+        One integer a point, of a piece of a grid: the numbers of its points in the whole grid, which then decide where
+        numbers do. See `Frame`.
 
     Raises ValueError for wrong shapes, TypeError for types that are no numbers. What is wrong inside the arrays is found
     when the grid is contoured.
@@ -43,9 +47,10 @@ class Grid:
     __slots__ = ("_grid", "info", "step", "notes", "__weakref__")
 
     def __init__(self, points, cells, *, offsets=None, types=None, fields: Mapping[str, Any] | None = None,
-                 cell_fields: Mapping[str, Any] | None = None):  # fmt: skip
+                 cell_fields: Mapping[str, Any] | None = None, point_numbers=None):  # fmt: skip
+        numbers = None if point_numbers is None else numbers_in("point_numbers", point_numbers)
         self._grid = _isotet.Grid(points_in(points), cells_in(cells, offsets, types), fields_in("fields", fields),
-                                  fields_in("cell_fields", cell_fields))  # fmt: skip
+                                  fields_in("cell_fields", cell_fields), numbers)  # fmt: skip
         self.info: dict[str, Any] = {}
         self.step = 0
         self.notes: list[str] = []
@@ -78,6 +83,11 @@ class Grid:
         return self._grid.cells.arrays()[2]
 
     @property
+    def point_numbers(self) -> np.ndarray | None:
+        """One number a point where the grid has them."""
+        return self._grid.point_numbers
+
+    @property
     def fields(self) -> dict[str, np.ndarray]:
         """Arrays with one row a point, by name."""
         return self._grid.fields
@@ -87,10 +97,10 @@ class Grid:
         """Arrays with one row a cell, by name."""
         return self._grid.cell_fields
 
-    def _field(self, field, call: _isotet.CallOptions | None = None) -> _isotet.PointField:
+    def _field(self, field, call: _isotet.CallOptions | None = None, for_pieces: bool = False) -> _isotet.PointField:
         """A field by name, or of values."""
         if field is None or isinstance(field, str):
-            return _isotet.find_field(self._grid, field or "", call or call_options(0, None))
+            return _isotet.find_field(self._grid, field or "", for_pieces, call or call_options(0, None))
         return _isotet.PointField("values", scalars_in("field", field))
 
     def _carried(self, fields, of: str) -> list[tuple[str, np.ndarray]]:
@@ -111,7 +121,8 @@ class Grid:
                 fields: Mapping[str, Any] | Iterable[str] | None = None,
                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
-                split_cells: bool = False, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+                split_cells: bool = False, frame: Frame | None = None, threads: int = 0,
+                progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
 
         isovalues
@@ -134,6 +145,8 @@ class Grid:
             "direct" or "clusters"; chosen by the number of surfaces otherwise.
         split_cells
             Hexahedra, wedges and pyramids are split into tets, which gives more and smaller triangles.
+        frame
+            The grid is a piece of one with this frame: its surface is a part of the surface of the whole, bit for bit.
         threads
             At most so many; 0: all.
         progress
@@ -144,10 +157,40 @@ class Grid:
         values = isovalues_in(isovalues)
         call = call_options(threads, progress)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
-                                         split_cells)  # fmt: skip
-        session = _isotet.Contour(self._grid, self._field(field, call), self._carried(fields, "fields"),
+                                         split_cells, frame and frame._frame)  # fmt: skip
+        session = _isotet.Contour(self._grid, self._field(field, call, frame is not None), self._carried(fields, "fields"),
                                   self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
+
+    def survey(self, field=None, *, fields: Mapping[str, Any] | Iterable[str] | None = None, split_cells: bool = False,
+               threads: int = 0, progress: Progress | None = None) -> bytes:  # fmt: skip
+        """What this piece of a grid says of itself, some 800 bytes: `make_frame` joins those of all pieces.
+
+        field, fields, split_cells
+            As they will be given to `contour`; the first 16 fields count.
+
+        Raises ValueError as `contour` does.
+        """
+        call = call_options(threads, progress)
+        return _isotet.survey(self._grid, self._field(field, call, True), self._carried(fields, "fields"), split_cells, call)
+
+    def piece(self, index: int, count: int) -> Grid:
+        """The piece `index`, from 0, of `count` pieces of equally many cells, in their order; with fields and `point_numbers`.
+
+        Raises ValueError when there is no such piece.
+        """
+        if not 0 <= index < count:
+            raise ValueError(f"index is {index}, but must be from 0 to {count - 1}")
+        return Grid._of(_isotet.take_piece(self._grid, index, count, call_options(0, None)))
+
+    def without_cells(self, marks, *, bits: int = 57) -> Grid:
+        """The grid without cells whose `marks`, one integer a cell, have one of the `bits`: those of VTK's ghost cells. Cells
+        keep their numbers.
+
+        Raises ValueError when there is not one mark a cell.
+        """
+        numbers = numbers_in("marks", marks)
+        return Grid._of(_isotet.leave_out_cells(self._grid, numbers, bits, call_options(0, None)))
 
     def write(self, path: str | os.PathLike[str], *, format: str = "", progress: Progress | None = None) -> list[str]:
         """Writes the grid as .vtu or legacy .vtk, whole or not at all. Returns sentences on what the format could not hold.
@@ -197,20 +240,24 @@ class PackedGrid:
                                        call_options(threads, progress))  # fmt: skip
         return Surface._of(surface, {"method": "clusters"})
 
-    def set_field(self, values, *, name: str = "values", threads: int = 0, progress: Progress | None = None) -> None:
+    def set_field(self, values, *, name: str = "values", frame: Frame | None = None, threads: int = 0,
+                  progress: Progress | None = None) -> None:  # fmt: skip
         """Another field on the same cells, or its next time step: one value a point. Surfaces that exist stay as they are.
 
         Raises ValueError where the number of values is not that of the points; the grid is then as before.
         """
         field = _isotet.PointField(name, scalars_in("values", values))
-        self._packed = self._packed.with_field(field, call_options(threads, progress))
+        self._packed = self._framed(frame).with_field(field, call_options(threads, progress))
 
-    def set_points(self, points, *, threads: int = 0, progress: Progress | None = None) -> None:
+    def _framed(self, frame: Frame | None) -> _isotet.PackedGrid:
+        return self._packed if frame is None else self._packed.with_frame(frame._frame)
+
+    def set_points(self, points, *, frame: Frame | None = None, threads: int = 0, progress: Progress | None = None) -> None:
         """Other coordinates of the same points: a mesh that moves.
 
         Raises ValueError for another number of points, and where a cell turned over: pack again. The grid is then as before.
         """
-        self._packed = self._packed.with_points(points_in(points), call_options(threads, progress))
+        self._packed = self._framed(frame).with_points(points_in(points), call_options(threads, progress))
 
     @property
     def range(self) -> tuple[float, float]:
@@ -249,7 +296,7 @@ class Contour:
     It extracts directly, and packs the grid when so many surfaces were asked for that this pays; `set` finds out what is the
     same as before.
 
-    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells
+    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells, frame
         As for `Grid.contour`.
     surfaces
         How many surfaces will be asked for in all; 0: not known.
@@ -267,14 +314,18 @@ class Contour:
 
     def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
                  edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-                 method: str | None = None, split_cells: bool = False, surfaces: int = 0):  # fmt: skip
+                 method: str | None = None, split_cells: bool = False, surfaces: int = 0,
+                 frame: Frame | None = None):  # fmt: skip
         call = call_options(0, None)
-        self._options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, surfaces,
-                                               split_cells)  # fmt: skip
-        self._session = _isotet.Contour(grid._grid, grid._field(field), grid._carried(fields, "fields"),
-                                        grid._carried(cell_fields, "cell_fields"), self._options, call)  # fmt: skip
+        self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
+        self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None), grid._carried(fields, "fields"),
+                                        grid._carried(cell_fields, "cell_fields"), self._options_with(frame),
+                                        call)  # fmt: skip
 
-    def set(self, grid: Grid, field=None, *, fields=None, cell_fields=None, threads: int = 0,
+    def _options_with(self, frame: Frame | None) -> _isotet.ContourOptions:
+        return _isotet.ContourOptions(*self._options, frame and frame._frame)
+
+    def set(self, grid: Grid, field=None, *, fields=None, cell_fields=None, frame: Frame | None = None, threads: int = 0,
             progress: Progress | None = None) -> str:  # fmt: skip
         """Another grid, field or time step. Arrays may be the same, the same in other memory, or changed in place.
 
@@ -283,8 +334,9 @@ class Contour:
         Raises ValueError as `Grid.contour`; the session is then as before.
         """
         call = call_options(threads, progress)
-        return self._session.set(grid._grid, grid._field(field, call), grid._carried(fields, "fields"),
-                                 grid._carried(cell_fields, "cell_fields"), self._options, call)  # fmt: skip
+        return self._session.set(grid._grid, grid._field(field, call, frame is not None),
+                                 grid._carried(fields, "fields"), grid._carried(cell_fields, "cell_fields"),
+                                 self._options_with(frame), call)  # fmt: skip
 
     def contour(self, isovalues: float | Sequence[float], *, threads: int = 0, progress: Progress | None = None) -> Surface:
         """The surface of one isovalue, or one of several with the cell field "isovalue".
@@ -312,7 +364,7 @@ class Contour:
 def contour(points, cells, values, isovalues: float | Sequence[float], *, offsets=None, types=None, normals: str = "none",
             fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
             edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-            method: str | None = None, split_cells: bool = False, threads: int = 0,
+            method: str | None = None, split_cells: bool = False, frame: Frame | None = None, threads: int = 0,
             progress: Progress | None = None) -> Surface:  # fmt: skip
     """The surface on which values at the points of a grid, linear in each tetrahedron, equal an isovalue.
 
@@ -338,11 +390,11 @@ def contour(points, cells, values, isovalues: float | Sequence[float], *, offset
     grid = Grid(points, cells, offsets=offsets, types=types)
     return grid.contour(isovalues, values, normals=normals, fields=fields, cell_fields=cell_fields, edge_ends=edge_ends,
                         source_cells=source_cells, ties=ties, precision=precision, method=method,
-                        split_cells=split_cells, threads=threads, progress=progress)  # fmt: skip
+                        split_cells=split_cells, frame=frame, threads=threads, progress=progress)  # fmt: skip
 
 
 def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients: bool = False, source_cells: bool = False,
-         split_cells: bool = False, precision: str = "float32", threads: int = 0,
+         split_cells: bool = False, precision: str = "float32", frame: Frame | None = None, threads: int = 0,
          progress: Progress | None = None) -> PackedGrid:  # fmt: skip
     """Packs a grid once, to contour it many times: about 10 bytes a tetrahedron stay.
 
@@ -354,6 +406,8 @@ def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients
         Keep the cell of each tetrahedron, for cell fields: 4 bytes a tetrahedron.
     split_cells
         Split pyramids, wedges and hexahedra into tetrahedra first: 2 to 3 times the triangles.
+    frame
+        As for `Grid.contour`. `PackedGrid.set_field` and `set_points` keep it, or take another.
 
     Raises ValueError for wrong shapes and broken grids, MemoryError before more memory is taken than is free.
 
@@ -366,7 +420,8 @@ def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients
     call = call_options(threads, progress)
     if values is None and grid is not points:
         raise TypeError("pack() needs values")
-    packed = _isotet.pack(grid._grid, grid._field(values, call), precision, source_cells, split_cells, gradients, call)
+    packed = _isotet.pack(grid._grid, grid._field(values, call, frame is not None), precision, source_cells, split_cells,
+                          gradients, frame and frame._frame, call)  # fmt: skip
     return PackedGrid._of(packed)
 
 

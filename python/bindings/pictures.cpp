@@ -1,0 +1,175 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <isotet/annotation.hpp>
+#include <isotet/draw.hpp>
+#include <isotet/field_statistics.hpp>
+
+#include "arrays.hpp"
+#include "call.hpp"
+#include "parts.hpp"
+
+namespace isotet::python {
+
+using namespace nb::literals;
+
+namespace {
+
+/// What is drawn, and how, in the words of isotet.render().
+struct RenderRequest {
+    std::vector<const Surface*> surfaces;
+    std::vector<Color> colors;                      ///< one a surface; empty: those of the map, or one that stands out
+    std::vector<SurfaceColors> values;              ///< one a surface; empty: each has its color
+    std::optional<std::pair<double, double>> range; ///< of values; nothing: theirs
+    ColorMap map = ColorMap::viridis;
+    double opacity = 1;
+    double zoom = 1;
+    bool fitted = false; ///< the camera says all
+    PictureOptions picture;
+    Annotation annotation;
+    bool legend = true;
+};
+
+template <class Value>
+Value parsed(const char* what, const std::string& word, std::optional<Value> (*parse)(std::string_view)) {
+    if (const std::optional<Value> value = parse(word)) return *value;
+    throw nb::value_error((std::string(what) + " is '" + word + "', which isotet does not know").c_str());
+}
+
+std::optional<ColorMap> map_of(std::string_view name) { return parse_color_map(name); }
+std::optional<View> view_of(std::string_view name) { return parse_view(name); }
+std::optional<Color> color_of(std::string_view text) { return parse_color(text); }
+
+Result<ColorScale> scale_of(const RenderRequest& request, const Run& run) {
+    ColorScale scale;
+    scale.map = request.map;
+    if (request.range) {
+        scale.lower = request.range->first;
+        scale.upper = request.range->second;
+        return scale;
+    }
+    ValueRange range;
+    for (const SurfaceColors& colors : request.values) {
+        const auto statistics = statistics_of(colors.values, run);
+        if (!statistics) return statistics.error();
+        const ComponentStatistics& all = statistics->front();
+        if (!(all.lower <= all.upper)) continue;
+        const bool first = !(range.lower <= range.upper);
+        range.lower = first ? all.lower : std::min(range.lower, all.lower);
+        range.upper = first ? all.upper : std::max(range.upper, all.upper);
+    }
+    scale.lower = range.lower <= range.upper ? range.lower : 0;
+    scale.upper = range.lower < range.upper ? range.upper : scale.lower + 1;
+    return scale;
+}
+
+Color color_of_surface(const RenderRequest& request, std::size_t i) {
+    if (i < request.colors.size()) return request.colors[i];
+    if (request.surfaces.size() == 1) return DrawnSurface{}.color;
+    return color_at(request.map, static_cast<double>(i) / static_cast<double>(request.surfaces.size() - 1));
+}
+
+Result<Picture> picture_of(RenderRequest& request, const Run& run) {
+    Scene scene;
+    if (!request.values.empty()) {
+        const auto scale = scale_of(request, run);
+        if (!scale) return scale.error();
+        for (SurfaceColors& colors : request.values) colors.scale = *scale;
+        if (request.legend) request.annotation.scale = *scale;
+    }
+    for (std::size_t i = 0; i < request.surfaces.size(); ++i) {
+        DrawnSurface& drawn = scene.surfaces.emplace_back();
+        drawn.triangles = request.surfaces[i];
+        if (!request.values.empty()) drawn.values = &request.values[i];
+        drawn.color = color_of_surface(request, i);
+        drawn.opacity = request.opacity;
+        scene.bounds.add(bounds_of(*request.surfaces[i]));
+    }
+    PictureOptions options = request.picture;
+    const PictureSize whole{options.width, options.height};
+    std::optional<PictureSize> room;
+    if (!request.annotation.empty()) {
+        const auto beside = room_beside(request.annotation, whole);
+        if (!beside) return beside.error();
+        room = *beside;
+    }
+    if (room) {
+        options.width = room->width;
+        options.height = room->height;
+    }
+    if (!request.fitted && !scene.bounds.empty()) {
+        options.camera.fit(scene.bounds, static_cast<double>(options.width) / options.height);
+        options.camera.zoom(request.zoom);
+    }
+    auto picture = draw(scene, options, run);
+    if (!picture || !room) return picture;
+    return annotate(*picture, request.annotation, whole, options.background);
+}
+
+} // namespace
+
+void add_pictures(nb::module_& module) {
+    nb::class_<Camera>(module, "Camera").def("text", [](const Camera& self) { return to_text(self); });
+
+    module.def(
+        "camera_of_view",
+        [](const std::string& view, bool parallel) {
+            return camera_of(parsed("view", view, view_of), parallel ? Projection::parallel : Projection::perspective);
+        },
+        "view"_a, "parallel"_a);
+
+    module.def(
+        "camera_of_angles",
+        [](double azimuth, double elevation, bool parallel) {
+            return camera_of(azimuth, elevation, UpAxis::plus_z,
+                             parallel ? Projection::parallel : Projection::perspective);
+        },
+        "azimuth"_a, "elevation"_a, "parallel"_a);
+
+    module.def("parse_camera", [](const std::string& text) { return parse_camera(text); }, "text"_a);
+
+    module.def(
+        "render",
+        [](const std::vector<const Surface*>& surfaces, const std::vector<std::string>& colors,
+           const std::vector<ArrayIn>& values, bool of_triangles, const std::string& map,
+           const std::optional<std::pair<double, double>>& range, double opacity, const Camera& camera, bool fitted,
+           double zoom, std::pair<std::uint32_t, std::uint32_t> size, std::uint32_t samples,
+           const std::string& background, const std::string& title, bool legend, const CallOptions& how) {
+            RenderRequest request;
+            request.surfaces = surfaces;
+            for (const std::string& color : colors) request.colors.push_back(parsed("color", color, color_of));
+            for (const ArrayIn& array : values)
+                request.values.push_back(
+                    {array_in(array), of_triangles ? Association::cell : Association::point, ColorScale{}});
+            request.map = parsed("color_map", map, map_of);
+            request.range = range;
+            request.opacity = opacity;
+            request.zoom = zoom;
+            request.fitted = fitted;
+            request.picture.width = size.first;
+            request.picture.height = size.second;
+            request.picture.samples = samples;
+            request.picture.background = parsed("background", background, color_of);
+            request.picture.camera = camera;
+            request.annotation.title = title;
+            request.legend = legend;
+            const Picture picture = call(how, [&](const Run& run) { return picture_of(request, run); });
+            std::vector<std::uint8_t> bytes;
+            bytes.reserve(4 * picture.pixels.size());
+            for (const auto& pixel : picture.pixels) bytes.insert(bytes.end(), pixel.begin(), pixel.end());
+            return array_out(Array::own(std::move(bytes), 4));
+        },
+        "surfaces"_a, "colors"_a, "values"_a, "of_triangles"_a, "color_map"_a, "range"_a.none(), "opacity"_a,
+        "camera"_a, "fitted"_a, "zoom"_a, "size"_a, "samples"_a, "background"_a, "title"_a, "legend"_a, "call"_a);
+}
+
+} // namespace isotet::python

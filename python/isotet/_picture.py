@@ -1,0 +1,81 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of surfaces, drawn on the processor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import _isotet
+from ._surface import Surface, call_options
+
+if TYPE_CHECKING:
+    from ._grid import Progress
+
+
+def _camera(view, parallel: bool) -> tuple[_isotet.Camera, bool]:
+    """A camera, and whether it says where it stands."""
+    if not isinstance(view, str):
+        azimuth, elevation = view
+        return _isotet.camera_of_angles(float(azimuth), float(elevation), parallel), False
+    camera = _isotet.parse_camera(view)
+    return (camera, True) if camera is not None else (_isotet.camera_of_view(view, parallel), False)
+
+
+def _values(surfaces: Sequence[Surface], name: str) -> tuple[list[np.ndarray], bool]:
+    """A field of all surfaces, and whether it is one value a triangle."""
+    for of_triangles in (False, True):
+        found = [(s.cell_fields if of_triangles else s.fields).get(name) for s in surfaces]
+        if found and all(values is not None for values in found):
+            if any(values.ndim != 1 for values in found):
+                raise ValueError(f"color_by is '{name}', which has several components, but one number a place gives colours")
+            return found, of_triangles
+    known = sorted(set().union(*(list(s.fields) + list(s.cell_fields) for s in surfaces)))
+    raise ValueError(f"color_by is '{name}', but the surfaces have no such field: there are {', '.join(known) or 'none'}")
+
+
+def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None, range: tuple[float, float] | None = None,
+           color_map: str = "viridis", colors: str | Sequence[str] = (), opacity: float = 1,
+           view: str | tuple[float, float] = "iso", parallel: bool = False, zoom: float = 1,
+           size: tuple[int, int] = (1200, 900), samples: int = 3, background: str = "white", title: str = "",
+           legend: bool = True, threads: int = 0, progress: Progress | None = None) -> np.ndarray:  # fmt: skip
+    """A picture of surfaces: height x width x 4 numbers from 0 to 255, red, green, blue and opacity. No graphics card or
+    window is needed; the same surfaces give the same bytes on every machine.
+
+    surfaces
+        One, or several.
+    color_by, range, color_map
+        A field that all surfaces carry, or a cell field ("isovalue"); the values at the ends of the map, or those of the
+        field; "viridis", "cividis", "plasma", "turbo" or "cool-warm".
+    colors
+        Without `color_by`: "#1f77b4" or a name such as "gray", one for all or one for each.
+    opacity
+        From 0 to 1: several surfaces shine through each other in the right order.
+    view, parallel, zoom
+        "iso", "+x", "-x" and so on; or azimuth and elevation in degrees; or all of a camera in one text, as
+        ``isotet render -v`` prints it. With `parallel` there is no perspective.
+    size, samples
+        Width and height; each pixel is the mean of samples x samples.
+    background, title, legend
+        "white", "transparent", ...; a title over the colour scale, which `legend` draws beside the picture.
+
+    Raises ValueError for wrong arguments, MemoryError.
+
+    >>> import isotet
+    >>> surface = isotet.make("kuhn", 8, ["sphere"]).contour(0.5)
+    >>> isotet.render(surface, size=(160, 120)).shape
+    (120, 160, 4)
+    """
+    drawn = [surfaces] if isinstance(surfaces, Surface) else list(surfaces)
+    names = [colors] * len(drawn) if isinstance(colors, str) else list(colors)
+    if names and len(names) != len(drawn):
+        raise ValueError(f"there are {len(names)} colors for {len(drawn)} surfaces")
+    values, of_triangles = ([], False) if color_by is None else _values(drawn, color_by)
+    camera, fitted = _camera(view, parallel)
+    width, height = size
+    pixels = _isotet.render([surface._surface for surface in drawn], names, values, of_triangles, color_map, range,
+                            float(opacity), camera, fitted, float(zoom), (width, height), samples, background,
+                            title or color_by or "", legend, call_options(threads, progress))  # fmt: skip
+    return pixels.reshape(height, width, 4)
