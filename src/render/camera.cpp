@@ -94,7 +94,7 @@ struct FromAllSides {
     explicit FromAllSides(const Camera& camera)
         : pole(pole_of(camera.up)), sine(dot(camera.direction, pole)), cosine(dot(camera.up, pole)) {}
     Reach across(const std::array<double, 3>& p, double slope) const {
-        const double reach = radius(p) * std::hypot(1, slope * cosine) + dot(p, pole) * slope * sine;
+        const double reach = radius(p) * std::sqrt(1 + slope * cosine * slope * cosine) + dot(p, pole) * slope * sine;
         return {reach, reach};
     }
     Reach upwards(const std::array<double, 3>& p, double slope) const {

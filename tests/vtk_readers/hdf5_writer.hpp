@@ -2,6 +2,7 @@
 // HDF5 files for tests.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,37 @@ public:
         H5Dwrite(set, type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
         H5Dclose(set);
         H5Sclose(space);
+    }
+    /// How a data set is stored; without chunks in one run.
+    struct Storage {
+        std::vector<hsize_t> chunk = {};
+        bool shuffled = false, deflated = false, checksums = false, big_endian = false;
+        hsize_t unwritten = 0; ///< rows at the end, which are filled
+    };
+    template <class T>
+    void stored(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions,
+                const Storage& storage) {
+        const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+        std::vector<hsize_t> chunk = storage.chunk;
+        for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = std::min(chunk[i], dimensions[i]);
+        if (!chunk.empty()) H5Pset_chunk(list, static_cast<int>(chunk.size()), chunk.data());
+        if (storage.shuffled) H5Pset_shuffle(list);
+        if (storage.deflated) H5Pset_deflate(list, 4);
+        if (storage.checksums) H5Pset_fletcher32(list);
+        const hid_t file_type = H5Tcopy(type<T>());
+        if (storage.big_endian) H5Tset_order(file_type, H5T_ORDER_BE);
+        const hid_t space = H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr);
+        const hid_t set = H5Dcreate2(file_, name.c_str(), file_type, space, H5P_DEFAULT, list, H5P_DEFAULT);
+        std::vector<hsize_t> written = dimensions, start(dimensions.size(), 0);
+        written[0] -= storage.unwritten;
+        const hid_t memory = H5Screate_simple(static_cast<int>(written.size()), written.data(), nullptr);
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, written.data(), nullptr);
+        H5Dwrite(set, type<T>(), memory, space, H5P_DEFAULT, values.data());
+        H5Sclose(memory);
+        H5Sclose(space);
+        H5Dclose(set);
+        H5Tclose(file_type);
+        H5Pclose(list);
     }
     void attribute(const std::string& group, const char* name, const std::vector<std::int64_t>& values) {
         const hsize_t count = values.size();

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include <isotet/export.hpp>
 #include <isotet/result.hpp>
 
 #include "core/buffer.hpp"
@@ -39,7 +40,7 @@ private:
 ///
 /// Not mapped: a file that another program cuts short while it is mapped ends the process that looks at it (SIGBUS).
 /// Threads   safe from many threads
-class ByteSource {
+class ISOTET_API ByteSource {
 public:
     /// Errors   as open_plain_file()
     static Result<ByteSource> open(const std::string& path);

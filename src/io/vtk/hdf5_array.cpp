@@ -7,6 +7,7 @@
 
 #include "io/own/escape.hpp"
 #include "io/vtk/hdf5_array.hpp"
+#include "io/vtk/hdf5_handle.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/own/loaded.hpp"
 
@@ -15,53 +16,10 @@ namespace {
 
 constexpr std::uint64_t too_many = std::uint64_t(1) << 50;
 
-/// An identifier of the HDF5 library, closed by its own function.
-class Handle {
-public:
-    Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    ~Handle() {
-        if (id_ >= 0) close_(id_);
-    }
-    operator hid_t() const { return id_; } // NOLINT: passed to the library everywhere
-    bool good() const { return id_ >= 0; }
-
-private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-
-std::optional<ScalarType> type_of(hid_t type) {
-    const std::size_t size = H5Tget_size(type);
-    if (H5Tget_class(type) == H5T_FLOAT)
-        return size == 4   ? std::optional(ScalarType::float32)
-               : size == 8 ? std::optional(ScalarType::float64)
-                           : std::nullopt;
-    if (H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
-    const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
-    switch (size) {
-    case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
-    case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
-    case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
-    case 8: return is_signed ? ScalarType::int64 : ScalarType::uint64;
-    default: return std::nullopt;
-    }
-}
-
-template <class T>
-hid_t native_type() {
-    if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
-    else if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
-    else if constexpr (sizeof(T) == 1) return std::is_signed_v<T> ? H5T_NATIVE_INT8 : H5T_NATIVE_UINT8;
-    else if constexpr (sizeof(T) == 2) return std::is_signed_v<T> ? H5T_NATIVE_INT16 : H5T_NATIVE_UINT16;
-    else if constexpr (sizeof(T) == 4) return std::is_signed_v<T> ? H5T_NATIVE_INT32 : H5T_NATIVE_UINT32;
-    else return std::is_signed_v<T> ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64;
-}
-
 /// How data sets are looked up: a link to another file fails.
 hid_t access_inside_file() {
-    const hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+    const /// How data sets are looked up: a link to another file fails.
+        hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
     H5Pset_elink_cb(
         access,
         [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
@@ -96,6 +54,23 @@ bool select(hid_t space, const Box& box, std::vector<std::uint64_t>& dimensions)
 
 } // namespace
 
+std::optional<ScalarType> scalar_type_of(hid_t type) {
+    const std::size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_FLOAT)
+        return size == 4   ? std::optional(ScalarType::float32)
+               : size == 8 ? std::optional(ScalarType::float64)
+                           : std::nullopt;
+    if (H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
+    const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
+    switch (size) {
+    case 1: return is_signed ? ScalarType::int8 : ScalarType::uint8;
+    case 2: return is_signed ? ScalarType::int16 : ScalarType::uint16;
+    case 4: return is_signed ? ScalarType::int32 : ScalarType::uint32;
+    case 8: return is_signed ? ScalarType::int64 : ScalarType::uint64;
+    default: return std::nullopt;
+    }
+}
+
 std::uint64_t ShapedValues::count() const {
     std::uint64_t count = 1;
     for (const std::uint64_t length : dimensions) {
@@ -118,7 +93,7 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     if (!data.good()) return failed("is not there, or is a link to another file");
     if (!lies_inside_file(data)) return failed("has its values in another file");
     const Handle stored(H5Dget_type(data), H5Tclose);
-    const auto type = type_of(stored);
+    const auto type = scalar_type_of(stored);
     if (!type) return failed("does not hold numbers of 1, 2, 4 or 8 bytes");
 
     const Handle space(H5Dget_space(data), H5Sclose);

@@ -8,6 +8,8 @@
 #include <span>
 #include <string_view>
 
+#include <isotet/export.hpp>
+
 namespace isotet::io::vtk_xml {
 
 enum class Codec : std::uint8_t { none, zlib, lz4, lzma };
@@ -18,9 +20,9 @@ std::optional<Codec> codec_of(std::string_view compressor);
 std::string_view name_of(Codec codec);
 
 /// False where so few bytes cannot become so many.
-bool is_plausible(Codec codec, std::uint64_t packed, std::uint64_t unpacked);
+ISOTET_API bool is_plausible(Codec codec, std::uint64_t packed, std::uint64_t unpacked);
 
 /// Inflates one block, which must fill `to`.
-bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to);
+ISOTET_API bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to);
 
 } // namespace isotet::io::vtk_xml

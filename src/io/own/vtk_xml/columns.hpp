@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <isotet/export.hpp>
 #include <isotet/read.hpp>
 
 #include "io/own/loaded.hpp"
@@ -71,7 +72,7 @@ Result<void> load_fields(Document& document, const Layout& points, const Layout&
                          const Progress& progress, Piece& piece);
 
 /// Marks the cells that vtkGhostType or vtkGhostLevels takes out; empty where there are none.
-void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
+ISOTET_API void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
 
 /// True for arrays that describe the grid (ghost marks), which are no fields.
 bool is_ghost_array(std::string_view name);

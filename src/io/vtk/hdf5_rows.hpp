@@ -1,0 +1,52 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Rows of data sets in an HDF5 file. HDF5 tells where they lie; they are read and inflated here, on all threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <isotet/array.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::io::vtk {
+
+struct RowsShape {
+    std::uint64_t rows = 0;
+    std::size_t columns = 1;
+    ScalarType type = ScalarType::float32;
+};
+
+/// An open file. Links and outside storage are followed: check_hdf5_names() first.
+/// Threads   one call at a time: HDF5 is not safe from several
+class Hdf5Rows {
+public:
+    /// Errors   invalid_data: not an HDF5 file; as ByteSource::open()
+    static Result<Hdf5Rows> open(const std::string& path);
+    Hdf5Rows(Hdf5Rows&&) noexcept;
+    Hdf5Rows& operator=(Hdf5Rows&&) noexcept;
+    ~Hdf5Rows();
+
+    /// Nothing where there is no data set of this name with one or two dimensions of numbers.
+    std::optional<RowsShape> shape(const std::string& name) const;
+
+    /// Some rows of a data set, in the type of the file, one tuple a row.
+    ///
+    /// Errors   invalid_data: no such data set, rows that it does not have, what cannot be inflated;
+    ///          out_of_memory
+    /// Cost     chunks that are stored as they are, deflated or shuffled are read side by side; others by HDF5, one after
+    ///          another
+    Result<Array> read(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
+
+    /// The whole data set.
+    Result<Array> read(const std::string& name) const;
+
+private:
+    struct File;
+    explicit Hdf5Rows(std::unique_ptr<File> file);
+    std::unique_ptr<File> file_;
+};
+
+} // namespace isotet::io::vtk
