@@ -26,11 +26,13 @@ namespace {
 using Names = std::optional<std::vector<std::string>>;
 
 Cells cells_in(const ArrayIn& connectivity, const std::optional<ArrayIn>& offsets, const std::optional<ArrayIn>& types,
-               int uniform_type) {
+               int uniform_type, const std::optional<ArrayIn>& faces, const std::optional<ArrayIn>& face_offsets) {
     Cells cells;
     cells.connectivity = array_in(connectivity);
     if (offsets) cells.offsets = array_in(*offsets);
     if (types) cells.types = array_in(*types);
+    if (faces) cells.faces = array_in(*faces);
+    if (face_offsets) cells.face_offsets = array_in(*face_offsets);
     cells.uniform_type = static_cast<CellType>(uniform_type);
     return cells;
 }
@@ -38,7 +40,7 @@ Cells cells_in(const ArrayIn& connectivity, const std::optional<ArrayIn>& offset
 nb::tuple cells_out(const Cells& cells) {
     const auto optional = [](const Array& array) { return array.empty() ? nb::none() : array_out(array); };
     return nb::make_tuple(array_out(cells.connectivity), optional(cells.offsets), optional(cells.types),
-                          static_cast<int>(cells.uniform_type));
+                          static_cast<int>(cells.uniform_type), optional(cells.faces), optional(cells.face_offsets));
 }
 
 ReadOptions read_options(const std::string& format, const Names& fields, const Names& cell_fields,
@@ -91,9 +93,12 @@ void add_grids(nb::module_& module) {
         .def(
             "__init__",
             [](Cells* self, const ArrayIn& connectivity, const std::optional<ArrayIn>& offsets,
-               const std::optional<ArrayIn>& types,
-               int uniform_type) { new (self) Cells(cells_in(connectivity, offsets, types, uniform_type)); },
-            "connectivity"_a, "offsets"_a.none(), "types"_a.none(), "uniform_type"_a)
+               const std::optional<ArrayIn>& types, int uniform_type, const std::optional<ArrayIn>& faces,
+               const std::optional<ArrayIn>& face_offsets) {
+                new (self) Cells(cells_in(connectivity, offsets, types, uniform_type, faces, face_offsets));
+            },
+            "connectivity"_a, "offsets"_a.none(), "types"_a.none(), "uniform_type"_a,
+            "faces"_a.none() = nb::none(), "face_offsets"_a.none() = nb::none())
         .def("__len__", &Cells::count)
         .def("arrays", &cells_out);
 

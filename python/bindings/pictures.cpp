@@ -26,7 +26,7 @@ namespace {
 
 /// What is drawn, and how, in the words of isotet.render().
 struct RenderRequest {
-    std::vector<const Surface*> surfaces;
+    std::vector<Surface> surfaces;                  ///< share arrays
     std::vector<Color> colors;                      ///< one a surface; empty: those of the map, or one that stands out
     std::vector<SurfaceColors> values;              ///< one a surface; empty: each has its color
     std::optional<std::pair<double, double>> range; ///< of values; nothing: theirs
@@ -37,6 +37,7 @@ struct RenderRequest {
     PictureOptions picture;
     Annotation annotation;
     bool legend = true;
+    bool smooth = true; ///< by the normals of vertices; else every triangle is flat
 };
 
 template <class Value>
@@ -72,6 +73,18 @@ Result<ColorScale> scale_of(const RenderRequest& request, const Run& run) {
     return scale;
 }
 
+Result<void> set_normals(RenderRequest& request, const Run& run) {
+    for (Surface& surface : request.surfaces) {
+        surface.normals_kind = Normals::none;
+        if (!request.smooth) continue;
+        auto normals = vertex_normals(surface, run);
+        if (!normals) return normals.error();
+        surface.normals = *std::move(normals);
+        surface.normals_kind = Normals::gradient; // one a vertex
+    }
+    return {};
+}
+
 Color color_of_surface(const RenderRequest& request, std::size_t i) {
     if (i < request.colors.size()) return request.colors[i];
     if (request.surfaces.size() == 1) return DrawnSurface{}.color;
@@ -79,6 +92,7 @@ Color color_of_surface(const RenderRequest& request, std::size_t i) {
 }
 
 Result<Picture> picture_of(RenderRequest& request, const Run& run) {
+    if (auto set = set_normals(request, run); !set) return set.error();
     Scene scene;
     if (!request.values.empty()) {
         const auto scale = scale_of(request, run);
@@ -88,11 +102,11 @@ Result<Picture> picture_of(RenderRequest& request, const Run& run) {
     }
     for (std::size_t i = 0; i < request.surfaces.size(); ++i) {
         DrawnSurface& drawn = scene.surfaces.emplace_back();
-        drawn.triangles = request.surfaces[i];
+        drawn.triangles = &request.surfaces[i];
         if (!request.values.empty()) drawn.values = &request.values[i];
         drawn.color = color_of_surface(request, i);
         drawn.opacity = request.opacity;
-        scene.bounds.add(bounds_of(*request.surfaces[i]));
+        scene.bounds.add(bounds_of(request.surfaces[i]));
     }
     PictureOptions options = request.picture;
     const PictureSize whole{options.width, options.height};
@@ -143,9 +157,10 @@ void add_pictures(nb::module_& module) {
            const std::vector<ArrayIn>& values, bool of_triangles, const std::string& map,
            const std::optional<std::pair<double, double>>& range, double opacity, const Camera& camera, bool fitted,
            double zoom, std::pair<std::uint32_t, std::uint32_t> size, std::uint32_t samples,
-           const std::string& background, const std::string& title, bool legend, const CallOptions& how) {
+           const std::string& background, const std::string& title, bool legend, bool smooth, const CallOptions& how) {
             RenderRequest request;
-            request.surfaces = surfaces;
+            for (const Surface* surface : surfaces) request.surfaces.push_back(*surface);
+            request.smooth = smooth;
             for (const std::string& color : colors) request.colors.push_back(parsed("color", color, color_of));
             for (const ArrayIn& array : values)
                 request.values.push_back(
@@ -169,7 +184,8 @@ void add_pictures(nb::module_& module) {
             return array_out(Array::own(std::move(bytes), 4));
         },
         "surfaces"_a, "colors"_a, "values"_a, "of_triangles"_a, "color_map"_a, "range"_a.none(), "opacity"_a,
-        "camera"_a, "fitted"_a, "zoom"_a, "size"_a, "samples"_a, "background"_a, "title"_a, "legend"_a, "call"_a);
+        "camera"_a, "fitted"_a, "zoom"_a, "size"_a, "samples"_a, "background"_a, "title"_a, "legend"_a, "smooth"_a,
+        "call"_a);
 }
 
 } // namespace isotet::python

@@ -104,7 +104,7 @@ def _blocks_in(blocks) -> _isotet.Cells:
     return _isotet.Cells(connectivity, offsets, np.repeat(np.array(types, np.uint8), counts), 10)
 
 
-def cells_in(cells, offsets=None, types=None) -> _isotet.Cells:
+def cells_in(cells, offsets=None, types=None, faces=None, face_offsets=None) -> _isotet.Cells:
     """Cells as the functions of isotet take them."""
     if isinstance(cells, _isotet.Cells):
         return cells
@@ -124,6 +124,8 @@ def cells_in(cells, offsets=None, types=None) -> _isotet.Cells:
                 "(N, 5) for pyramids, (N, 6) for wedges or (N, 8) for hexahedra"
             )
         return _isotet.Cells(corners.reshape(-1), None, None, _TYPE_OF_CORNERS[corners.shape[1]])
+    if (faces is None) != (face_offsets is None):
+        raise ValueError("polyhedra need faces and face_offsets, or neither of them")
     if offsets is None or types is None:
         raise ValueError("cells need offsets and types, or neither of them")
     if corners.ndim != 1:
@@ -133,7 +135,8 @@ def cells_in(cells, offsets=None, types=None) -> _isotet.Cells:
         if types.size and not (0 <= types.min() and types.max() <= 255):
             raise ValueError(f"types has the values {types.min()} to {types.max()}, but VTK's numbers are 0 to 255")
         types = types.astype(np.uint8)
-    return _isotet.Cells(corners, _indices("offsets", offsets).reshape(-1), types.reshape(-1), 10)
+    shells = () if faces is None else (_indices("faces", faces).reshape(-1), _indices("face_offsets", face_offsets).reshape(-1))
+    return _isotet.Cells(corners, _indices("offsets", offsets).reshape(-1), types.reshape(-1), 10, *shells)
 
 
 def isovalues_in(isovalues) -> list[float]:

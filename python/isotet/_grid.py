@@ -27,6 +27,9 @@ class Grid:
         of corners; meshio's cells (a mapping from "tetra", "hexahedron" and so on to such arrays, or its list of blocks);
         or corners of all cells one after another, with `offsets` (M + 1) and `types` (M, VTK's numbers). Cells that are
         not contoured are left out.
+    faces, face_offsets
+        With polyhedra (VTK's type 42): for each cell its number of faces, then for each face its number of points and these
+        points, in any winding; and M + 1 places where each cell's part begins. Cells of other types have none.
     fields, cell_fields
         Mappings from names to arrays: one row a point, one row a cell.
     point_numbers
@@ -46,11 +49,12 @@ class Grid:
 
     __slots__ = ("_grid", "info", "step", "notes", "__weakref__")
 
-    def __init__(self, points, cells, *, offsets=None, types=None, fields: Mapping[str, Any] | None = None,
-                 cell_fields: Mapping[str, Any] | None = None, point_numbers=None):  # fmt: skip
+    def __init__(self, points, cells, *, offsets=None, types=None, faces=None, face_offsets=None,
+                 fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
+                 point_numbers=None):  # fmt: skip
         numbers = None if point_numbers is None else numbers_in("point_numbers", point_numbers)
-        self._grid = _isotet.Grid(points_in(points), cells_in(cells, offsets, types), fields_in("fields", fields),
-                                  fields_in("cell_fields", cell_fields), numbers)  # fmt: skip
+        self._grid = _isotet.Grid(points_in(points), cells_in(cells, offsets, types, faces, face_offsets),
+                                  fields_in("fields", fields), fields_in("cell_fields", cell_fields), numbers)  # fmt: skip
         self.info: dict[str, Any] = {}
         self.step = 0
         self.notes: list[str] = []
@@ -69,7 +73,7 @@ class Grid:
     @property
     def cells(self) -> np.ndarray:
         """M x corners where all cells are of one type and were given so, else the corners one after another."""
-        connectivity, offsets, _, uniform = self._grid.cells.arrays()
+        connectivity, offsets, _, uniform, *_ = self._grid.cells.arrays()
         return connectivity if offsets is not None else connectivity.reshape(-1, {10: 4, 12: 8, 13: 6, 14: 5, 11: 8}[uniform])
 
     @property
@@ -81,6 +85,16 @@ class Grid:
     def types(self) -> np.ndarray | None:
         """None where all cells are of one type, else M of VTK's numbers."""
         return self._grid.cells.arrays()[2]
+
+    @property
+    def faces(self) -> np.ndarray | None:
+        """None without polyhedra, else their faces."""
+        return self._grid.cells.arrays()[4]
+
+    @property
+    def face_offsets(self) -> np.ndarray | None:
+        """None without polyhedra, else M + 1: where the faces of each cell begin."""
+        return self._grid.cells.arrays()[5]
 
     @property
     def point_numbers(self) -> np.ndarray | None:

@@ -40,7 +40,7 @@ def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None
            color_map: str = "viridis", colors: str | Sequence[str] = (), opacity: float = 1,
            view: str | tuple[float, float] = "iso", parallel: bool = False, zoom: float = 1,
            size: tuple[int, int] = (1200, 900), samples: int = 3, background: str = "white", title: str = "",
-           legend: bool = True, threads: int = 0, progress: Progress | None = None) -> np.ndarray:  # fmt: skip
+           legend: bool = True, smooth: bool = True, threads: int = 0, progress: Progress | None = None) -> np.ndarray:  # fmt: skip
     """A picture of surfaces: height x width x 4 numbers from 0 to 255, red, green, blue and opacity. No graphics card or
     window is needed; the same surfaces give the same bytes on every machine.
 
@@ -58,6 +58,8 @@ def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None
         ``isotet render -v`` prints it. With `parallel` there is no perspective.
     size, samples
         Width and height; each pixel is the mean of samples x samples.
+    smooth
+        Shade by normals of vertices; without, each triangle is flat.
     background, title, legend
         "white", "transparent", ...; a title over the colour scale, which `legend` draws beside the picture.
 
@@ -77,5 +79,6 @@ def render(surfaces: Surface | Sequence[Surface], *, color_by: str | None = None
     width, height = size
     pixels = _isotet.render([surface._surface for surface in drawn], names, values, of_triangles, color_map, range,
                             float(opacity), camera, fitted, float(zoom), (width, height), samples, background,
-                            title or color_by or "", legend, call_options(threads, progress))  # fmt: skip
+                            title or color_by or "", legend, smooth,
+                            call_options(threads, progress))  # fmt: skip
     return pixels.reshape(height, width, 4)

@@ -22,7 +22,7 @@ from ._surface import Surface, call_options
 
 __all__ = ["IsotetContour", "grid_of", "to_polydata"]
 
-_TETRAHEDRON = 10
+_TETRAHEDRON, _POLYHEDRON = 10, 42
 
 
 def _types_of(grid):
@@ -41,7 +41,49 @@ def _cells_of(grid) -> _isotet.Cells:
     connectivity = np.ascontiguousarray(vtk_to_numpy(cells.GetConnectivityArray()))
     if types[0] == _TETRAHEDRON and (types == _TETRAHEDRON).all():
         return _isotet.Cells(connectivity, None, None, _TETRAHEDRON)
-    return _isotet.Cells(connectivity, np.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray())), types, _TETRAHEDRON)
+    offsets = np.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray()))
+    return _isotet.Cells(connectivity, offsets, types, _TETRAHEDRON, *_faces_of(grid, types))
+
+
+def _parts_of(cells) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and offsets of a vtkCellArray."""
+    return tuple(vtk_to_numpy(array) for array in (cells.GetConnectivityArray(), cells.GetOffsetsArray()))
+
+
+def _faces_of(grid, types: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Faces of polyhedra and where those of each cell begin; nothing where there are none."""
+    if not (types == _POLYHEDRON).any():
+        return ()
+    if not hasattr(grid, "GetPolyhedronFaces"):  # before VTK 9.4
+        faces, starts = grid.GetFaces(), grid.GetFaceLocations()
+        if faces is None or starts is None:
+            return ()
+        stream, starts = vtk_to_numpy(faces), vtk_to_numpy(starts)
+        ends = np.append(starts, len(stream))
+        for cell in range(len(starts) - 1, -1, -1):
+            if ends[cell] < 0:  # no polyhedron
+                ends[cell] = ends[cell + 1]
+        return np.ascontiguousarray(stream), ends
+    faces, of_cells = grid.GetPolyhedronFaces(), grid.GetPolyhedronFaceLocations()
+    if faces is None or of_cells is None:
+        return ()
+    points, first_point = (array.astype(np.int64) for array in _parts_of(faces))
+    order, first_face = (array.astype(np.int64) for array in _parts_of(of_cells))
+    sizes = np.diff(first_point)[order]
+    counts = np.diff(first_face)  # of faces, a cell
+    is_polyhedron = counts > 0
+    # Each polyhedron has an entry for its count of faces, each face one for its count of points.
+    before_face = np.cumsum(np.append(0, sizes + 1))
+    cell_of_face = np.repeat(np.arange(len(counts)), counts)
+    counts_before = np.cumsum(is_polyhedron)
+    offsets = before_face[first_face] + np.append(0, counts_before)
+    stream = np.empty(offsets[-1], np.int64)
+    stream[offsets[:-1][is_polyhedron]] = counts[is_polyhedron]
+    at_face = before_face[:-1] + counts_before[cell_of_face]
+    stream[at_face] = sizes
+    within = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    stream[np.repeat(at_face + 1, sizes) + within] = points[np.repeat(first_point[order], sizes) + within]
+    return stream, offsets
 
 
 def _points_of(grid) -> np.ndarray:

@@ -85,5 +85,13 @@ def test_wrong_arguments_are_refused(sphere):
         isotet.render(sphere, opacity=2)
 
 
+def test_shading_is_smooth_or_flat(sphere):
+    flat = isotet.render(sphere, size=(200, 200), smooth=False)
+    smooth = isotet.render(sphere, size=(200, 200))
+    shades = [len(np.unique(picture[drawn(picture)], axis=0)) for picture in (flat, smooth)]
+    assert not np.array_equal(flat, smooth)
+    assert np.array_equal(drawn(flat), drawn(smooth)) and min(shades) > 10
+
+
 def test_no_surface_is_an_empty_picture():
     assert not drawn(isotet.render([], size=(40, 30))).any()

@@ -1,7 +1,9 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """The same bytes as the program, for the same input and method."""
 
+import os
 import subprocess
+import sys
 
 import pytest
 
@@ -50,3 +52,15 @@ def test_packed_grids_and_sessions_give_the_same(tree):
         assert surface.triangles.tobytes() == wanted.triangles.tobytes()
         for name, values in wanted.fields.items():
             assert surface.fields[name].tobytes() == values.tobytes()
+
+
+def test_the_module_runs_the_program_in_path(program, tmp_path):
+    def module(path):
+        environment = {**os.environ, "PATH": str(path)}
+        return subprocess.run([sys.executable, "-m", "isotet", "--version"], env=environment, capture_output=True, text=True)
+
+    (tmp_path / "isotet").symlink_to(program)
+    expected = subprocess.run([program, "--version"], capture_output=True, text=True)
+    assert module(tmp_path).stdout == expected.stdout
+    without = module(tmp_path / "nothing")
+    assert without.returncode == 1 and "the program is not in PATH" in without.stderr

@@ -134,3 +134,29 @@ def test_errors_say_why():
     contour.AddObserver("ErrorEvent", hear)
     contour.Update()
     assert "isotet contours point data" in heard[-1]
+
+
+def test_polyhedra_come_with_their_faces(tree):
+    path = tree / "data/vtu/polyhedron_two_pieces.vtu"
+    ours, theirs = isotet.read(path, merge_pieces=True), grid_of(pv.read(path))
+    for cell in range(len(ours)):
+        stream, other = (g.faces[g.face_offsets[cell] : g.face_offsets[cell + 1]] for g in (ours, theirs))
+        assert len(stream) == len(other)
+        if len(stream):
+            assert stream[0] == other[0] and sorted(lengths(stream)) == sorted(lengths(other))
+    surface = theirs.contour(0.5, theirs.points[:, 0].copy())
+    assert surface.area == pytest.approx(ours.contour(0.5, "x").area)
+    again = isotet.Grid(theirs.points, theirs.cells, offsets=theirs.offsets, types=theirs.types, faces=theirs.faces,
+                        face_offsets=theirs.face_offsets)  # fmt: skip
+    assert np.array_equal(again.contour(0.5, "x").points, theirs.contour(0.5, "x").points)
+    with pytest.raises(ValueError, match="faces and face_offsets"):
+        isotet.Grid(theirs.points, theirs.cells, offsets=theirs.offsets, types=theirs.types, faces=theirs.faces)
+
+
+def lengths(stream):
+    """How many points each face has."""
+    at, out = 1, []
+    while at < len(stream):
+        out.append(stream[at])
+        at += stream[at] + 1
+    return out

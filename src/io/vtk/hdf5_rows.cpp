@@ -167,7 +167,9 @@ Result<bool> read_chunks(hid_t data, hid_t creation, int rank, const ByteSource&
     const auto chunks = chunks_of(data, rank, shape, range);
     if (!chunks) return false;
     FirstError error;
-    core::parallel_ranges(chunks->size(), 1, [&](std::size_t begin, std::size_t end) {
+    const auto threads = static_cast<std::size_t>(core::threads_here());
+    const std::size_t grain = std::max<std::size_t>(1, chunks->size() / (8 * threads)); // each has memory of its own
+    core::parallel_ranges(chunks->size(), grain, [&](std::size_t begin, std::size_t end) {
         ChunkReader reader(source, shape, range);
         for (std::size_t i = begin; i < end && !error; ++i)
             if (auto read = reader.read((*chunks)[i]); !read) error.add(i, read.error());
