@@ -7,7 +7,8 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter, vtkPolyDataNormals
 
-from isotet.vtk import IsotetContour
+import isotet
+from isotet.vtk import IsotetContour, grid_of
 from test_pyvista import cubes
 
 
