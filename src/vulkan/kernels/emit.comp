@@ -45,15 +45,13 @@ void open_output(uint number) {
     start = Starts(tables.starts).at[number];
     position_out = Floats(advance(surface.positions, start.vertex, 12u));
     triangle_out = Words(advance(surface.triangles, start.triangle, 12u));
-    if (with_normals) {
-        normal_out = Floats(advance(surface.normals, start.vertex, 12u));
-        lowest_out = Words(advance(surface.lowest, start.vertex, 4u));
-    }
-    if (with_ends) {
-        end_out = Words(advance(surface.ends, start.vertex, 8u));
-        weight_out = Floats(advance(surface.weights, start.vertex, 4u));
-    }
-    if (with_sources) source_out = Words(advance(surface.sources, start.triangle, 4u));
+    // What is not asked for is assigned all the same: SwiftShader cannot compile an address that no path assigns, and all others
+    // leave out what is not used.
+    normal_out = Floats(advance(surface.normals, start.vertex, 12u));
+    lowest_out = Words(advance(surface.lowest, start.vertex, 4u));
+    end_out = Words(advance(surface.ends, start.vertex, 8u));
+    weight_out = Floats(advance(surface.weights, start.vertex, 4u));
+    source_out = Words(advance(surface.sources, start.triangle, 4u));
 }
 
 /// Bits before `bit` in a mask that begins at word `first`.
