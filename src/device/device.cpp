@@ -30,7 +30,7 @@ Result<Device> Device::open(const DeviceOptions& options) {
     Result<std::shared_ptr<vulkan::Context>> context = vulkan::Context::open(options);
     if (!context) return context.error();
     Device device(*std::move(context));
-    if (Result<void> tested = test_kernels(device); !tested) return tested.error();
+    if (Result<void> tested = test_kernels_once(device); !tested) return tested.error();
     return device;
 }
 

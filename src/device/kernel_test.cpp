@@ -2,6 +2,8 @@
 #include "device/kernel_test.hpp"
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include <fmt/core.h>
 
@@ -9,6 +11,8 @@
 #include <isotet/extract.hpp>
 #include <isotet/make.hpp>
 #include <isotet/pack.hpp>
+
+#include "vulkan/context.hpp"
 
 namespace isotet {
 
@@ -50,7 +54,24 @@ Result<void> test_on(const Device& device, const SmallGrid& small) {
                     device.info().name, small.cells, device.info().driver)};
 }
 
+/// A file beside the cache of compiled kernels says that this build's kernels were right with this driver.
+std::filesystem::path note_of(const Device& device) {
+    std::filesystem::path note = device.context()->pipeline_cache().file();
+    if (!note.empty()) note += ".tested";
+    return note;
+}
+
 } // namespace
+
+Result<void> test_kernels_once(const Device& device) {
+    const std::filesystem::path note = note_of(device);
+    std::error_code failed;
+    if (!note.empty() && std::filesystem::exists(note, failed)) return {};
+    if (Result<void> done = test_kernels(device); !done || note.empty()) return done;
+    std::filesystem::create_directories(note.parent_path(), failed);
+    std::ofstream(note).put('1'); // where that fails, the next start tests again
+    return {};
+}
 
 Result<void> test_kernels(const Device& device) {
     for (const SmallGrid& small : {SmallGrid{"kuhn", "tets"}, SmallGrid{"mixed", "all kinds of cells"}})
