@@ -1,7 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "bench/kernels/pipelines.hpp"
 
-#include <algorithm>
 #include <map>
 
 #include "all_shaders.hpp"
@@ -104,26 +103,28 @@ std::vector<Pipeline> all_pipelines() {
 std::vector<std::uint32_t> specialized(const vulkan::ShaderCode& code, const std::vector<std::uint32_t>& constants) {
     // Numbers of the SPIR-V specification.
     constexpr std::uint32_t op_decorate = 71, spec_id = 1, op_spec_true = 48, op_spec_false = 49, op_spec = 50;
-    constexpr std::uint32_t op_true = 41, op_false = 42, op_constant = 43, op_nop = 0;
+    constexpr std::uint32_t op_true = 41, op_false = 42, op_constant = 43;
     constexpr std::size_t header_words = 5;
-    std::vector<std::uint32_t> words(code.words.begin(), code.words.end());
+    std::vector<std::uint32_t> words(code.words.begin(), code.words.begin() + header_words);
     std::map<std::uint32_t, std::uint32_t> places; // by the number of the result
-    for (std::size_t i = header_words; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16) {
-        const std::uint32_t opcode = words[i] & 0xffff, length = words[i] >> 16 << 16;
-        if (opcode == op_decorate && words[i + 2] == spec_id) {
-            places[words[i + 1]] = words[i + 3];
-            std::fill_n(words.begin() + static_cast<std::ptrdiff_t>(i), 4, 1u << 16 | op_nop); // one word each
+    for (std::size_t i = header_words; i < code.words.size() && code.words[i] >> 16 != 0; i += code.words[i] >> 16) {
+        const std::uint32_t* const from = &code.words[i];
+        const std::uint32_t opcode = from[0] & 0xffff, length = from[0] >> 16;
+        if (opcode == op_decorate && from[2] == spec_id) {
+            places[from[1]] = from[3];
             continue;
         }
+        const std::size_t at = words.size();
+        words.insert(words.end(), from, from + length);
         if (opcode != op_spec_true && opcode != op_spec_false && opcode != op_spec) continue;
-        const auto place = places.find(words[i + 2]);
+        const auto place = places.find(from[2]);
         const bool given = place != places.end() && place->second < constants.size();
         if (opcode == op_spec) {
-            words[i] = length | op_constant;
-            if (given) words[i + 3] = constants[place->second];
+            words[at] = length << 16 | op_constant;
+            if (given) words[at + 3] = constants[place->second];
         } else {
             const bool value = given ? constants[place->second] != 0 : opcode == op_spec_true;
-            words[i] = length | (value ? op_true : op_false);
+            words[at] = length << 16 | (value ? op_true : op_false);
         }
     }
     return words;
