@@ -31,9 +31,7 @@ shared uint seam_ranks[edge_room / 32u];
 /// By rank: the first active edges, lower + 256 * higher, until vertices are written; then vertices on active seams.
 shared uint seam_numbers[seam_room];
 shared uint triangle_bits[3u * max_cluster_groups]; ///< by place in hit_group, a bit a cell: of its number of triangles
-shared uint first_triangle[max_cluster_groups];
-/// By row of the matrix: the rank of its first edge, then how many edges its words 0, 0 to 1, 0 to 2 have: 12, 6, 7, 7 bits.
-/// (sums_before, by another name.)
+// sums_before: active edges before each row of the matrix + 65536 * triangles before each place in hit_group
 
 Tables tables;
 Start start;
@@ -108,30 +106,27 @@ void cut_cells(bool special) {
     }
 }
 
-uint edges_before_row(uint row) { return sums_before[row] & 0xfffu; }
+uint edges_before_row(uint row) { return sums_before[row] & 0xffffu; }
+uint triangles_before(uint place) { return sums_before[place] >> 16; }
 
 /// Ranks of active edges by row, and the first triangle of each hit group.
 void rank_edges() {
     const uint self = gl_LocalInvocationIndex;
-    const uint one = bitCount(matrix[4u * self]), two = one + bitCount(matrix[4u * self + 1u]),
-               three = two + bitCount(matrix[4u * self + 2u]);
-    uint sum = three + bitCount(matrix[4u * self + 3u]);
+    uint sum = 0u;
+    for (uint i = 0u; i < 4u; ++i) sum += bitCount(matrix[4u * self + i]);
     if (self < max_cluster_groups) sum += triangles_in(self, 0xffffffffu) << 16;
     find_sums_before(sum);
-    const uint before = sums_before[self];
-    if (self < max_cluster_groups) first_triangle[self] = before >> 16;
-    if (self == workgroup_size - 1u) edge_count = before + sum & 0xffffu;
-    uint rank = before & 0xffffu;
-    sums_before[self] = rank & 0xfffu | one << 12 | two << 18 | three << 25;
+    uint rank = edges_before_row(self);
     for (uint i = 0u; i < 4u; ++i)
         for (uint bits = matrix[4u * self + i]; bits != 0u && rank < seam_room; bits &= bits - 1u)
             seam_numbers[rank++] = self + (32u * i + findLSB(bits) << 8);
+    if (self == workgroup_size - 1u) edge_count = (sums_before[self] + sum) & 0xffffu;
 }
 
 uint rank_of(uvec2 edge) {
-    const uint row = sums_before[edge.x], word = edge.y / 32u;
-    const uint in_words = word == 0u ? 0u : word == 1u ? row >> 12 & 63u : word == 2u ? row >> 18 & 127u : row >> 25;
-    return (row & 0xfffu) + in_words + bitCount(matrix[matrix_word(edge)] & (1u << edge.y % 32u) - 1u);
+    uint rank = edges_before_row(edge.x);
+    for (uint word = 0u; word < edge.y / 32u; ++word) rank += bitCount(matrix[4u * edge.x + word]);
+    return rank + bitCount(matrix[matrix_word(edge)] & (1u << edge.y % 32u) - 1u);
 }
 
 /// (lower, higher) of the active edge with this rank.
@@ -250,7 +245,7 @@ void write_triangles(uint first_inner, bool special) {
         const uint lane = self % group_size;
         if (triangles_in(place, 1u << lane) == 0u) continue;
         const Cell cell = cut_cell(tables, hit_group[place], lane, special);
-        uint at = first_triangle[place] + triangles_in(place, (1u << lane) - 1u);
+        uint at = triangles_before(place) + triangles_in(place, (1u << lane) - 1u);
         for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
             const uint polygon = polygon_of(tables, cell, i);
             uint numbers[4];
