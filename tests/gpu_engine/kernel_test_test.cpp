@@ -11,7 +11,7 @@ namespace {
 bool miscompiles = false;
 PFN_vkCreateShaderModule compile_rightly = nullptr;
 
-/// A driver that adds wrongly (it subtracts), from some time on.
+/// A driver that subtracts where it should add, from some time on.
 VkResult VKAPI_CALL compile_wrongly(VkDevice device, const VkShaderModuleCreateInfo* info,
                                     const VkAllocationCallbacks* allocator, VkShaderModule* module) {
     constexpr std::uint32_t op_fadd = 129, op_fsub = 131;
