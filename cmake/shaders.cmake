@@ -16,6 +16,7 @@ function(isotet_shaders target header namespace)
     set(declarations "")
     set(definitions "")
     set(numbers "")
+    set(all "")
     foreach(source ${ARGN})
         get_filename_component(name ${source} NAME_WE)
         set(words ${folder}/${name}.inc)
@@ -25,6 +26,7 @@ function(isotet_shaders target header namespace)
             DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source} DEPFILE ${words}.d VERBATIM COMMENT "Compiling shader ${name}")
         list(APPEND numbers ${words})
         string(APPEND declarations "extern const ShaderCode ${name};\n")
+        string(APPEND all "&${name}, ")
         string(APPEND definitions "static const std::uint32_t words_of_${name}[] = {\n#include \"${words}\"\n};\n"
                                   "const ShaderCode ${name}{\"${name}\", words_of_${name}};\n")
     endforeach()
@@ -35,7 +37,9 @@ function(isotet_shaders target header namespace)
 #include \"vulkan/shader_code.hpp\"
 
 namespace isotet::vulkan::${namespace} {
-${declarations}} // namespace isotet::vulkan::${namespace}
+${declarations}
+inline const ShaderCode* const every[] = {${all}};
+} // namespace isotet::vulkan::${namespace}
 ")
     string(MAKE_C_IDENTIFIER ${header} file)
     file(CONFIGURE OUTPUT ${folder}/${file}.cpp CONTENT

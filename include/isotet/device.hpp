@@ -76,11 +76,12 @@ struct DeviceOptions {
 /// Threads   one operation at a time on one device; different devices are independent
 class ISOTET_API Device {
 public:
-    /// Opens a device and tests its arithmetic on the device itself (docs/inside/gpu.md).
+    /// Opens a device and tests its arithmetic on the device itself, and its kernels on two small grids against the CPU engine
+    /// (docs/inside/gpu.md).
     ///
     /// Cost      100 ms to a second, mostly the driver's; compiled kernels are kept in XDG_CACHE_HOME/isotet
     /// Errors    invalid_argument when no device, or more than one, fits the choice; no_device when there is no Vulkan,
-    ///           no GPU, or when the device cannot be used, with the reason
+    ///           no GPU, or when the device cannot be used, with the reason; also when its driver builds wrong kernels
     static Result<Device> open(const DeviceOptions& options = {});
 
     /// A device that was opened with settings of its own, by tests.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/guard.hpp"
+#include "device/kernel_test.hpp"
 #include "vulkan/choice.hpp"
 #include "vulkan/context.hpp"
 #include "vulkan/found_devices.hpp"
@@ -28,7 +29,9 @@ Result<DeviceList> list_devices() {
 Result<Device> Device::open(const DeviceOptions& options) {
     Result<std::shared_ptr<vulkan::Context>> context = vulkan::Context::open(options);
     if (!context) return context.error();
-    return Device(*std::move(context));
+    Device device(*std::move(context));
+    if (Result<void> tested = test_kernels_once(device); !tested) return tested.error();
+    return device;
 }
 
 const DeviceInfo& Device::info() const noexcept { return context_->info(); }

@@ -59,7 +59,7 @@ const std::vector<LibraryRule>& library_rules() {
         {"pugixml", {"pugixml"}, {"src/io/", "tests/"}},
         {"HDF5", {"hdf5", "H5"}, {"src/io/vtk/", "tests/"}},
         {"oneTBB", {"tbb/", "oneapi/"}, {"src/", "bench/", "tests/"}},
-        {"Vulkan", {"vulkan/vulkan"}, {"src/vulkan/", "tests/"}},
+        {"Vulkan", {"vulkan/vulkan"}, {"src/vulkan/", "bench/", "tests/"}},
         {"FreeType", {"ft2build", "freetype"}, {"src/render/"}},
         {"libpng", {"png.h"}, {"src/io/own/", "tests/"}},
         {"fmt", {"fmt/"}, {"src/", "apps/", "bench/", "tests/"}},

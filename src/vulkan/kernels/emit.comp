@@ -11,6 +11,7 @@
 #include "shared/lists.glsl"
 
 layout(constant_id = 0) const uint edge_room = 1024; ///< few_edges or max_edges: which of the two lists is worked through
+const uint seam_room = edge_room > few_edges ? edge_room : few_seams;
 layout(constant_id = 1) const bool with_ends = false;
 layout(constant_id = 2) const bool with_normals = false;
 layout(constant_id = 3) const bool with_sources = false;
@@ -23,15 +24,14 @@ layout(push_constant, scalar) uniform Push {
 };
 
 shared uint points[max_cluster_points]; ///< page-local numbers of local points
-shared float values[max_cluster_points];
 shared uint tied_numbers[max_cluster_points]; ///< of the vertices at tied points
 shared uint edge_count;
-shared uint edge_ranks[matrix_words];         ///< active edges before each word of the matrix
-shared uint edge_numbers[edge_room];          ///< by rank: the vertex on the edge; before that, lower + 256 * higher
-shared uint seam_bits[edge_room / 32u];       ///< by rank: the edge is a seam
+shared uint seam_bits[edge_room / 32u];       ///< by rank of an active edge: it is a seam
 shared uint seam_ranks[edge_room / 32u];
+/// By rank: the first active edges, lower + 256 * higher, until vertices are written; then vertices on active seams.
+shared uint seam_numbers[seam_room];
 shared uint triangle_bits[3u * max_cluster_groups]; ///< by place in hit_group, a bit a cell: of its number of triangles
-shared uint first_triangle[max_cluster_groups];
+// sums_before: active edges before each row of the matrix + 65536 * triangles before each place in hit_group
 
 Tables tables;
 Start start;
@@ -43,15 +43,13 @@ void open_output(uint number) {
     start = Starts(tables.starts).at[number];
     position_out = Floats(advance(surface.positions, start.vertex, 12u));
     triangle_out = Words(advance(surface.triangles, start.triangle, 12u));
-    if (with_normals) {
-        normal_out = Floats(advance(surface.normals, start.vertex, 12u));
-        lowest_out = Words(advance(surface.lowest, start.vertex, 4u));
-    }
-    if (with_ends) {
-        end_out = Words(advance(surface.ends, start.vertex, 8u));
-        weight_out = Floats(advance(surface.weights, start.vertex, 4u));
-    }
-    if (with_sources) source_out = Words(advance(surface.sources, start.triangle, 4u));
+    // What is not asked for is assigned all the same: SwiftShader cannot compile an address that no path assigns, and all others
+    // leave out what is not used.
+    normal_out = Floats(advance(surface.normals, start.vertex, 12u));
+    lowest_out = Words(advance(surface.lowest, start.vertex, 4u));
+    end_out = Words(advance(surface.ends, start.vertex, 8u));
+    weight_out = Floats(advance(surface.weights, start.vertex, 4u));
+    source_out = Words(advance(surface.sources, start.triangle, 4u));
 }
 
 /// Bits before `bit` in a mask that begins at word `first`.
@@ -85,8 +83,7 @@ void load_points() {
     const uint self = gl_LocalInvocationIndex;
     if (self >= local_points()) return;
     points[self] = page_point(self);
-    values[self] = value_of(points[self]);
-    classify(self, values[self], push.isovalue, push.tied, push.merge != 0u);
+    classify(self, value_of(points[self]), push.isovalue, push.tied, push.merge != 0u);
 }
 
 /// Triangles of the cells of a hit group that a mask has.
@@ -109,34 +106,46 @@ void cut_cells(bool special) {
     }
 }
 
-/// Ranks of active edges, and the first triangle of each group.
+uint edges_before_row(uint row) { return sums_before[row] & 0xffffu; }
+uint triangles_before(uint place) { return sums_before[place] >> 16; }
+
+/// Ranks of active edges by row, and the first triangle of each hit group.
 void rank_edges() {
     const uint self = gl_LocalInvocationIndex;
-    uint edges = 0u;
-    for (uint i = 0u; i < 4u; ++i) edges += bitCount(matrix[4u * self + i]);
-    uint triangles = 0u;
-    if (self < max_cluster_groups) triangles = triangles_in(self, 0xffffffffu);
-    const uvec2 before = sum_before(uvec2(edges, triangles));
-    if (self < max_cluster_groups) first_triangle[self] = before.y;
-    uint rank = before.x;
-    for (uint i = 0u; i < 4u; ++i) {
-        edge_ranks[4u * self + i] = rank;
-        for (uint bits = matrix[4u * self + i]; bits != 0u; bits &= bits - 1u)
-            edge_numbers[rank++] = self + (32u * i + findLSB(bits) << 8);
-    }
-    if (self == workgroup_size - 1u) edge_count = rank;
+    uint sum = 0u;
+    for (uint i = 0u; i < 4u; ++i) sum += bitCount(matrix[4u * self + i]);
+    if (self < max_cluster_groups) sum += triangles_in(self, 0xffffffffu) << 16;
+    find_sums_before(sum);
+    uint rank = edges_before_row(self);
+    for (uint i = 0u; i < 4u; ++i)
+        for (uint bits = matrix[4u * self + i]; bits != 0u && rank < seam_room; bits &= bits - 1u)
+            seam_numbers[rank++] = self + (32u * i + findLSB(bits) << 8);
+    if (self == workgroup_size - 1u) edge_count = (sums_before[self] + sum) & 0xffffu;
 }
 
 uint rank_of(uvec2 edge) {
-    const uint word = matrix_word(edge);
-    return edge_ranks[word] + bitCount(matrix[word] & (1u << edge.y % 32u) - 1u);
+    uint rank = edges_before_row(edge.x);
+    for (uint word = 0u; word < edge.y / 32u; ++word) rank += bitCount(matrix[4u * edge.x + word]);
+    return rank + bitCount(matrix[matrix_word(edge)] & (1u << edge.y % 32u) - 1u);
 }
 
-void set_seam_number(uvec2 edge, uint number) {
-    const uint rank = rank_of(edge);
-    edge_numbers[rank] = number;
-    atomicOr(seam_bits[rank / 32u], 1u << rank % 32u);
+/// (lower, higher) of the active edge with this rank.
+uvec2 edge_at(uint rank) {
+    if (rank < seam_room) return uvec2(seam_numbers[rank] & 0xffu, seam_numbers[rank] >> 8);
+    uint row = 0u; // the last one that begins at or before it: empty rows begin where the next one does
+    for (uint step = max_cluster_points / 2u; step != 0u; step /= 2u)
+        if (edges_before_row(row + step) <= rank) row += step;
+    uint left = rank - edges_before_row(row), word = 0u, bits = matrix[4u * row];
+    while (left >= bitCount(bits)) {
+        left -= bitCount(bits);
+        bits = matrix[4u * row + ++word];
+    }
+    for (; left != 0u; --left) bits &= bits - 1u;
+    return uvec2(row, 32u * word + findLSB(bits));
 }
+
+bool is_seam(uint rank) { return (seam_bits[rank / 32u] >> rank % 32u & 1u) != 0u; }
+uint seams_before(uint rank) { return seam_ranks[rank / 32u] + bitCount(seam_bits[rank / 32u] & (1u << rank % 32u) - 1u); }
 
 bool is_masked(uint bit) { return (Words(tables.masks).at[cluster.first_mask + bit / 32u] >> bit % 32u & 1u) != 0u; }
 
@@ -156,17 +165,29 @@ void number_tied() {
 
 uint own_seam_number(uint k) { return start.seam_vertex + bits_before(cluster.first_mask + tied_words, k); }
 
+void mark_seam(uvec2 edge) {
+    if (!is_crossed(edge)) return;
+    const uint rank = rank_of(edge);
+    atomicOr(seam_bits[rank / 32u], 1u << rank % 32u);
+}
+
+void mark_seams() {
+    for (uint k = gl_LocalInvocationIndex; k < own_seams; k += workgroup_size) mark_seam(own_seam(k));
+    for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) mark_seam(ghost_seam(k).xy);
+}
+
 void number_seams() {
     for (uint k = gl_LocalInvocationIndex; k < own_seams; k += workgroup_size) {
         const uvec2 edge = own_seam(k);
-        if (is_crossed(edge)) set_seam_number(edge, own_seam_number(k));
+        if (is_crossed(edge)) seam_numbers[seams_before(rank_of(edge))] = own_seam_number(k);
     }
     for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
         const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
         const uint owner = neighbour_of(k, 16u).cluster;
-        set_seam_number(seam.xy, Starts(tables.starts).at[owner].seam_vertex +
-                                     bits_before(Clusters(tables.clusters).at[owner].first_mask + tied_words, seam.z));
+        seam_numbers[seams_before(rank_of(seam.xy))] =
+            Starts(tables.starts).at[owner].seam_vertex +
+            bits_before(Clusters(tables.clusters).at[owner].first_mask + tied_words, seam.z);
     }
 }
 
@@ -174,24 +195,21 @@ void rank_seams() {
     const uint self = gl_LocalInvocationIndex;
     if (self >= edge_room / 32u) return;
     uint rank = 0u;
-    for (uint word = 0u; word < self; ++word) rank += bitCount(seam_bits[word]);
+    [[dont_unroll]] for (uint word = 0u; word < self; ++word) rank += bitCount(seam_bits[word]);
     seam_ranks[self] = rank;
 }
 
 /// Writes all own vertices: of inner edges, whose numbers are found here, by rank; of own seams that the mask has, though
 /// perhaps only others cross them; of tied own points that the mask has.
-void write_vertices(bool special) {
-    const uint first_inner = own_seam_number(own_seams);
+void write_vertices(uint first_inner, bool special) {
     const uint edges = edge_count, items = edges + own_seams + (special ? own_points : 0u);
     for (uint item = gl_LocalInvocationIndex; item < items; item += workgroup_size) {
         uint number;
         uvec2 ends; // local points
         if (item < edges) {
-            const uint bits = seam_bits[item / 32u], bit = 1u << item % 32u;
-            if ((bits & bit) != 0u) continue;
-            number = first_inner + item - (seam_ranks[item / 32u] + bitCount(bits & bit - 1u));
-            ends = uvec2(edge_numbers[item] & 0xffu, edge_numbers[item] >> 8);
-            edge_numbers[item] = number;
+            if (is_seam(item)) continue;
+            number = first_inner + item - seams_before(item);
+            ends = edge_at(item);
         } else if (item < edges + own_seams) {
             const uint k = item - edges;
             if (!is_masked(32u * tied_words + k)) continue;
@@ -206,31 +224,32 @@ void write_vertices(bool special) {
         float t = 0.0;
         if (ends.x != ends.y) {
             if (is_in(above, ends.x)) ends = ends.yx;
-            t = edge_weight(push.isovalue, push.rest, values[ends.x], values[ends.y]);
+            t = edge_weight(push.isovalue, push.rest, value_of(points[ends.x]), value_of(points[ends.y]));
         }
         write_vertex(number - start.vertex, ends.x, ends.y, t);
     }
 }
 
-uint number_of(Cell cell, uint polygon, uint k) {
+uint number_of(uint first_inner, Cell cell, uint polygon, uint k) {
     const uvec2 ends = polygon_edge(polygon, k);
     const uint a = corner_of(cell, ends.x), b = corner_of(cell, ends.y);
     if ((cell.tied >> ends.x & 1u) != 0u) return tied_numbers[a];
-    return edge_numbers[rank_of(ascending(a, b))];
+    const uint rank = rank_of(ascending(a, b)), seams = seams_before(rank);
+    return is_seam(rank) ? seam_numbers[seams] : first_inner + rank - seams;
 }
 
-void write_triangles(bool special) {
+void write_triangles(uint first_inner, bool special) {
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
         const uint lane = self % group_size;
         if (triangles_in(place, 1u << lane) == 0u) continue;
         const Cell cell = cut_cell(tables, hit_group[place], lane, special);
-        uint at = first_triangle[place] + triangles_in(place, (1u << lane) - 1u);
+        uint at = triangles_before(place) + triangles_in(place, (1u << lane) - 1u);
         for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
             const uint polygon = polygon_of(tables, cell, i);
             uint numbers[4];
-            for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(cell, polygon, k);
+            for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(first_inner, cell, polygon, k);
             for (uint t = 0u; t < triangles_of(polygon); ++t) {
                 const uint a = numbers[0], b = numbers[1u + t], c = numbers[2u + t];
                 if (a == b || b == c || c == a) continue; // only with tied corners
@@ -269,11 +288,14 @@ void main() {
     rank_edges();
     barrier();
     if (special) number_tied();
-    number_seams();
+    mark_seams();
     barrier();
     rank_seams();
     barrier();
-    write_vertices(special);
+    const uint first_inner = own_seam_number(own_seams);
+    write_vertices(first_inner, special);
     barrier();
-    write_triangles(special);
+    number_seams();
+    barrier();
+    write_triangles(first_inner, special);
 }

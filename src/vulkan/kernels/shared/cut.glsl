@@ -70,7 +70,7 @@ struct Cell {
     uint triangles;
 };
 
-uint corner_of(Cell cell, uint k) { return cell.words[k / 4u] >> 8u * (k % 4u) & 0xffu; }
+uint corner_of(Cell cell, uint k) { return (k < 4u ? cell.words.x : cell.words.y) >> 8u * (k % 4u) & 0xffu; }
 
 uint corners_in(uint set, Cell cell, uint count) {
     uint bits = 0u;

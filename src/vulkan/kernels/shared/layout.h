@@ -41,6 +41,7 @@ ISOTET_CONSTANT tied_words = 4u;             ///< of a cluster's masks, before t
 ISOTET_CONSTANT segment_clusters = 128u;     ///< a workgroup of select and scan
 ISOTET_CONSTANT block_segments = 128u;
 ISOTET_CONSTANT few_edges = 1024u;           ///< active edges of a cluster that the smaller emit kernel has room for
+ISOTET_CONSTANT few_seams = 256u;            ///< active seams, likewise
 ISOTET_CONSTANT max_edges = 4096u;          ///< active edges that a cluster can have: 64 points below, 64 above
 
 /// Marching tetrahedra by which corners are above (core/case_table.hpp): a polygon's four active edges, each corner above

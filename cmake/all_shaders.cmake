@@ -1,0 +1,18 @@
+# isotet_all_shaders(TARGET): every shader of the project, found by looking, as vulkan::all_shaders of all_shaders.hpp; and the
+# list of pipelines made of them. For what compiles them without a device: bench/kernels and tests/vulkan.
+function(isotet_all_shaders target)
+    file(GLOB shaders CONFIGURE_DEPENDS
+        ${PROJECT_SOURCE_DIR}/src/vulkan/kernels/*.comp
+        ${PROJECT_SOURCE_DIR}/src/render/kernels/*.comp ${PROJECT_SOURCE_DIR}/src/render/kernels/*.frag
+        ${PROJECT_SOURCE_DIR}/src/render/kernels/*.mesh ${PROJECT_SOURCE_DIR}/src/render/kernels/*.vert)
+    set(relative "")
+    foreach(shader ${shaders})
+        file(RELATIVE_PATH path ${CMAKE_CURRENT_SOURCE_DIR} ${shader})
+        list(APPEND relative ${path})
+    endforeach()
+    isotet_shaders(${target} all_shaders.hpp all_shaders ${relative})
+    target_sources(${target} PRIVATE
+        ${PROJECT_SOURCE_DIR}/bench/kernels/null_device.cpp
+        ${PROJECT_SOURCE_DIR}/bench/kernels/pipelines.cpp)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src ${ISOTET_VULKAN_HEADERS})
+endfunction()
