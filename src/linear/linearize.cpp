@@ -13,6 +13,8 @@
 #include "core/parallel.hpp"
 #include "linear/parts.hpp"
 #include "linear/polyhedron.hpp"
+#include "linear/quadratic.hpp"
+#include "linear/refine.hpp"
 
 namespace isotet {
 
@@ -40,11 +42,13 @@ Error nothing_left(const Grid& grid, const LinearizeReport& report) {
                     grid.points.tuples(), grid.cells.count(), report.open, report.polyhedra));
 }
 
-Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
-    const Grid grid{user.points, user.cells, {}, {}};
+} // namespace
+
+Result<LinearGrid> split_polyhedra(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
+    const Grid grid{user.points, user.cells, {}, {}, user.point_numbers};
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
-    if (!has_cells_to_linearize(grid.cells)) {
+    if (!has_polyhedra(grid.cells)) {
         LinearGrid same;
         same.grid = grid;
         same.user_points = grid.points.tuples();
@@ -75,7 +79,8 @@ Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, 
     LinearGrid out = joined(blocks, grid.points.tuples());
     out.user_cells = cells->count();
     const auto types = out.grid.cells.types.as<std::uint8_t>();
-    if (std::ranges::none_of(types, core::is_contoured)) return nothing_left(grid, out.report);
+    if (std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
+        return nothing_left(grid, out.report);
     auto points = out.extend(grid.points, {.threads = core::threads_here()});
     if (!points) return points.error();
     out.grid.points = *std::move(points);
@@ -83,11 +88,7 @@ Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, 
     return out;
 }
 
-} // namespace
-
-} // namespace linear
-
-bool has_cells_to_linearize(const Cells& cells) {
+bool has_polyhedra(const Cells& cells) {
     if (cells.faces.empty() || cells.types.type() != ScalarType::uint8) return false;
     const auto types = cells.types.as<std::uint8_t>();
     std::atomic<bool> found{false};
@@ -96,6 +97,18 @@ bool has_cells_to_linearize(const Cells& cells) {
         if (std::ranges::find(part, core::polyhedron_type) != part.end()) found.store(true, std::memory_order_relaxed);
     });
     return found;
+}
+
+Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
+    auto split = split_polyhedra(grid, options, progress);
+    if (!split || !has_curved_cells(grid.cells)) return split;
+    return refined(*std::move(split), nullptr, {}, progress);
+}
+
+} // namespace linear
+
+bool has_cells_to_linearize(const Cells& cells) {
+    return linear::has_polyhedra(cells) || linear::has_curved_cells(cells);
 }
 
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Run& run) {
