@@ -16,14 +16,16 @@
 namespace isotet {
 
 struct RefineOptions {
-    double tolerance = 0; ///< largest error of the field, in its unit; 0: `relative_tolerance` times its range
+    /// Largest error of the field, in its unit; 0: `relative_tolerance` times its range.
+    double tolerance = 0;
     double relative_tolerance = 1e-3;
-    double geometry_tolerance =
-        0; ///< largest distance of the tets from the curved cells, in the points' unit; 0: edges
-           ///< leave the curve by at most a hundredth of their length
-    std::vector<double>
-        isovalues; ///< only what these can meet is kept: grid and surfaces are good for them alone; empty:
-                   ///< everything, good for all
+    /// Largest distance of the tets from the curved cells, in the points' unit; 0: edges leave the curve by at most a
+    /// hundredth of their length.
+    double geometry_tolerance = 0;
+    /// Only what these can meet is kept: the grid is good for them alone. Empty: all is kept.
+    std::vector<double> isovalues = {};
+    /// More tets than this are an error; 0: as many as free memory holds.
+    std::uint64_t max_tets = 0;
 };
 
 /// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the

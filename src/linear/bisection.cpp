@@ -136,6 +136,22 @@ std::uint32_t Bisector::number_of(Place place) {
     return slot_numbers_[slot];
 }
 
+/// Numbers the points of the tet at hand by their places: their order is then the same whatever was dropped.
+void Bisector::order_points(std::size_t first_point, std::size_t first_tet) {
+    const auto places = std::span(out_->places).subspan(first_point);
+    if (std::ranges::is_sorted(places)) return;
+    order_.resize(places.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = {places[i], i};
+    std::ranges::sort(order_);
+    rank_.resize(order_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+        places[i] = order_[i].first;
+        rank_[order_[i].second] = static_cast<std::uint32_t>(first_point + i);
+    }
+    for (auto& tet : std::span(out_->tets).subspan(first_tet))
+        for (std::uint32_t& point : tet) point = rank_[point - first_point];
+}
+
 void Bisector::forget_numbers() {
     if (used_slots_ == 0) return;
     if (slots_.size() > 4096) {
@@ -176,7 +192,7 @@ void Bisector::bisect(std::uint32_t index, Bisected& out) {
     out_ = &out;
     index_ = index;
     tet_ = &grid_.tets[index];
-    const std::size_t before = out.tets.size();
+    const std::size_t before = out.tets.size(), first_point = out.places.size();
     Part part{};
     bool finite = true;
     if (field_) {
@@ -189,6 +205,7 @@ void Bisector::bisect(std::uint32_t index, Bisected& out) {
         for (std::size_t k = 0; k < 3; ++k) part.values[1 + k] = to_bezier(points_[k].of(*tet_));
         divide(part);
         forget_numbers();
+        order_points(first_point, before);
     }
     out.children.push_back(static_cast<std::uint32_t>(out.tets.size() - before));
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <isotet/progress.hpp>
@@ -72,6 +73,7 @@ private:
     void emit(const Part& part);
     std::uint32_t number_of(Place place);
     void forget_numbers();
+    void order_points(std::size_t first_point, std::size_t first_tet);
 
     const QuadraticTets& grid_;
     const std::array<NodeValues, 3>& points_;
@@ -87,6 +89,8 @@ private:
     std::vector<Place> slots_; ///< hash of the places of the tet at hand
     std::vector<std::uint32_t> slot_numbers_;
     std::uint64_t used_slots_ = 0;
+    std::vector<std::pair<Place, std::uint32_t>> order_;
+    std::vector<std::uint32_t> rank_;
 };
 
 } // namespace isotet::linear

@@ -106,6 +106,7 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     BisectionLimits limits;
     const std::uint64_t free = core::free_memory();
     limits.max_tets = free / bytes_per_made_tet;
+    if (options.max_tets > 0) limits.max_tets = std::min(limits.max_tets, options.max_tets);
     const std::size_t count = tets->tets.size(), per_block = std::clamp<std::size_t>(count / 512, 1, 1024);
     std::vector<Bisected> blocks((count + per_block - 1) / per_block);
     core::parallel_pieces(blocks.size(), 1, progress, [&](std::size_t begin, std::size_t end) {
@@ -116,10 +117,12 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     });
     if (progress.cancelled()) return refining_cancelled();
     if (limits.exceeded)
-        return Error{ErrorCode::out_of_memory,
-                     fmt::format("refining to {:g} makes over {} tets, for which {} are not enough: a larger tolerance "
-                                 "makes fewer",
-                                 tolerance, limits.max_tets, format_bytes(free))};
+        return Error{
+            ErrorCode::out_of_memory,
+            fmt::format("refining to {:g} makes over {} tets, the most that {} allow: a larger tolerance makes "
+                        "fewer",
+                        tolerance, limits.max_tets,
+                        options.max_tets == limits.max_tets ? "the options" : format_bytes(free) + " of memory")};
     progress("refine", 0.6);
     RefinementReport report = reported(blocks, *tets);
     auto made = welded(blocks, *tets, before.grid.points.tuples(), progress);

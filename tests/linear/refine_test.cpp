@@ -261,7 +261,7 @@ TEST(Refine, RefusesWhatDoesNotFit) {
     EXPECT_EQ(refine(made.grid, made.field, {.relative_tolerance = 0}).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(refine(made.grid, {"f", {}, false, {}}).error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(field_bound(linearize(made.grid).value(), {}).error().code, ErrorCode::invalid_argument);
-    const auto tiny = refine(made.grid, made.field, {.tolerance = 1e-13, .isovalues = {}});
+    const auto tiny = refine(made.grid, made.field, {.tolerance = 1e-9, .max_tets = 100'000});
     ASSERT_FALSE(tiny);
     EXPECT_EQ(tiny.error().code, ErrorCode::out_of_memory) << tiny.error().message;
 }
