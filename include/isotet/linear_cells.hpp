@@ -111,6 +111,12 @@ struct LinearizeOptions {
 /// Cost   a parallel pass over the types
 ISOTET_API bool has_cells_to_linearize(const Cells& cells);
 
+/// True for VTK's numbers of three-dimensional cells of degree 2 and above, handled or not.
+ISOTET_API bool is_curved(std::uint8_t vtk_type) noexcept;
+
+/// True when some cells are curved. Cost   a parallel pass over the types
+ISOTET_API bool has_curved_cells(const Cells& cells);
+
 /// Makes every cell linear that can be. Linear cells stay as they are, in their order; each polyhedron is replaced by what
 /// it becomes:
 ///

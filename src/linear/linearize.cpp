@@ -11,6 +11,7 @@
 #include "core/cell_faces.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "linear/curved_kinds.hpp"
 #include "linear/parts.hpp"
 #include "linear/polyhedron.hpp"
 #include "linear/quadratic.hpp"
@@ -107,9 +108,20 @@ Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, 
 
 } // namespace linear
 
-bool has_cells_to_linearize(const Cells& cells) {
-    return linear::has_polyhedra(cells) || linear::has_curved_cells(cells);
+bool is_curved(std::uint8_t vtk_type) noexcept { return linear::is_curved(vtk_type); }
+
+bool has_curved_cells(const Cells& cells) {
+    if (cells.types.empty() || cells.types.type() != ScalarType::uint8) return false;
+    const auto types = cells.types.as<std::uint8_t>();
+    std::atomic<bool> found{false};
+    core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
+        if (std::ranges::any_of(types.subspan(begin, end - begin), linear::is_curved))
+            found.store(true, std::memory_order_relaxed);
+    });
+    return found;
 }
+
+bool has_cells_to_linearize(const Cells& cells) { return linear::has_polyhedra(cells) || has_curved_cells(cells); }
 
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Run& run) {
     return core::carry_out("making linear cells", run,

@@ -356,17 +356,6 @@ QuadraticTets joined_curved(std::vector<CurvedBlock>& blocks, std::uint64_t poin
 
 } // namespace
 
-bool has_curved_cells(const Cells& cells) {
-    if (cells.types.empty() || cells.types.type() != ScalarType::uint8) return false;
-    const auto types = cells.types.as<std::uint8_t>();
-    std::atomic<bool> found{false};
-    core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
-        if (std::ranges::any_of(types.subspan(begin, end - begin), is_curved))
-            found.store(true, std::memory_order_relaxed);
-    });
-    return found;
-}
-
 Result<QuadraticTets> quadratic_tets(const Grid& grid, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();

@@ -38,9 +38,6 @@ struct QuadraticTets {
     std::uint64_t unknown = 0;           ///< of these: curved cells of a degree or type that is not handled
 };
 
-/// True when some cells are of a curved type.
-bool has_curved_cells(const Cells& cells);
-
 /// Every linear and curved cell as quadratic tets, in the order of the cells; others are left out.
 ///
 /// Edges without a node take the node that another cell has on that edge, else the mean of their ends; quadrilaterals

@@ -166,7 +166,7 @@ Result<LinearGrid> refine(const Grid& grid, const PointField& field, const Refin
                             "for each of the {} points",
                             field.name, field.values.tuples(), field.values.components(), grid.points.tuples()));
         auto split = linear::split_polyhedra(grid, {}, progress);
-        if (!split || !linear::has_curved_cells(grid.cells)) return split;
+        if (!split || !has_curved_cells(grid.cells)) return split;
         return linear::refined(*std::move(split), &field.values, options, progress);
     });
 }
