@@ -30,7 +30,7 @@ struct DerivedPoints {
 /// Points inside quadratic tets, R of them, and the quadratic tets, Q of them. The value at one is that of the quadratic field
 /// through the ten nodes of its tet.
 ///
-/// `places`    uint64, R: weights of the tet's corners 0, 1 and 2, in steps of 2^-20, at bits 42, 21 and 0
+/// `places`    uint32, R x 3: weights of the tet's corners 0, 1 and 2, in steps of 2^-30
 /// `parents`   uint32, R: the quadratic tet
 /// `nodes`     uint32, Q x 10: corners by ascending number, then the middle of the edges 01, 02, 03, 12, 13, 23. A number of a
 ///             point before the refined ones; from there on a row of `hidden`; 2^32 - 1 is the mean of the edge's ends

@@ -9,11 +9,17 @@ namespace isotet::linear {
 
 namespace {
 
-constexpr Place free_slot = ~Place{0};
+constexpr Place free_slot{0xffffffff, 0, 0};
+
+std::size_t hash_of(const Place& place) {
+    const std::uint64_t mixed =
+        (place[0] * 0x9e3779b97f4a7c15u) ^ (place[1] * 0xc2b2ae3d27d4eb4fu) ^ (place[2] * 0x165667b19e3779f9u);
+    return static_cast<std::size_t>((mixed ^ mixed >> 29) * 0x9e3779b97f4a7c15u >> 20);
+}
 constexpr double rounding_margin = 0x1p-21; ///< of stored values beside Bezier values: float32 and more
 
 /// The number of the corner that a place is; 4: none.
-std::size_t corner_at(Place place) {
+std::size_t corner_at(const Place& place) {
     return static_cast<std::size_t>(std::ranges::find(corner_places, place) - corner_places.begin());
 }
 
@@ -111,7 +117,7 @@ void Bisector::divide(const Part& part) {
 }
 
 /// The number of a point among those of the tet at hand and the ones before.
-std::uint32_t Bisector::number_of(Place place) {
+std::uint32_t Bisector::number_of(const Place& place) {
     if (2 * (used_slots_ + 1) > slots_.size()) {
         std::vector<Place> old(2 * slots_.size(), free_slot);
         std::vector<std::uint32_t> old_numbers(old.size());
@@ -119,13 +125,13 @@ std::uint32_t Bisector::number_of(Place place) {
         std::swap(slot_numbers_, old_numbers);
         for (std::size_t i = 0; i < old.size(); ++i) {
             if (old[i] == free_slot) continue;
-            std::size_t slot = (old[i] * 0x9e3779b97f4a7c15u >> 20) & (slots_.size() - 1);
+            std::size_t slot = hash_of(old[i]) & (slots_.size() - 1);
             while (slots_[slot] != free_slot) slot = (slot + 1) & (slots_.size() - 1);
             slots_[slot] = old[i];
             slot_numbers_[slot] = old_numbers[i];
         }
     }
-    std::size_t slot = (place * 0x9e3779b97f4a7c15u >> 20) & (slots_.size() - 1);
+    std::size_t slot = hash_of(place) & (slots_.size() - 1);
     for (; slots_[slot] != free_slot; slot = (slot + 1) & (slots_.size() - 1))
         if (slots_[slot] == place) return slot_numbers_[slot];
     slots_[slot] = place;

@@ -60,8 +60,8 @@ private:
     };
     struct Choice {
         double length2 = -1;
-        Place high = 0, low = 0;
-        Place middle = 0;
+        Place high{}, low{};
+        Place middle{};
         std::size_t edge = 6;
     };
 
@@ -71,7 +71,7 @@ private:
     Choice first_marked(const Part& part);
     void divide(const Part& part);
     void emit(const Part& part);
-    std::uint32_t number_of(Place place);
+    std::uint32_t number_of(const Place& place);
     void forget_numbers();
     void order_points(std::size_t first_point, std::size_t first_tet);
 

@@ -27,17 +27,17 @@ void add_refined(const RefinedPoints& refined, std::size_t before, std::size_t c
                  const Progress& progress) {
     if (refined.count() == 0) return;
     const std::span<const T> known(to.data(), before * components);
-    const auto places = refined.places.as<linear::Place>();
     const auto parents = refined.parents.as<std::uint32_t>();
     const auto nodes = refined.nodes.as<linear::Node>();
     const Array points = Array::borrow(known, components);
     for (std::size_t c = 0; c < components; ++c) {
         const linear::NodeValues values(points, refined.hidden, c);
-        core::parallel_pieces(places.size(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+        core::parallel_pieces(refined.count(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
             linear::QuadraticTet tet{};
             for (std::size_t i = begin; i < end; ++i) {
                 std::memcpy(tet.data(), &nodes[10 * std::size_t{parents[i]}], sizeof tet);
-                to[(before + i) * components + c] = static_cast<T>(linear::value_at(values, tet, places[i]));
+                to[(before + i) * components + c] =
+                    static_cast<T>(linear::value_at(values, tet, linear::place_at(refined.places, i)));
             }
         });
     }

@@ -42,20 +42,20 @@ public:
             return corner_places[0];
         }
         const std::size_t row = point - known_;
-        const Place place = refined_.places.as<Place>()[row];
+        const Place place = place_at(refined_.places, row);
         const std::size_t parent = refined_.parents.as<std::uint32_t>()[row];
         return parent == index ? place : moved(place, tet(parent), in);
     }
 
 private:
     /// The place of a point of a common face or edge.
-    static Place moved(Place place, const QuadraticTet& from, const QuadraticTet& to) {
+    static Place moved(const Place& place, const QuadraticTet& from, const QuadraticTet& to) {
         const auto steps = steps_of(place);
-        Place out = 0;
+        Place out{};
         for (std::size_t i = 0; i < 4; ++i) {
             if (steps[i] == 0) continue;
             const auto corner = static_cast<std::size_t>(std::find(to.begin(), to.begin() + 4, from[i]) - to.begin());
-            if (corner < 3) out |= Place{steps[i]} << (42 - 21 * corner);
+            if (corner < 3) out[corner] = steps[i];
         }
         return out;
     }
@@ -65,7 +65,7 @@ private:
 };
 
 /// How far the field's middle between two places is from the mean of both: a quarter of its second difference.
-double deviation_between(const std::array<double, 10>& bezier, Place a, Place b) {
+double deviation_between(const std::array<double, 10>& bezier, const Place& a, const Place& b) {
     const auto from = steps_of(a), to = steps_of(b);
     std::array<double, 4> step{};
     for (std::size_t i = 0; i < 4; ++i) step[i] = (static_cast<double>(to[i]) - from[i]) / whole_weight;

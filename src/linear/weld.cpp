@@ -18,7 +18,7 @@ namespace {
 
 /// A point on an edge or a face by what all tets there know of it; `owner` is where one of them has it.
 struct SharedPoint {
-    Place place; ///< weights of the corners, in their order
+    std::uint64_t place; ///< weights of the corners, in their order
     std::array<Node, 3> corners;
     std::uint32_t owner;
 
@@ -37,7 +37,7 @@ struct Kind {
     SharedPoint shared{};
 };
 
-Kind kind_of_point(const QuadraticTet& tet, Place place, std::uint64_t points) {
+Kind kind_of_point(const QuadraticTet& tet, const Place& place, std::uint64_t points) {
     const auto steps = steps_of(place);
     Kind kind;
     std::array<std::size_t, 4> at{};
@@ -51,7 +51,7 @@ Kind kind_of_point(const QuadraticTet& tet, Place place, std::uint64_t points) {
         if (middle < points) return {Kind::Of::user, middle, {}};
     }
     kind.of = Kind::Of::shared;
-    kind.shared.place = Place{steps[at[0]]} << 32 | steps[at[1]];
+    kind.shared.place = std::uint64_t{steps[at[0]]} << 32 | steps[at[1]];
     kind.shared.corners = {tet[at[0]], tet[at[1]], corners == 3 ? tet[at[2]] : mean_node};
     return kind;
 }
@@ -136,12 +136,12 @@ private:
 
     void write_points(LinearGrid& out) {
         const std::uint64_t count = shared_count_ + end().inside;
-        core::Buffer<Place> places(count);
+        core::Buffer<std::uint32_t> places(3 * count);
         core::Buffer<std::uint32_t> parents(count);
         core::parallel_each(blocks_.size(), 4, [&](std::size_t b) {
             const Bisected& block = blocks_[b];
             const auto write = [&](std::uint64_t to, std::size_t i) {
-                places[to] = block.places[i];
+                std::ranges::copy(block.places[i], places.data() + 3 * to);
                 parents[to] = block.parents[i];
             };
             const std::uint64_t from = places_[b].point;
@@ -156,7 +156,7 @@ private:
                 }
             }
         });
-        out.refined.places = std::move(places).to_array();
+        out.refined.places = std::move(places).to_array(3);
         out.refined.parents = std::move(parents).to_array();
     }
 
