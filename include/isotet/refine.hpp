@@ -33,8 +33,8 @@ struct RefineOptions {
 ///
 /// The piecewise quadratic field is the interpolant through the nodes of a cell, on the tets into which it is split by the
 /// rule of split(): the field itself for quadratic tetrahedra, and for every field that is quadratic in the cell; of third
-/// order else. Tets are bisected at the longest of their edges that deviate, ties by point numbers: this depends on edges
-/// alone, so neighbours agree.
+/// order else. Tets are bisected at the edge that deviates most, in
+/// steps of 4 times, of several at the longest, ties by point numbers: this depends on edges alone, so neighbours agree.
 ///
 /// `grid`       its fields are not looked at
 /// `field`      one scalar a point; quadratic tets with a node that is not finite are dropped

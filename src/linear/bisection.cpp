@@ -52,22 +52,26 @@ bool Bisector::is_met(const Part& part) const {
     return can_be_met(lower, upper);
 }
 
-bool Bisector::is_marked(const Part& part, std::size_t edge, double length2) {
+/// How many times an edge deviates more than it may; marked edges above 1.
+double Bisector::excess_of(const Part& part, std::size_t edge, double length2) const {
     const auto [a, b] = tet_edges[edge];
     if (rule_.nodes_only) {
         const std::size_t from = corner_at(part.corners[a]), to = corner_at(part.corners[b]);
-        return from < 4 && to < 4 && (*tet_)[4 + tet_edge_of[from][to]] != mean_node;
+        return from < 4 && to < 4 && (*tet_)[4 + tet_edge_of[from][to]] != mean_node ? 2 : 0;
     }
     const auto off = [&](std::size_t k) {
         const auto& v = part.values[k];
         return (2 * v[4 + edge] - (v[a] + v[b])) / 4;
     };
-    if (std::abs(off(0)) > rule_.deviation) return true;
-    const double x = off(1), y = off(2), z = off(3), away2 = x * x + y * y + z * z;
-    return away2 > (rule_.length > 0 ? rule_.length * rule_.length : rule_.bend * rule_.bend * length2);
+    const double field = std::abs(off(0)), x = off(1), y = off(2), z = off(3), away2 = x * x + y * y + z * z;
+    const double allowed2 = rule_.length > 0 ? rule_.length * rule_.length : rule_.bend * rule_.bend * length2;
+    const double by_field = field > rule_.deviation ? field / rule_.deviation : 0;
+    return std::max(by_field, away2 > allowed2 ? std::sqrt(away2 / allowed2) : 0);
 }
 
-/// The longest of the marked edges, ties by the places of its ends.
+/// Of the marked edges with the largest excess, in grades of 4 (what one bisection gains), the longest, ties by the places of
+/// its ends. By length alone bisection need not end: edges along which the field is straight are never marked, and three
+/// short ones can go round such an edge for ever.
 Bisector::Choice Bisector::first_marked(const Part& part) {
     Choice best;
     for (std::size_t edge = 0; edge < 6; ++edge) {
@@ -77,15 +81,19 @@ Bisector::Choice Bisector::first_marked(const Part& part) {
             const double d = part.values[k][a] - part.values[k][b];
             length2 += d * d;
         }
-        if (length2 < best.length2 || !is_marked(part, edge, length2)) continue;
+        const double excess = excess_of(part, edge, length2);
+        if (!(excess > 1)) continue;
+        const int grade = std::ilogb(excess) / 2;
+        if (grade < best.grade || (grade == best.grade && length2 < best.length2)) continue;
         const auto middle = halfway(part.corners[a], part.corners[b]);
         if (!middle) {
             out_->too_fine = true;
             continue;
         }
         const auto [low, high] = std::minmax(part.corners[a], part.corners[b]);
-        if (length2 > best.length2 || high > best.high || (high == best.high && low > best.low))
-            best = {length2, high, low, *middle, edge};
+        const bool is_first =
+            grade > best.grade || length2 > best.length2 || high > best.high || (high == best.high && low > best.low);
+        if (is_first) best = {grade, length2, high, low, *middle, edge};
     }
     return best;
 }

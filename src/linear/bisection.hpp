@@ -59,6 +59,7 @@ private:
         std::array<Place, 4> corners;
     };
     struct Choice {
+        int grade = -1;
         double length2 = -1;
         Place high{}, low{};
         Place middle{};
@@ -67,7 +68,7 @@ private:
 
     bool can_be_met(double lower, double upper) const;
     bool is_met(const Part& part) const;
-    bool is_marked(const Part& part, std::size_t edge, double length2);
+    double excess_of(const Part& part, std::size_t edge, double length2) const;
     Choice first_marked(const Part& part);
     void divide(const Part& part);
     void emit(const Part& part);

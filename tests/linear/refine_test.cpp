@@ -229,6 +229,29 @@ TEST(Refine, OfASphereInSixTetsIsClosedAndNear) {
     }
 }
 
+/// Bisecting the longest marked edge never ends here: edges 12 and 23 are straight, and the others go round them.
+TEST(Refine, EndsWhereLongEdgesAreStraight) {
+    const std::vector<std::array<std::size_t, 2>> ends{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    const std::vector<double> bezier{-0.847758949, -0.853552729, -0.806562275, -0.41421406, -0.494205996, -0.146447942};
+    std::vector<double> points{0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1};
+    std::vector<double> values{-0.353553653, -1.06066012, -0.646446645, 0.3535541};
+    for (std::size_t e = 0; e < 6; ++e) {
+        const auto [a, b] = ends[e];
+        for (std::size_t k = 0; k < 3; ++k) points.push_back((points[3 * a + k] + points[3 * b + k]) / 2);
+        values.push_back((2 * bezier[e] + values[a] + values[b]) / 4);
+    }
+    Grid grid;
+    grid.points = Array::own(std::move(points), 3);
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+    grid.cells.offsets = Array::own(std::vector<std::int64_t>{0, 10});
+    grid.cells.types = Array::own(std::vector<std::uint8_t>{24});
+    const PointField field{"f", Array::own(std::move(values)), false, {}};
+    const LinearGrid linear = refine(grid, field, {.tolerance = 0.003, .isovalues = {0.2}}).value();
+    EXPECT_FALSE(linear.refinement.too_fine);
+    EXPECT_LE(linear.refinement.field_bound, 0.003);
+    EXPECT_GT(linear.refinement.tets, 0u);
+}
+
 TEST(Refine, TellsTheBoundOfAnotherField) {
     const CurvedGrid made = curved_grid({.side = 3, .seed = 2, .shuffle = true, .warp = bulge, .field = wave});
     const CurvedGrid other = curved_grid({.side = 3, .seed = 2, .shuffle = true, .field = quadric});
