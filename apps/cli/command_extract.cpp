@@ -202,6 +202,8 @@ Result<void> ExtractRun::load(std::size_t step) {
     grid_ = *std::move(grid);
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    if (command_.piece && has_curved_cells(input.grid.cells))
+        return usage_error("--piece takes grids without quadratic cells only");
     if (command_.piece)
         if (Result<void> taken = take_piece_of(input); !taken) return taken;
     if (!contour_) {
@@ -253,7 +255,8 @@ Result<void> ExtractRun::choose_values(std::size_t step) {
 
 /// After the surfaces of a step: what was left out, and what rounding did.
 void ExtractRun::note_what_the_step_holds() {
-    if (numbers_.cells_left_out > 0) console_.note(cells_left_out_note(grid_));
+    if (const std::string note = cells_left_out_note(grid_); numbers_.cells_left_out > 0 && !note.empty())
+        console_.note(note);
     if (numbers_.field.flushed > 0) {
         console_.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0",
                                   grouped(numbers_.field.flushed), numbers_.field.name));
@@ -319,6 +322,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     numbers_.pack_seconds += result->pack_seconds;
     if (const auto packed = contour_->packed()) numbers_.pack = packed->report();
     coarse_tets_ += result->coarse_tets;
+    numbers_.refinement = result->refinement;
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < isovalues.size(); ++i) {
         Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));

@@ -4,6 +4,7 @@
 
 #include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/refine.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
@@ -70,6 +71,56 @@ std::string holes_text(const ComponentStatistics& component) {
     if (component.infinite > 0)
         text += fmt::format("{}infinite {}", text.empty() ? "" : ", ", grouped(component.infinite));
     return text;
+}
+
+/// What it costs to contour a field without refining curved cells.
+struct CurvedCost {
+    std::string field;
+    double bound = 0; ///< of the error, in the unit of the field
+    double share = 0; ///< of the field's range
+};
+
+struct CurvedFindings {
+    std::uint64_t cells = 0, left_out = 0;
+    std::vector<CurvedCost> costs; ///< of scalar point fields
+};
+
+Result<CurvedFindings> look_at_curved_cells(const Grid& grid, const std::vector<DescribedField>& fields,
+                                            const Run& run) {
+    CurvedFindings found;
+    if (!has_curved_cells(grid.cells)) return found;
+    const auto linear = linearize(grid, {}, run);
+    if (!linear) return linear.error();
+    found.cells = linear->refinement.curved_cells;
+    found.left_out = linear->refinement.unknown_cells;
+    for (const DescribedField& described : fields) {
+        if (described.components.size() != 1 || described.association != std::string_view("point")) continue;
+        const auto bound = field_bound(*linear, described.field.values, run);
+        if (!bound) return bound.error();
+        const double range = described.components[0].upper - described.components[0].lower;
+        found.costs.push_back({described.field.name, *bound, range > 0 ? *bound / range : 0});
+    }
+    return found;
+}
+
+std::string curved_table(const CurvedFindings& found) {
+    if (found.cells + found.left_out == 0) return {};
+    Table table = facts();
+    table.row({"curved cells", fmt::format("{}; extract and render refine them to --tolerance", grouped(found.cells))});
+    if (found.left_out > 0)
+        table.row({"", fmt::format("{} left out: degree 3 and above, or Bezier", grouped(found.left_out))});
+    for (const CurvedCost& cost : found.costs)
+        table.row({"", fmt::format("{}: split at their nodes only, off by at most {} ({:.2g} % of the range)",
+                                   cost.field, rounded(cost.bound), 100 * cost.share)});
+    return table.text();
+}
+
+Json json_of(const CurvedFindings& found) {
+    if (found.cells + found.left_out == 0) return nullptr;
+    Json costs = Json::array();
+    for (const CurvedCost& cost : found.costs)
+        costs.push_back({{"field", json_text(cost.field)}, {"bound", cost.bound}, {"share_of_range", cost.share}});
+    return {{"cells", found.cells}, {"cells_left_out", found.left_out}, {"split_at_nodes", std::move(costs)}};
 }
 
 std::string grid_table(const Findings& found, const std::string& path) {
@@ -198,9 +249,13 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
     const auto fields = describe_fields(*grid, console.run());
     if (!fields) return fields.error();
+    const auto curved = look_at_curved_cells(*grid, *fields, console.run());
+    if (!curved) return curved.error();
     Json report = json_of(found, path);
+    report["curved"] = json_of(*curved);
     report["fields"] = json_of(*fields);
-    return finish(console, command.common, grid_table(found, path) + field_table(*fields), std::move(report));
+    return finish(console, command.common, grid_table(found, path) + curved_table(*curved) + field_table(*fields),
+                  std::move(report));
 }
 
 } // namespace isotet::cli

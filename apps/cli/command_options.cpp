@@ -2,6 +2,7 @@
 #include "command_options.hpp"
 
 #include <charconv>
+#include <cmath>
 
 #include "number_format.hpp"
 
@@ -223,6 +224,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
     add_surface_arrays(command, extract);
+    add_refinement(command, extract.refine);
     command.add_value(
         "--piece", [&](const std::string& text) { extract.piece = parse_piece(text); }, "K/N",
         "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
@@ -274,9 +276,7 @@ void add_view(const Command& program, ViewCommand& view) {
         "The port of 127.0.0.1 to serve the page at; without it a free one");
     command.add_texts(
         "--allow-host",
-        [&](const std::vector<std::string>& names) {
-            view.hosts.insert(view.hosts.end(), names.begin(), names.end());
-        },
+        [&](const std::vector<std::string>& names) { view.hosts.insert(view.hosts.end(), names.begin(), names.end()); },
         "NAME", "A name by which browsers reach the page, of a proxy say, beside localhost; may be repeated");
     command.add_flag("--keep", view.keep, "Go on when the last page was closed; without it for a minute");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
@@ -327,7 +327,8 @@ void add_check(const Command& program, CheckCommand& check) {
 void add_make(const Command& program, MakeCommand& make) {
     const Command command = program.add_command("make", "Make a test grid with analytic fields");
     command
-        .add_text("SHAPE", make.grid.shape, "SHAPE", "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid or mixed")
+        .add_text("SHAPE", make.grid.shape, "SHAPE",
+                  "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved or hex27")
         .required();
     command.add_count(
                "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge")
@@ -391,6 +392,42 @@ void add_device(const Command& command, DeviceChoice& choice) {
         "DEVICE",
         "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
         "graphics card");
+}
+
+void add_refinement(const Command& command, RefineChoice& refine) {
+    const auto number = [](const std::string& name, const std::string& text, const char* end, const char* rule) {
+        double value = 0;
+        const auto [stopped, fault] = std::from_chars(text.data(), end, value);
+        if (fault != std::errc{} || stopped != end || !std::isfinite(value) || value <= 0)
+            refuse_value(name, text, rule);
+        return value;
+    };
+    command.add_value(
+        "--tolerance",
+        [&refine, number](const std::string& text) {
+            if (text == "nodes") {
+                refine.reset();
+                return;
+            }
+            const bool percent = text.ends_with('%');
+            const char* const end = text.data() + text.size() - (percent ? 1 : 0);
+            const double value =
+                number("--tolerance", text, end, "a number above 0, one with %, such as 0.1%, or nodes");
+            if (!refine) refine.emplace();
+            (percent ? refine->relative_tolerance : refine->tolerance) = percent ? value / 100 : value;
+        },
+        "T|P%|nodes",
+        "Quadratic cells: largest error of the field, in its unit or in % of its range, without it 0.1%; nodes splits "
+        "cells at their nodes, without a bound");
+    command.add_value(
+        "--geometry-tolerance",
+        [&refine, number](const std::string& text) {
+            const double value = number("--geometry-tolerance", text, text.data() + text.size(), "a number above 0");
+            if (refine) refine->geometry_tolerance = value;
+        },
+        "D",
+        "Quadratic cells: largest distance of the tets from the curved cells, in the unit of the points; without it a "
+        "hundredth of each edge's length");
 }
 
 void add_device_memory(const Command& command, DeviceChoice& choice) {

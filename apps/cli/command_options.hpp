@@ -17,6 +17,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench);
 // Options that several commands have.
 Option add_field(const Command& command, FieldChoice& field, const std::string& description);
 Option add_isovalues(const Command& command, std::vector<double>& isovalues);
+void add_refinement(const Command& command, RefineChoice& refine);
 void add_device(const Command& command, DeviceChoice& device);
 void add_device_memory(const Command& command, DeviceChoice& device);
 

@@ -121,6 +121,7 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     plan.contour.edge_ends = command.edge_ends;
     plan.contour.source_cells = command.source_cells;
     plan.contour.split_cells = command.split_cells;
+    plan.contour.refine = command.refine;
     return plan;
 }
 

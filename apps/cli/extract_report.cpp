@@ -132,8 +132,8 @@ std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
                verbose ? "tied points" : "", verbose ? "extract" : "", verbose && files ? "write" : ""});
     for (const SurfaceNumbers& surface : numbers.surfaces) {
         std::vector<std::string> row{shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "",
-                                     grouped(surface.triangles), grouped(surface.vertices), rounded(surface.area),
-                                     surface.file};
+                                     grouped(surface.triangles), grouped(surface.vertices),
+                                     rounded(surface.area),      surface.file};
         if (verbose) {
             row.push_back(grouped(surface.report.tied_points));
             row.push_back(seconds_text(surface.extract_seconds));
@@ -152,6 +152,17 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["points"] = numbers.pack ? Json(numbers.pack->points) : Json(nullptr);
     report["tets"] = numbers.pack ? Json(numbers.pack->tets) : Json(nullptr);
     report["cells_left_out"] = numbers.cells_left_out;
+    const RefinementReport& curved = numbers.refinement;
+    report["curved"] = curved.curved_cells + curved.unknown_cells == 0
+                           ? Json(nullptr)
+                           : Json({{"cells", curved.curved_cells},
+                                   {"cells_left_out", curved.unknown_cells},
+                                   {"refined", curved.refined},
+                                   {"tets", curved.tets},
+                                   {"points", curved.points},
+                                   {"tolerance", curved.refined ? Json(curved.tolerance) : Json(nullptr)},
+                                   {"field_bound", curved.refined ? Json(curved.field_bound) : Json(nullptr)},
+                                   {"geometry_bound", curved.geometry_bound}});
     report["field"] = json_text(numbers.field.name);
     const bool finite = numbers.field.lower <= numbers.field.upper;
     report["range"] = finite ? Json::array({numbers.field.lower, numbers.field.upper}) : Json(nullptr);

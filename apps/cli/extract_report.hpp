@@ -51,7 +51,8 @@ struct ExtractNumbers {
     double measure_seconds = 0;    ///< for the areas
     std::uint64_t peak_before = 0; ///< of the process, with the first grid
     std::vector<SurfaceNumbers> surfaces;
-    std::string collection; ///< of a series; empty: none
+    std::string collection;           ///< of a series; empty: none
+    RefinementReport refinement = {}; ///< of the last surface
 
     std::uint64_t transient_peak() const;
     double work_seconds() const; ///< packing, uploading, extracting: what is predicted

@@ -41,8 +41,8 @@ Result<Grid> merged(const Grid& grid, double tolerance, Console& console, const 
     if (!result && result.error().code == ErrorCode::invalid_argument)
         return Error{result.error().code, "--merge-points: " + result.error().message};
     if (!result) return result.error();
-    console.note(fmt::format("{} merged with others", result->merged == 1 ? "1 point was"
-                                                                          : grouped(result->merged) + " points were"));
+    console.note(fmt::format("{} merged with others",
+                             result->merged == 1 ? "1 point was" : grouped(result->merged) + " points were"));
     if (result->collapsed_cells > 0)
         console.note(fmt::format("--merge-points {} is longer than edges of {}, which collapse: there the surface is "
                                  "not that of the grid",
@@ -152,7 +152,8 @@ std::string cells_left_out_note(const Grid& grid) {
     constexpr std::uint8_t polyhedron = 42;
     std::string list;
     for (const auto& [type, count] : count_cells_by_type(grid.cells)) {
-        if (is_contoured(type) || (type == polyhedron && !grid.cells.faces.empty())) continue; // said by the session
+        if (is_contoured(type) || (type == polyhedron && !grid.cells.faces.empty()) || is_curved(type))
+            continue; // said by the session
         list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(count), name_of_cell_type(type));
     }
     return list.empty() ? list : "cells left out, their types are not contoured: " + list;

@@ -15,6 +15,7 @@
 #include <isotet/pack.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/plan.hpp>
+#include <isotet/refine.hpp>
 #include <isotet/render.hpp>
 #include <isotet/search.hpp>
 
@@ -60,6 +61,9 @@ struct DeviceChoice {
     std::optional<std::uint64_t> memory; ///< bytes at most
 };
 
+/// How quadratic cells are refined; nothing: at their nodes only.
+using RefineChoice = std::optional<RefineOptions>;
+
 struct ExtractCommand {
     CommonOptions common;
     GridOptions grid;
@@ -81,6 +85,7 @@ struct ExtractCommand {
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
     std::optional<PieceOf> piece;
+    RefineChoice refine = RefineOptions{};
 };
 
 /// The opacity of the grid's boundary where none is given.
@@ -137,15 +142,16 @@ struct RenderCommand {
     std::string reference;    ///< a picture to compare with; empty: none
     double threshold = 0.001; ///< share of its pixels that may differ
     DeviceChoice device;
+    RefineChoice refine = RefineOptions{};
 };
 
 struct ViewCommand {
     CommonOptions common;
     GridOptions grid;
     FieldChoice field;
-    std::vector<double> isovalues; ///< none: the page chooses one
-    std::string color_by;          ///< a field; empty: each isovalue has its colour
-    std::uint64_t port = 0;        ///< 0: a free one
+    std::vector<double> isovalues;  ///< none: the page chooses one
+    std::string color_by;           ///< a field; empty: each isovalue has its colour
+    std::uint64_t port = 0;         ///< 0: a free one
     std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
     bool keep = false;
     bool no_browser = false;

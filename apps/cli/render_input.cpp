@@ -242,6 +242,7 @@ Result<RenderInput> RenderSource::read(std::size_t which, const std::optional<De
     options.method = command_.method.extract;
     options.draw = command_.method.draw;
     options.split_cells = command_.split_cells;
+    options.refine = command_.refine;
     options.index = command_.index.value_or(default_index);
     options.picture = command_.picture;
     options.where = command_.engine == EngineChoice::vulkan ? ExtractOn::device

@@ -21,6 +21,7 @@
 #include <isotet/pack.hpp>
 #include <isotet/plan.hpp>
 #include <isotet/progress.hpp>
+#include <isotet/refine.hpp>
 #include <isotet/result.hpp>
 
 namespace isotet {
@@ -49,6 +50,10 @@ struct ContourOptions {
     bool source_cells = false;
     bool split_cells = false;        ///< as PackOptions::split_cells
     std::optional<Frame> frame = {}; ///< as PackOptions::frame; for another field or time step, set() takes another
+    /// Quadratic cells are refined in extract(), for its isovalues and the field at hand, so that the tolerance holds for
+    /// each surface; RefineOptions::isovalues are those that come first, and are refined for together. Nothing: they are
+    /// split at their nodes, once for all isovalues, fields and steps, and a note gives the bound.
+    std::optional<RefineOptions> refine = {};
 };
 
 /// What set() had to do.
@@ -72,6 +77,7 @@ struct ContourResult {
     double extract_seconds = 0;       ///< downloading included
     DeviceWork work;                  ///< on the device, of the last surface
     std::vector<std::string> notes;   ///< sentences for the user
+    RefinementReport refinement;      ///< of the grid that was extracted from; without curved cells nothing is counted
 };
 
 /// Answers isovalues for one grid at a time, and keeps what may be kept when the grid or the field changes.
@@ -79,6 +85,10 @@ struct ContourResult {
 /// Polyhedra are made linear cells first (linearize()): fields are continued for derived points, source_cells are the
 /// user's, and edge ends from the number of the user's points on are derived points, which linear_grid() tells. packed() and
 /// use_grid() have the linear cells. The same cells keep their derived points when fields, steps or points change.
+///
+/// Quadratic cells likewise; with ContourOptions::refine each call of extract() for isovalues that it is not refined for
+/// refines again, after another field or step too. Then prepare() has nothing to do, packed() has what the last extract()
+/// packed, and use_grid() and predict() know the isovalues in RefineOptions only.
 ///
 /// Guarantees   the same calls give the same bytes, on every machine, for any thread count and on every engine, except
 ///              where a note says that another method was taken for want of memory

@@ -17,6 +17,7 @@
 #include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
+#include <isotet/refine.hpp>
 #include <isotet/render.hpp>
 #include <isotet/result.hpp>
 #include <isotet/search.hpp>
@@ -80,8 +81,9 @@ struct IsosurfaceOptions {
     ExtractOn where = ExtractOn::best;
     std::optional<DrawMethod> draw;                  ///< tets are drawn by this method instead, and no surface is made
     SearchIndex index = SearchIndex::cluster_ranges; ///< that finds the tets to draw
-    PictureOptions picture;   ///< of the pictures to come: `draw` leaves device memory free for them
-    bool split_cells = false; ///< as PackOptions::split_cells
+    PictureOptions picture;                   ///< of the pictures to come: `draw` leaves device memory free for them
+    bool split_cells = false;                 ///< as PackOptions::split_cells
+    std::optional<RefineOptions> refine = {}; ///< as ContourOptions::refine; a device takes cells split at their nodes
 };
 
 /// A surface that is shown, or the tets that stand for it.

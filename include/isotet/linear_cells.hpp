@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Cells that are not linear as cells that are: polyhedra as pyramids and tets around a derived point.
+// Cells that are not linear as cells that are: polyhedra as pyramids and tets around a derived point, quadratic cells as
+// tets between their nodes. refine.hpp makes as many tets of quadratic cells as a tolerance needs.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,41 @@ struct DerivedPoints {
     std::uint64_t count() const noexcept { return first.empty() ? 0 : first.tuples() - 1; }
 };
 
+/// Points inside quadratic tets, R of them, and the quadratic tets, Q of them. The value at one is that of the quadratic field
+/// through the ten nodes of its tet.
+///
+/// `places`    uint32, R x 3: weights of the tet's corners 0, 1 and 2, in steps of 2^-30
+/// `parents`   uint32, R: the quadratic tet
+/// `nodes`     uint32, Q x 10: corners by ascending number, then the middle of the edges 01, 02, 03, 12, 13, 23. A number of a
+///             point before the refined ones; from there on a row of `hidden`; 2^32 - 1 is the mean of the edge's ends
+/// `children`  uint32, Q: how many cells of the linear grid each tet became; cells stand in this order
+/// `hidden`    nodes that are no points of the grid
+struct RefinedPoints {
+    Array places;
+    Array parents;
+    Array nodes;
+    Array children;
+    DerivedPoints hidden;
+
+    std::uint64_t count() const noexcept { return places.tuples(); }
+};
+
+/// What became of quadratic cells.
+struct RefinementReport {
+    std::uint64_t curved_cells = 0;     ///< cells of degree 2 and above that were handled
+    std::uint64_t unknown_cells = 0;    ///< cells of degree 3 and above, and of Bezier kinds: left out
+    std::uint64_t left_out = 0;         ///< all cells that were left out, those of two dimensions too
+    std::uint64_t quadratic_tets = 0;   ///< what all cells are split into
+    std::uint64_t not_finite = 0;       ///< of these: dropped, for a node without a finite value
+    std::uint64_t tets = 0, points = 0; ///< linear tets and points between nodes that were made
+    bool refined = false;               ///< by refine(): else each edge with a node was bisected once
+    double tolerance = 0;               ///< of the field, in its unit, as asked for
+    double field_bound = 0;             ///< proven: the field's error is nowhere larger in the tets that were made
+    double geometry_bound = 0;          ///< proven: the tets are nowhere farther from the curved cells
+    bool too_fine = false;              ///< an edge could not be bisected any further: bounds may exceed tolerances
+    std::vector<double> isovalues;      ///< the only ones that the grid is good for, ascending; empty: all
+};
+
 /// What linearize() did, in cells of the user's grid.
 struct LinearizeReport {
     std::uint64_t polyhedra = 0;    ///< cells that are polyhedra, with their faces
@@ -43,12 +79,16 @@ struct LinearizeReport {
 
 /// A grid of linear cells, and what connects it with the grid that it was made of. A handle on arrays: copying shares them.
 struct ISOTET_API LinearGrid {
-    Grid grid;                     ///< the user's points, then the derived ones; linear cells; no fields
-    std::uint64_t user_points = 0; ///< grid.points from this number on are derived: row 0, 1, ...
+    Grid grid; ///< the user's points, then the derived ones; linear cells; no fields
+    std::uint64_t user_points =
+        0; ///< grid.points from this number on are derived: row 0, 1, ... of `derived`, then 0, 1,
+           ///< ... of `refined`
     std::uint64_t user_cells = 0;
     DerivedPoints derived;
     Array source_cells; ///< uint64, the user's cell of each cell of `grid`, ascending; empty: they are the same
     LinearizeReport report;
+    RefinedPoints refined;       ///< of quadratic cells; none where there are none
+    RefinementReport refinement; ///< likewise
 
     /// An array of one tuple a user's point, continued for the derived points: computed in double, rounded once.
     /// float32 and float64 keep their type; integers become float64. NaN at a derived point where one of its points has NaN.
@@ -67,9 +107,15 @@ struct LinearizeOptions {
     bool known_shapes = true; ///< false: every polyhedron is split around a derived point
 };
 
-/// True when some cells are polyhedra with faces: linearize() makes linear cells of them.
+/// True when some cells are polyhedra with faces or of a degree above 1: linearize() makes linear cells of them.
 /// Cost   a parallel pass over the types
 ISOTET_API bool has_cells_to_linearize(const Cells& cells);
+
+/// True for VTK's numbers of three-dimensional cells of degree 2 and above, handled or not.
+ISOTET_API bool is_curved(std::uint8_t vtk_type) noexcept;
+
+/// True when some cells are curved. Cost   a parallel pass over the types
+ISOTET_API bool has_curved_cells(const Cells& cells);
 
 /// Makes every cell linear that can be. Linear cells stay as they are, in their order; each polyhedron is replaced by what
 /// it becomes:
@@ -80,13 +126,17 @@ ISOTET_API bool has_cells_to_linearize(const Cells& cells);
 ///                   point number, or by ears where that would be thin or fold: by the face alone, so neighbours agree
 ///   open            left out: type 0 (empty), without corners
 ///
+/// Where some cells are quadratic, all cells become tets, each edge with a node bisected once, and cells that cannot be
+/// contoured are gone: VTK's types 24 to 27, 29, 31 to 33, 37, and 71 to 74 of order 1 and 2. Others of degree 2 and above
+/// are left out.
+///
 /// Faces may be wound in any way and stand in any order: the result is the same.
 ///
 /// `grid`       its fields are not looked at
 /// Guarantees   a conforming grid stays conforming; the same bytes for any thread count
 /// Cost         O(n); 20 to 30 bytes a linear cell and 8 + 16 bytes a corner of a centred polyhedron
-/// Errors       invalid_data as survey(), and for faces that are not there or have points out of range; out_of_memory;
-///              cancelled
+/// Errors       invalid_data as survey(), for faces that are not there or have points out of range, and for numbers of nodes
+///              that do not fit the type; out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
 /// Method       docs/cells.md
 ISOTET_API Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options = {}, const Run& run = {});

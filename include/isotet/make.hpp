@@ -33,6 +33,8 @@ struct MakeOptions {
 ///            "hex"; "wedge" (two a cube); "pyramid" (six a cube, with a centre point)
 ///            "mixed": layers of hexahedra, pyramids and tets, wedges, pyramids and tets, over and over: all four types
 ///            from side 3 on
+///            "tet10": kuhn of quadratic tetrahedra, straight, with fields at the nodes; "curved": the same bent onto a
+///            smooth image of the cube; "hex27": triquadratic hexahedra
 /// `side`     cubes along an edge, 1 to 4096
 /// `fields`   names, each once; float32, computed in double:
 ///            "sphere"   sqrt(x^2 + y^2 + z^2)

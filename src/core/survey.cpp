@@ -97,6 +97,7 @@ Result<GridReport> survey_linear(const Grid& grid, const SurveyOptions& options,
     if (!report) return report;
     report->points = grid.points.tuples();
     report->cells = linear->user_cells;
+    report->cells_left_out += linear->refinement.left_out;
     report->cells_by_type.clear();
     for (const auto& [type, count] : count_cells_by_type(grid.cells)) report->cells_by_type[type] = count;
     return report;

@@ -12,6 +12,8 @@
 #include "core/carry_out.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "linear/node_values.hpp"
+#include "linear/place.hpp"
 
 namespace isotet {
 
@@ -19,17 +21,42 @@ namespace {
 
 constexpr std::size_t derived_grain = 1 << 14;
 
+/// Values at refined points, behind those that `to` has.
+template <class T>
+void add_refined(const RefinedPoints& refined, std::size_t before, std::size_t components, core::Buffer<T>& to,
+                 const Progress& progress) {
+    if (refined.count() == 0) return;
+    const std::span<const T> known(to.data(), before * components);
+    const auto parents = refined.parents.as<std::uint32_t>();
+    const auto nodes = refined.nodes.as<linear::Node>();
+    const Array points = Array::borrow(known, components);
+    for (std::size_t c = 0; c < components; ++c) {
+        const linear::NodeValues values(points, refined.hidden, c);
+        core::parallel_pieces(refined.count(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+            linear::QuadraticTet tet{};
+            for (std::size_t i = begin; i < end; ++i) {
+                std::memcpy(tet.data(), &nodes[10 * std::size_t{parents[i]}], sizeof tet);
+                to[(before + i) * components + c] =
+                    static_cast<T>(linear::value_at(values, tet, linear::place_at(refined.places, i)));
+            }
+        });
+    }
+}
+
 template <class To, class From>
-Array extended(const DerivedPoints& derived, std::span<const From> from, std::size_t components,
-               const Progress& progress) {
+Array extended(const DerivedPoints& derived, const RefinedPoints& refined, std::span<const From> from,
+               std::size_t components, const Progress& progress) {
     const std::size_t users = from.size() / components, rows = derived.count();
-    core::Buffer<To> to((users + rows) * components);
+    core::Buffer<To> to((users + rows + refined.count()) * components);
     core::parallel_pieces(from.size(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
         if constexpr (std::is_same_v<To, From>) std::memcpy(&to[begin], &from[begin], (end - begin) * sizeof(To));
         else
             for (std::size_t i = begin; i < end; ++i) to[i] = static_cast<To>(from[i]);
     });
-    if (rows == 0) return std::move(to).to_array(components);
+    if (rows == 0) {
+        add_refined(refined, users, components, to, progress);
+        return std::move(to).to_array(components);
+    }
     const auto first = derived.first.as<std::uint64_t>(), points = derived.points.as<std::uint64_t>();
     const auto weights = derived.weights.as<double>();
     core::parallel_pieces(rows, derived_grain, progress, [&](std::size_t begin, std::size_t end) {
@@ -39,6 +66,7 @@ Array extended(const DerivedPoints& derived, std::span<const From> from, std::si
                     first[row + 1] - first[row], [&](std::size_t i) { return weights[first[row] + i]; },
                     [&](std::size_t i) { return static_cast<double>(from[points[first[row] + i] * components + c]); }));
     });
+    add_refined(refined, users + rows, components, to, progress);
     return std::move(to).to_array(components);
 }
 
@@ -64,10 +92,10 @@ Error cancelled_extension() { return {ErrorCode::cancelled, "extending an array 
 Result<Array> LinearGrid::extend(const Array& values, const Run& run) const {
     return core::carry_out("extending an array", run, [&](const Progress& progress) -> Result<Array> {
         if (auto fits = has_tuples(values, user_points, "point"); !fits) return fits.error();
-        if (derived.count() == 0) return values;
+        if (derived.count() == 0 && refined.count() == 0) return values;
         Array out = values.visit([&]<class T>(std::span<const T> from) {
             using To = std::conditional_t<std::is_floating_point_v<T>, T, double>;
-            return extended<To>(derived, from, values.components(), progress);
+            return extended<To>(derived, refined, from, values.components(), progress);
         });
         if (progress.cancelled()) return cancelled_extension();
         return out;

@@ -12,8 +12,11 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "linear/by_numbers.hpp"
+#include "linear/curved_kinds.hpp"
 #include "linear/parts.hpp"
 #include "linear/polyhedron.hpp"
+#include "linear/quadratic.hpp"
+#include "linear/refine.hpp"
 
 namespace isotet {
 
@@ -42,7 +45,7 @@ Error nothing_left(const Grid& grid, const LinearizeReport& report) {
 }
 
 /// Where numbers decide, they are the indices of points.
-Result<LinearGrid> linearize_in_order(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
+Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
@@ -69,7 +72,8 @@ Result<LinearGrid> linearize_in_order(const Grid& grid, const LinearizeOptions& 
     LinearGrid out = joined(blocks, grid.points.tuples());
     out.user_cells = cells->count();
     const auto types = out.grid.cells.types.as<std::uint8_t>();
-    if (std::ranges::none_of(types, core::is_contoured)) return nothing_left(grid, out.report);
+    if (std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
+        return nothing_left(grid, out.report);
     auto points = out.extend(grid.points, {.threads = core::threads_here()});
     if (!points) return points.error();
     out.grid.points = *std::move(points);
@@ -77,9 +81,11 @@ Result<LinearGrid> linearize_in_order(const Grid& grid, const LinearizeOptions& 
     return out;
 }
 
-Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
+} // namespace
+
+Result<LinearGrid> split_polyhedra(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
     const Grid grid{user.points, user.cells, {}, {}, user.point_numbers};
-    if (!has_cells_to_linearize(grid.cells)) {
+    if (!has_polyhedra(grid.cells)) {
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
         LinearGrid same;
@@ -88,19 +94,15 @@ Result<LinearGrid> linearize(const Grid& user, const LinearizeOptions& options, 
         same.user_cells = cells->count();
         return same;
     }
-    if (grid.point_numbers.empty()) return linearize_in_order(grid, options, progress);
+    if (grid.point_numbers.empty()) return split_in_order(grid, options, progress);
     const auto sorted = sort_by_numbers(grid, progress);
     if (!sorted) return sorted.error();
-    auto linear = linearize_in_order(sorted->grid, options, progress);
+    auto linear = split_in_order(sorted->grid, options, progress);
     if (!linear) return linear.error();
     return in_users_order(*std::move(linear), grid, sorted->original);
 }
 
-} // namespace
-
-} // namespace linear
-
-bool has_cells_to_linearize(const Cells& cells) {
+bool has_polyhedra(const Cells& cells) {
     if (cells.faces.empty() || cells.types.type() != ScalarType::uint8) return false;
     const auto types = cells.types.as<std::uint8_t>();
     std::atomic<bool> found{false};
@@ -110,6 +112,29 @@ bool has_cells_to_linearize(const Cells& cells) {
     });
     return found;
 }
+
+Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
+    auto split = split_polyhedra(grid, options, progress);
+    if (!split || !has_curved_cells(grid.cells)) return split;
+    return refined(*std::move(split), nullptr, {}, progress);
+}
+
+} // namespace linear
+
+bool is_curved(std::uint8_t vtk_type) noexcept { return linear::is_curved(vtk_type); }
+
+bool has_curved_cells(const Cells& cells) {
+    if (cells.types.empty() || cells.types.type() != ScalarType::uint8) return false;
+    const auto types = cells.types.as<std::uint8_t>();
+    std::atomic<bool> found{false};
+    core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
+        if (std::ranges::any_of(types.subspan(begin, end - begin), linear::is_curved))
+            found.store(true, std::memory_order_relaxed);
+    });
+    return found;
+}
+
+bool has_cells_to_linearize(const Cells& cells) { return linear::has_polyhedra(cells) || has_curved_cells(cells); }
 
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Run& run) {
     return core::carry_out("making linear cells", run,

@@ -35,6 +35,15 @@ inline constexpr std::array<std::uint8_t, 33> cut_above{0, 1, 3, 2, 8, 4, 6, 7, 
 inline constexpr std::array<std::uint8_t, 33> cut_below{0, 1, 3, 8, 0, 3, 2, 8, 4, 6, 7, 5, 8, 0, 4, 5, 1,
                                                         8, 2, 3, 7, 6, 8, 0, 2, 6, 4, 8, 1, 5, 7, 3, 8};
 
+/// The nodes of VTK's quadratic tetrahedron, each in the middle of two corners (of the same for a corner).
+inline constexpr std::array<std::array<std::uint8_t, 2>, 10> quadratic_tet{
+    {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+/// The nodes of VTK's triquadratic hexahedron, in half edges.
+inline constexpr std::array<std::array<std::uint8_t, 3>, 27> triquadratic{
+    {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0},
+     {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1},
+     {2, 2, 1}, {0, 2, 1}, {0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}}};
+
 inline constexpr auto t = CellType::tetrahedron, h = CellType::hexahedron, w = CellType::wedge, p = CellType::pyramid;
 inline constexpr std::array<CellType, 6> kuhn_types{t, t, t, t, t, t};
 inline constexpr std::array<CellType, 1> hex_types{h};
@@ -53,9 +62,9 @@ inline constexpr CubeCells pyramid_cube{tables::pyramid, tables::pyramid_types};
 /// The layers of a mixed grid from below, over and over: hexahedra; pyramids with their upper face cut into tets;
 /// wedges; pyramids with their lower face cut. So quads meet quads and triangles meet triangles, whatever the number of
 /// layers.
-inline constexpr std::array<CubeCells, 4> mixed_layers{
-    hex_cube, CubeCells{tables::cut_above, tables::cut_above_types}, wedge_cube,
-    CubeCells{tables::cut_below, tables::cut_below_types}};
+inline constexpr std::array<CubeCells, 4> mixed_layers{hex_cube, CubeCells{tables::cut_above, tables::cut_above_types},
+                                                       wedge_cube,
+                                                       CubeCells{tables::cut_below, tables::cut_below_types}};
 
 /// True when a cell of the cube uses its centre point.
 constexpr bool uses_centre(const CubeCells& cube) noexcept {

@@ -43,11 +43,23 @@ std::vector<float> graded_coordinates(std::uint64_t side) {
 
 } // namespace
 
+namespace {
+
+/// Onto a smooth image of the cube, with bulging faces.
+Position bent(const Position& at) {
+    const double x = at[0], y = at[1], z = at[2];
+    return {static_cast<float>(x + 0.15 * (1 - y * y) * z), static_cast<float>(y + 0.15 * (1 - x * x)),
+            static_cast<float>(z - 0.1 * x * y + 0.1 * (1 - x * x) * y)};
+}
+
+} // namespace
+
 Lattice::Lattice(const Shape& shape, std::uint64_t side, std::uint64_t seed)
     : side_(side),
       seed_(seed),
       corner_points_((side + 1) * (side + 1) * (side + 1)),
       perturbed_(shape.variant == Variant::perturbed || shape.variant == Variant::shuffled),
+      bent_(shape.variant == Variant::bent),
       across_(even_coordinates(side)),
       up_(shape.variant == Variant::layer ? graded_coordinates(side) : across_) {
     for (std::uint64_t k = 0; k < shape.layers.size(); ++k) {
@@ -62,6 +74,7 @@ Position Lattice::position(std::uint64_t point) const noexcept {
     if (point < corner_points_) {
         const std::uint64_t m = side_ + 1, i = point % m, j = point / m % m, k = point / (m * m);
         const Position at{across_[i], across_[j], up_[k]};
+        if (bent_) return bent(at);
         const bool inner = i > 0 && i < side_ && j > 0 && j < side_ && k > 0 && k < side_;
         return perturbed_ && inner ? moved(at, point) : at;
     }

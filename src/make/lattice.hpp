@@ -37,11 +37,11 @@ private:
     Position moved(const Position& at, std::uint64_t point) const noexcept;
 
     std::uint64_t side_, seed_, corner_points_;
-    bool perturbed_;
-    std::vector<float> across_, up_;             ///< coordinates along x and y, and along z
-    std::vector<std::uint64_t> centres_before_;  ///< within a period of layers
+    bool perturbed_, bent_;
+    std::vector<float> across_, up_;            ///< coordinates along x and y, and along z
+    std::vector<std::uint64_t> centres_before_; ///< within a period of layers
     std::uint64_t centres_per_period_ = 0;
-    std::vector<std::uint64_t> centre_layers_;   ///< layers with centres, within a period
+    std::vector<std::uint64_t> centre_layers_; ///< layers with centres, within a period
 };
 
 } // namespace isotet::make

@@ -51,13 +51,14 @@ public:
         : shape_(shape),
           options_(options),
           progress_(progress),
-          lattice_(shape, options.side, options.seed),
+          lattice_(shape, (shape.quadratic ? 2 : 1) * options.side, options.seed),
           shuffled_(shape.variant == Variant::shuffled),
           point_order_(lattice_.points(), options.seed, Stream::point_order) {
         layers_.resize(options.side + 1);
         for (std::uint64_t k = 0; k < options.side; ++k) {
             const CubeCells& cube = shape.layers[k % shape.layers.size()];
-            layers_[k + 1] = {layers_[k].cells + cube.types.size(), layers_[k].corners + cube.corners.size()};
+            const std::size_t corners = shape.quadratic ? cube.types.size() * nodes_per_cell() : cube.corners.size();
+            layers_[k + 1] = {layers_[k].cells + cube.types.size(), layers_[k].corners + corners};
         }
         const std::uint64_t cubes = options.side * options.side;
         for (Sizes& sizes : layers_) sizes = {sizes.cells * cubes, sizes.corners * cubes};
@@ -68,7 +69,8 @@ public:
     Result<Grid> make() {
         const bool narrow = lattice_.points() <= std::uint64_t{1} << 31;
         const Sizes total = layers_.back();
-        const std::uint64_t cell_bytes = shape_.uniform ? 0 : 1 + (total.corners < std::uint64_t{1} << 31 ? 4u : 8u);
+        const std::uint64_t cell_bytes =
+            shape_.uniform && !shape_.quadratic ? 0 : 1 + (total.corners < std::uint64_t{1} << 31 ? 4u : 8u);
         const std::uint64_t bytes = lattice_.points() * (12 + 4 * options_.fields.size()) +
                                     total.corners * (narrow ? 4u : 8u) + total.cells * cell_bytes;
         if (auto fits = core::require_memory("making the grid", bytes); !fits) return fits.error();
@@ -125,7 +127,10 @@ private:
     void cells(Cells& out) {
         core::Buffer<Index> connectivity(layers_.back().corners);
         out.uniform_type = shape_.layers[0].types[0];
-        if (shuffled_) shuffled_tets(connectivity.data());
+        if (shape_.quadratic) {
+            if (connectivity.size() < std::uint64_t{1} << 31) quadratic_cells<std::int32_t>(connectivity.data(), out);
+            else quadratic_cells<std::int64_t>(connectivity.data(), out);
+        } else if (shuffled_) shuffled_tets(connectivity.data());
         else if (shape_.uniform)
             for_cubes([&](const CubeCells& cube, const auto& corners, Sizes first) {
                 write_corners(cube, corners, connectivity.data() + first.corners);
@@ -151,6 +156,43 @@ private:
                 types[first.cells + cell] = type;
                 offset += static_cast<std::uint64_t>(core::corners_of(type));
             }
+        });
+        out.offsets = std::move(offsets).to_array();
+        out.types = std::move(types).to_array();
+    }
+
+    bool of_tets() const { return shape_.layers[0].types[0] == CellType::tetrahedron; }
+    std::size_t nodes_per_cell() const { return of_tets() ? 10 : 27; }
+
+    /// Quadratic cells on a lattice twice as fine: their nodes are lattice points.
+    template <class Offset, class Index>
+    void quadratic_cells(Index* connectivity, Cells& out) {
+        constexpr std::uint8_t quadratic_tetrahedron = 24, triquadratic_hexahedron = 29;
+        const std::size_t nodes = nodes_per_cell();
+        const std::uint64_t cells = layers_.back().cells, row = lattice_.side() + 1;
+        core::Buffer<Offset> offsets(cells + 1);
+        core::Buffer<std::uint8_t> types(cells);
+        for_all(cells + 1, [&](std::uint64_t cell) {
+            offsets[cell] = static_cast<Offset>(nodes * cell);
+            if (cell < cells) types[cell] = of_tets() ? quadratic_tetrahedron : triquadratic_hexahedron;
+        });
+        const std::uint64_t side = options_.side;
+        for_all(side * side * side, [&](std::uint64_t cube) {
+            const std::uint64_t i = cube % side, j = cube / side % side, k = cube / (side * side);
+            const std::uint64_t first = 2 * (i + row * (j + row * k));
+            Index* node = connectivity + cube * nodes * shape_.layers[0].types.size();
+            const auto add = [&](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+                *node++ = static_cast<Index>(first + x + row * (y + row * z));
+            };
+            if (!of_tets()) {
+                for (const auto& at : tables::triquadratic) add(at[0], at[1], at[2]);
+                return;
+            }
+            for (std::size_t tet = 0; tet < 6; ++tet)
+                for (const auto& [a, b] : tables::quadratic_tet) {
+                    const unsigned p = tables::kuhn[4 * tet + a], q = tables::kuhn[4 * tet + b];
+                    add((p & 1) + (q & 1), (p >> 1 & 1) + (q >> 1 & 1), (p >> 2) + (q >> 2));
+                }
         });
         out.offsets = std::move(offsets).to_array();
         out.types = std::move(types).to_array();

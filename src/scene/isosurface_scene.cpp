@@ -177,6 +177,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
     const bool card = device && device->info().kind != DeviceKind::software &&
                       options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
     const bool use_device = !wanted.draw && (required || (card && !in_memory && wanted.where == ExtractOn::best));
+    if (!use_device && !wanted.draw) options.refine = wanted.refine;
     if (use_device) {
         options.engine = vulkan_engine(*device);
         options.engine_required = required;

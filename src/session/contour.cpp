@@ -16,6 +16,7 @@
 #include "core/memory.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
+#include "session/curved_input.hpp"
 #include "session/fingerprint.hpp"
 #include "session/linear_input.hpp"
 
@@ -105,9 +106,10 @@ ContourUpdate update_for(const std::optional<Frame>& before, const std::optional
 } // namespace
 
 struct Contour::Data {
-    std::mutex mutex;   ///< of all that follows
+    std::mutex mutex; ///< of all that follows
     session::LinearInput linear;
-    ContourInput input; ///< with linear cells; without the grid when that is packed
+    session::CurvedInput curved; ///< where cells are refined in extract(): `input` is then what was refined last
+    ContourInput input;          ///< with linear cells; without the grid when that is packed
     ContourOptions options;
     FieldSample sample;
     std::uint64_t asked = 0; ///< surfaces so far
@@ -122,6 +124,13 @@ struct Contour::Data {
     std::vector<std::string> notes;
 
     void note_new_cells();
+    void start_over(session::CurvedInput next, FieldSample next_sample, const ContourOptions& next_options);
+    Result<void> refine_for(std::span<const double> isovalues, const Run& run);
+    const FieldReport& field_of_curved() {
+        if (!range) range = curved.field();
+        return *range;
+    }
+    std::shared_ptr<const LinearGrid> linear_grid() const { return curved ? curved.grid() : linear.grid(); }
     Method method_of_next(std::size_t isovalues) const;
     Result<void> prepare(std::size_t isovalues, const Run& run);
     Result<void> bring_up_to_date(const Run& run);
@@ -152,12 +161,45 @@ Result<ContourResult> extract_directly(const ContourInput& input, const ContourO
 } // namespace
 
 void Contour::Data::note_new_cells() {
-    if (linear.is_new()) std::ranges::move(linear.grid()->report.notes(), std::back_inserter(notes));
+    if (curved || !linear.is_new()) return;
+    std::ranges::move(linear.grid()->report.notes(), std::back_inserter(notes));
+    std::ranges::move(session::notes_on(linear.grid()->refinement), std::back_inserter(notes));
+}
+
+/// With an input that is refined when isovalues are known.
+void Contour::Data::start_over(session::CurvedInput next, FieldSample next_sample, const ContourOptions& next_options) {
+    grid.reset();
+    packed.reset();
+    range.reset();
+    linear = {};
+    input = {};
+    curved = std::move(next);
+    sample = std::move(next_sample);
+    options = next_options;
+    behind = ContourUpdate::grid;
+}
+
+/// Curved cells are refined, unless they are for these isovalues.
+Result<void> Contour::Data::refine_for(std::span<const double> isovalues, const Run& run) {
+    if (!curved || curved.is_good_for(isovalues)) return {};
+    const auto start = std::chrono::steady_clock::now();
+    grid.reset();
+    packed.reset();
+    input = {};
+    Result<ContourInput> refined = curved.refine(isovalues, run);
+    if (!refined) return refined.error();
+    input = *std::move(refined);
+    behind = ContourUpdate::grid;
+    std::ranges::move(curved.grid()->report.notes(), std::back_inserter(notes));
+    std::ranges::move(session::notes_on(curved.grid()->refinement), std::back_inserter(notes));
+    update_seconds += seconds_since(start);
+    return {};
 }
 
 Method Contour::Data::method_of_next(std::size_t isovalues) const {
     if (!options.engine->extracts_directly()) return Method::clusters;
     if (options.method) return *options.method;
+    if (curved) return Method::direct; // for a few isovalues
     if (direct_for_memory) return Method::direct;
     if (packed) return Method::clusters;
     const std::uint64_t surfaces = options.surfaces ? options.surfaces : asked + isovalues;
@@ -261,6 +303,7 @@ Result<void> Contour::Data::bring_up_to_date(const Run& run) {
 
 /// For so many more isovalues: afterwards method_of_next() tells what can be done.
 Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
+    if (curved && !curved.grid()) return {}; // extract() refines
     if (method_of_next(isovalues) == Method::direct) return {};
     if (packed && behind == ContourUpdate::nothing) return create_grid(run);
     const Result<void> ready = bring_up_to_date(run);
@@ -297,11 +340,16 @@ Result<Contour> Contour::create(ContourInput input, const ContourOptions& option
     return core::guarded("starting to contour", [&]() -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
         auto data = std::make_unique<Data>();
-        Result<ContourInput> linear = data->linear.make(std::move(input), {});
-        if (!linear) return linear.error();
-        data->input = *std::move(linear);
-        data->note_new_cells();
-        Result<FieldSample> sample = FieldSample::create(data->input.grid, data->input.field, options.split_cells);
+        if (options.refine && has_curved_cells(input.grid.cells)) {
+            if (auto taken = data->curved.take(std::move(input), options); !taken) return taken.error();
+        } else {
+            Result<ContourInput> linear = data->linear.make(std::move(input), {});
+            if (!linear) return linear.error();
+            data->input = *std::move(linear);
+            data->note_new_cells();
+        }
+        const ContourInput& first = data->curved ? data->curved.corners() : data->input;
+        Result<FieldSample> sample = FieldSample::create(first.grid, first.field, options.split_cells);
         if (!sample) return sample.error();
         data->options = options;
         data->sample = *std::move(sample);
@@ -328,11 +376,20 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
         if (auto ok = check(options); !ok) return ok.error();
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
+        if (options.refine && has_curved_cells(input.grid.cells)) {
+            session::CurvedInput curved;
+            if (auto taken = curved.take(std::move(input), options); !taken) return taken.error();
+            const ContourInput& corners = curved.corners();
+            Result<FieldSample> sample = FieldSample::create(corners.grid, corners.field, options.split_cells);
+            if (!sample) return sample.error();
+            data.start_over(std::move(curved), *std::move(sample), options);
+            return ContourUpdate::grid;
+        }
         session::LinearInput linear = data.linear;
         if (Result<ContourInput> made = linear.make(std::move(input), run); made) input = *std::move(made);
         else return made.error();
         ContourUpdate update = ContourUpdate::grid;
-        const bool usable = data.packed && data.options.split_cells == options.split_cells &&
+        const bool usable = data.packed && !data.curved && data.options.split_cells == options.split_cells &&
                             has_what_is_needed(*data.packed, options, input) &&
                             data.packed->user_point_count() == input.grid.points.tuples();
         if (usable && data.behind != ContourUpdate::grid) {
@@ -358,6 +415,8 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
         data.options = options;
         data.behind = update;
         data.linear = std::move(linear);
+        if (data.curved) data.packed.reset();
+        data.curved = {};
         data.note_new_cells();
         data.input = std::move(input);
         if (update == ContourUpdate::nothing && options.method != Method::direct) data.input.grid = {};
@@ -381,10 +440,12 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         Data& data = *data_;
         std::unique_lock lock(data.mutex);
         data.asked += isovalues.size();
+        if (auto ok = data.refine_for(isovalues, run); !ok) return ok.error();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         const auto start = std::chrono::steady_clock::now();
         const Method method = data.method_of_next(0);
-        const std::shared_ptr<const LinearGrid> linear = data.linear.grid();
+        const std::shared_ptr<const LinearGrid> linear = data.linear_grid();
+        const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
         ContourResult head;
         head.notes = std::exchange(data.notes, {});
         head.pack_seconds = std::exchange(data.update_seconds, 0);
@@ -414,7 +475,17 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             }
         }
         if (!result) return result;
-        if (linear) session::map_source_cells(*linear, result->surfaces);
+        if (linear) {
+            session::map_source_cells(*linear, result->surfaces);
+            result->refinement = linear->refinement;
+            result->cells_left_out += linear->refinement.left_out;
+        }
+        if (whole) {
+            result->field.lower = whole->lower;
+            result->field.upper = whole->upper;
+            result->field.no_data = whole->no_data;
+            result->field.infinite = whole->infinite;
+        }
         result->method = method;
         result->extract_seconds = seconds_since(start);
         result->pack_seconds = head.pack_seconds;
@@ -430,6 +501,8 @@ Result<void> Contour::use_grid(std::size_t surfaces,
         if (!data_) return moved_from("the session");
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
+        if (data.curved && !data.curved.grid())
+            if (auto ok = data.refine_for({}, run); !ok) return ok;
         if (auto ok = data.prepare(surfaces, run); !ok) return ok;
         if (!data.grid)
             return invalid_argument(
@@ -471,6 +544,7 @@ Result<FieldReport> Contour::field(const Run& run) {
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         if (data.range) return *data.range;
+        if (data.curved) return data.field_of_curved();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         if (data.method_of_next(0) == Method::clusters) return data.packed->field();
         const Result<ContourResult> looked = extract_directly(data.input, data.options, {}, run);
@@ -489,7 +563,7 @@ std::optional<PackedGrid> Contour::packed() const {
 std::shared_ptr<const LinearGrid> Contour::linear_grid() const {
     if (!data_) return nullptr;
     const std::lock_guard lock(data_->mutex);
-    return data_->linear.grid();
+    return data_->linear_grid();
 }
 
 std::string_view Contour::engine() const {

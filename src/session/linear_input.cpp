@@ -56,9 +56,16 @@ Result<ContourInput> LinearInput::make(ContourInput input, const Run& run) {
         copy.grid.points = *std::move(moved);
         next.linear_ = std::make_shared<const LinearGrid>(std::move(copy));
     }
-    input.grid = next.linear_->grid;
+    auto made = on_linear_grid(std::move(input), *next.linear_, run);
+    if (!made) return made;
+    *this = std::move(next);
+    return made;
+}
+
+Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear, const Run& run) {
+    input.grid = linear.grid;
     const auto replace = [&](Array& array, bool of_cells) -> Result<void> {
-        auto longer = of_cells ? next.linear_->of_cells(array, run) : next.linear_->extend(array, run);
+        auto longer = of_cells ? linear.of_cells(array, run) : linear.extend(array, run);
         if (!longer) return longer.error();
         array = *std::move(longer);
         return {};
@@ -68,7 +75,6 @@ Result<ContourInput> LinearInput::make(ContourInput input, const Run& run) {
         if (auto done = replace(field.values, false); !done) return done.error();
     for (Field& field : input.cell_fields)
         if (auto done = replace(field.values, true); !done) return done.error();
-    *this = std::move(next);
     return input;
 }
 

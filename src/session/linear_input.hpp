@@ -38,6 +38,10 @@ private:
     bool is_new_ = false;
 };
 
+/// The input on a linear grid that was made of its grid: fields are continued for derived points and cells.
+/// Errors   as LinearGrid::extend()
+Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear, const Run& run);
+
 /// Writes the user's cell numbers over those of linear cells.
 void map_source_cells(const LinearGrid& linear, std::vector<Extraction>& surfaces);
 

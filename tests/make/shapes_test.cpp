@@ -189,6 +189,9 @@ TEST(MakeGrid, HasAsManyPointsAndCellsAsTheShapeSays) {
         {"hex", {343, 216}},
         {"wedge", {343, 432}},
         {"pyramid", {559, 1296}},
+        {"tet10", {2197, 1296}},
+        {"curved", {2197, 1296}},
+        {"hex27", {2197, 216}},
         // two layers of hexahedra, two of pyramids and tets under wedges, one of each above, of 36 cubes
         {"mixed", {343 + 3 * 36, 36 * (2 * 1 + 2 * 7 + 2 + 7)}}};
     for (const std::string& shape : make_shapes()) {

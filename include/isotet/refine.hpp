@@ -1,0 +1,58 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Quadratic cells as linear tets, as many as a tolerance needs, with a proven bound.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <isotet/array.hpp>
+#include <isotet/export.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+struct RefineOptions {
+    /// Largest error of the field, in its unit; 0: `relative_tolerance` times its range.
+    double tolerance = 0;
+    double relative_tolerance = 1e-3;
+    /// Largest distance of the tets from the curved cells, in the points' unit; 0: edges leave the curve by at most a
+    /// hundredth of their length.
+    double geometry_tolerance = 0;
+    /// Only what these can meet is kept: the grid is good for them alone. Empty: all is kept.
+    std::vector<double> isovalues = {};
+    /// More tets than this are an error; 0: as many as free memory holds.
+    std::uint64_t max_tets = 0;
+};
+
+/// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the
+/// piecewise quadratic field by at most the tolerance.
+///
+/// The piecewise quadratic field is the interpolant through the nodes of a cell, on the tets into which it is split by the
+/// rule of split(): the field itself for quadratic tetrahedra, and for every field that is quadratic in the cell; of third
+/// order else. Tets are bisected at the edge that deviates most, in
+/// steps of 4 times, of several at the longest, ties by point numbers: this depends on edges alone, so neighbours agree.
+///
+/// `grid`       its fields are not looked at
+/// `field`      one scalar a point; quadratic tets with a node that is not finite are dropped
+/// Guarantees   conforming; the field's error is at most LinearGrid::refinement.field_bound, for the tets that are kept; the
+///              same bytes for any thread count; with isovalues the same surfaces of these as without, to the triangle
+/// Cost         in proportion to the tets that it makes; 24 bytes a tet and 12 a point, and twice that for a while
+/// Errors       as linearize(); invalid_argument for a tolerance that is negative or not finite, or a field that does not fit;
+///              out_of_memory, before memory runs out, where the tolerance asks for too many tets; cancelled
+/// Threads      safe from many threads on one grid
+/// Method       docs/cells.md
+ISOTET_API Result<LinearGrid> refine(const Grid& grid, const PointField& field, const RefineOptions& options = {},
+                                     const Run& run = {});
+
+/// How far another field, linear in each tet of a grid of linearize() or refine(), is at most from the piecewise quadratic one.
+///
+/// `values`     one scalar a user's point
+/// Cost         a pass over the tets
+/// Errors       invalid_argument when the values do not fit; out_of_memory; cancelled
+ISOTET_API Result<double> field_bound(const LinearGrid& linear, const Array& values, const Run& run = {});
+
+} // namespace isotet

@@ -1,0 +1,97 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Ordered bisection of quadratic tets: which edge is bisected next follows from the edges alone, so neighbours agree.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <isotet/progress.hpp>
+
+#include "linear/node_values.hpp"
+#include "linear/place.hpp"
+#include "linear/quadratic.hpp"
+
+namespace isotet::linear {
+
+struct BisectionRule {
+    bool nodes_only = false; ///< bisect just the edges that have nodes; fields are not looked at
+    double deviation = 0;    ///< an edge is bisected where its middle is farther than this from the mean of its ends
+    double length = 0;       ///< the same for places; 0: by `bend`
+    double bend = 0.01;      ///< the same for places, in lengths of the edge
+    std::span<const double> isovalues; ///< ascending; tets that none can meet are dropped; empty: none is
+};
+
+/// What has become of some quadratic tets.
+struct Bisected {
+    std::vector<Place> places;                      ///< of points, each once in a quadratic tet
+    std::vector<std::uint32_t> parents;             ///< of points, the quadratic tet
+    std::vector<std::array<std::uint32_t, 4>> tets; ///< points
+    std::vector<std::uint32_t> children;            ///< tets of each quadratic tet, in order
+    double deviation = 0, length = 0;               ///< largest that are left at an edge
+    std::uint64_t not_finite = 0;                   ///< quadratic tets dropped
+    bool too_fine = false;                          ///< an edge was too short to be bisected further
+};
+
+/// Limits that all threads share.
+struct BisectionLimits {
+    std::uint64_t max_tets = 0;
+    std::atomic<std::uint64_t> tets{0};
+    std::atomic<bool> exceeded{false};
+};
+
+/// Bisects one quadratic tet after another. Borrows all it is given.
+class Bisector {
+public:
+    Bisector(const QuadraticTets& grid, const std::array<NodeValues, 3>& points, const NodeValues* field,
+             const BisectionRule& rule, BisectionLimits& limits, const Progress& progress);
+
+    /// Adds the tets that quadratic tet `index` becomes.
+    void bisect(std::uint32_t index, Bisected& out);
+
+private:
+    /// Bezier values of the field and of x, y, z; and where the corners are.
+    struct Part {
+        std::array<std::array<double, 10>, 4> values;
+        std::array<Place, 4> corners;
+    };
+    struct Choice {
+        int grade = -1;
+        double length2 = -1;
+        Place high{}, low{};
+        Place middle{};
+        std::size_t edge = 6;
+    };
+
+    bool can_be_met(double lower, double upper) const;
+    bool is_met(const Part& part) const;
+    double excess_of(const Part& part, std::size_t edge, double length2) const;
+    Choice first_marked(const Part& part);
+    void divide(const Part& part);
+    void emit(const Part& part);
+    std::uint32_t number_of(const Place& place);
+    void forget_numbers();
+    void order_points(std::size_t first_point, std::size_t first_tet);
+
+    const QuadraticTets& grid_;
+    const std::array<NodeValues, 3>& points_;
+    const NodeValues* field_;
+    const BisectionRule& rule_;
+    BisectionLimits& limits_;
+    const Progress& progress_;
+    Bisected* out_ = nullptr;
+    const QuadraticTet* tet_ = nullptr;
+    std::uint32_t index_ = 0;
+    std::uint64_t uncounted_ = 0;
+    bool stopped_ = false;
+    std::vector<Place> slots_; ///< hash of the places of the tet at hand
+    std::vector<std::uint32_t> slot_numbers_;
+    std::uint64_t used_slots_ = 0;
+    std::vector<std::pair<Place, std::uint32_t>> order_;
+    std::vector<std::uint32_t> rank_;
+};
+
+} // namespace isotet::linear

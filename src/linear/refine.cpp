@@ -1,0 +1,174 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/refine.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/carry_out.hpp"
+#include "core/errors.hpp"
+#include "core/memory.hpp"
+#include "core/parallel.hpp"
+#include "linear/bisection.hpp"
+#include "linear/refine.hpp"
+#include "linear/weld.hpp"
+
+namespace isotet {
+
+namespace linear {
+
+namespace {
+
+/// The largest error is at most this times the largest deviation at the middle of an edge: the weights' products of a tet
+/// sum up to at most 3/8.
+constexpr double error_per_deviation = 1.5;
+
+constexpr std::uint64_t bytes_per_made_tet = 72; ///< with its share of points, while blocks are put together
+
+Error refining_cancelled() { return {ErrorCode::cancelled, "refining was cancelled"}; }
+
+/// Upper less lower end of the finite values at the nodes.
+double range_of(const QuadraticTets& tets, const NodeValues& values) {
+    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+    for (const QuadraticTet& tet : tets.tets)
+        for (const double value : values.of(tet)) {
+            if (!std::isfinite(value)) continue;
+            lower = std::min(lower, value);
+            upper = std::max(upper, value);
+        }
+    return lower <= upper ? upper - lower : 0;
+}
+
+Result<void> check_options(const RefineOptions& options) {
+    for (const auto& [name, value] : {std::pair{"tolerance", options.tolerance},
+                                      {"relative tolerance", options.relative_tolerance},
+                                      {"geometry tolerance", options.geometry_tolerance}})
+        if (!std::isfinite(value) || value < 0)
+            return invalid_argument(fmt::format("the {} is {}, but must be finite and not negative", name, value));
+    if (options.tolerance == 0 && options.relative_tolerance == 0)
+        return invalid_argument("tolerance and relative tolerance are both 0, but one must be above");
+    for (const double isovalue : options.isovalues)
+        if (!std::isfinite(isovalue))
+            return invalid_argument(fmt::format("an isovalue is {}, but must be finite", isovalue));
+    return {};
+}
+
+/// The blocks' reports together.
+RefinementReport reported(const std::vector<Bisected>& blocks, const QuadraticTets& tets) {
+    RefinementReport report;
+    report.curved_cells = tets.curved;
+    report.unknown_cells = tets.unknown;
+    report.left_out = tets.left_out;
+    report.quadratic_tets = tets.tets.size();
+    for (const Bisected& block : blocks) {
+        report.tets += block.tets.size();
+        report.not_finite += block.not_finite;
+        report.field_bound = std::max(report.field_bound, error_per_deviation * block.deviation);
+        report.geometry_bound = std::max(report.geometry_bound, error_per_deviation * block.length);
+        report.too_fine |= block.too_fine;
+    }
+    return report;
+}
+
+} // namespace
+
+Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOptions& options,
+                           const Progress& progress) {
+    auto tets = quadratic_tets(before.grid, progress);
+    if (!tets) return tets.error();
+    progress("refine", 0.1);
+    std::array<NodeValues, 3> points;
+    for (std::size_t k = 0; k < 3; ++k) points[k] = NodeValues(before.grid.points, tets->hidden, k);
+
+    BisectionRule rule;
+    rule.nodes_only = field == nullptr;
+    rule.length = options.geometry_tolerance / error_per_deviation;
+    std::vector<double> isovalues = options.isovalues;
+    std::ranges::sort(isovalues);
+    rule.isovalues = isovalues;
+    Array longer;
+    NodeValues values;
+    double tolerance = 0;
+    if (field) {
+        auto extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
+        if (!extended) return extended.error();
+        longer = *std::move(extended);
+        values = NodeValues(longer, tets->hidden);
+        const double range = range_of(*tets, values);
+        tolerance = options.tolerance > 0 ? options.tolerance : options.relative_tolerance * range;
+        constexpr double finest = 0x1p-44; // of the range: beyond, rounding is all that is left
+        rule.deviation = std::max(tolerance, finest * range) / error_per_deviation;
+    }
+
+    BisectionLimits limits;
+    const std::uint64_t free = core::free_memory();
+    limits.max_tets = free / bytes_per_made_tet;
+    if (options.max_tets > 0) limits.max_tets = std::min(limits.max_tets, options.max_tets);
+    const std::size_t count = tets->tets.size(), per_block = std::clamp<std::size_t>(count / 512, 1, 1024);
+    std::vector<Bisected> blocks((count + per_block - 1) / per_block);
+    core::parallel_pieces(blocks.size(), 1, progress, [&](std::size_t begin, std::size_t end) {
+        Bisector bisector(*tets, points, field ? &values : nullptr, rule, limits, progress);
+        for (std::size_t b = begin; b < end && !limits.exceeded; ++b)
+            for (std::size_t i = b * per_block; i < std::min(count, (b + 1) * per_block); ++i)
+                bisector.bisect(static_cast<std::uint32_t>(i), blocks[b]);
+    });
+    if (progress.cancelled()) return refining_cancelled();
+    if (limits.exceeded)
+        return Error{
+            ErrorCode::out_of_memory,
+            fmt::format("refining to {:g} makes over {} tets, the most that {} allow: a larger tolerance makes "
+                        "fewer",
+                        tolerance, limits.max_tets,
+                        options.max_tets == limits.max_tets ? "the options" : format_bytes(free) + " of memory")};
+    progress("refine", 0.6);
+    RefinementReport report = reported(blocks, *tets);
+    auto made = welded(blocks, *tets, before.grid.points.tuples(), progress);
+    if (!made) return made.error();
+    progress("refine", 0.9);
+    LinearGrid& out = *made;
+    report.points = out.refined.count();
+    report.refined = field != nullptr;
+    report.tolerance = tolerance;
+    report.isovalues = std::move(isovalues);
+    out.refinement = std::move(report);
+    out.user_points = before.user_points;
+    out.user_cells = before.user_cells;
+    out.derived = before.derived;
+    out.report = before.report;
+    if (!before.source_cells.empty()) {
+        const auto users = before.source_cells.as<std::uint64_t>(), mine = out.source_cells.as<std::uint64_t>();
+        std::vector<std::uint64_t> composed(mine.size());
+        for (std::size_t i = 0; i < mine.size(); ++i) composed[i] = users[mine[i]];
+        out.source_cells = Array::own(std::move(composed));
+    }
+    Array user_points = before.grid.points;
+    if (before.derived.count() > 0)
+        user_points = Array(user_points.type(), user_points.data(), before.user_points, 3,
+                            std::make_shared<Array>(before.grid.points));
+    auto placed = out.extend(user_points, {.threads = core::threads_here(), .progress = {}});
+    if (!placed) return placed.error();
+    out.grid.points = *std::move(placed);
+    progress("refine", 1);
+    return made;
+}
+
+} // namespace linear
+
+Result<LinearGrid> refine(const Grid& grid, const PointField& field, const RefineOptions& options, const Run& run) {
+    return core::carry_out("refining curved cells", run, [&](const Progress& progress) -> Result<LinearGrid> {
+        if (auto sound = linear::check_options(options); !sound) return sound.error();
+        if (field.values.components() != 1 || field.values.tuples() != grid.points.tuples())
+            return invalid_argument(
+                fmt::format("the field '{}' has {} tuples of {} components, but must have one scalar "
+                            "for each of the {} points",
+                            field.name, field.values.tuples(), field.values.components(), grid.points.tuples()));
+        auto split = linear::split_polyhedra(grid, {}, progress);
+        if (!split || !has_curved_cells(grid.cells)) return split;
+        return linear::refined(*std::move(split), &field.values, options, progress);
+    });
+}
+
+} // namespace isotet
