@@ -49,7 +49,8 @@ isotet::Result<void> Block::take(vtkUnstructuredGrid* grid, vtkDataArray* scalar
     input_ = {};
     input_.points = points_.of(grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr);
     input_.cells = cells_.own();
-    contoured_ = {.name = scalars->GetName() ? scalars->GetName() : "scalars", .values = field_.of(scalars)};
+    contoured_.name = scalars->GetName() ? scalars->GetName() : "scalars";
+    contoured_.values = field_.of(scalars);
     numbers_ = global_ids_.of(grid->GetPointData()->GetGlobalIds());
     const std::size_t carried_before = carried_.size();
     vtkPointData* const point_data = grid->GetPointData();

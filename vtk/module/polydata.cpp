@@ -37,9 +37,10 @@ isotet::Array in_precision(const isotet::Array& positions, const Wishes& wishes)
     return is_single ? as_float64(positions) : as_float32(positions);
 }
 
-/// Triangles in memory that VTK shares. `Index` is int32 or int64, `Values` the array of VTK for it.
-template <class Index, class Values>
+/// Triangles in memory that VTK shares. `Values` is the array of VTK for their integers, or signed ones as wide.
+template <class Values>
 void set_triangles(vtkCellArray* cells, const isotet::Array& triangles) {
+    using Index = typename Values::ValueType;
     vtkNew<Values> corners, offsets;
     const auto count = static_cast<vtkIdType>(triangles.tuples());
     lend(corners, isotet::Array(isotet::scalar_type_of<Index>(), triangles.data(), triangles.size(), 1,
@@ -56,13 +57,13 @@ vtkSmartPointer<vtkCellArray> triangles_of(const isotet::Surface& surface) {
     isotet::Array triangles = surface.triangles;
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (triangles.type() != isotet::ScalarType::uint32) {
-        set_triangles<std::int64_t, vtkTypeInt64Array>(cells, triangles);
+        set_triangles<vtkTypeInt64Array>(cells, triangles);
     } else if (surface.vertex_count() <= most && triangles.size() <= most) {
-        set_triangles<std::int32_t, vtkTypeInt32Array>(cells, triangles);
+        set_triangles<vtkTypeInt32Array>(cells, triangles);
     } else {
         const auto narrow = triangles.as<std::uint32_t>();
         triangles = isotet::Array::own(std::vector<std::int64_t>(narrow.begin(), narrow.end()), 3);
-        set_triangles<std::int64_t, vtkTypeInt64Array>(cells, triangles);
+        set_triangles<vtkTypeInt64Array>(cells, triangles);
     }
     return cells;
 }

@@ -10,6 +10,7 @@
 #include "vtkContourValues.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
