@@ -45,9 +45,9 @@ isotet::Result<void> Block::take(vtkUnstructuredGrid* grid, vtkDataArray* scalar
     grid_ = grid;
     scalars_ = scalars;
     wishes_ = wishes;
-    if (auto ok = cells_.take(grid); !ok) return ok;
     input_ = {};
     input_.points = points_.of(grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr);
+    if (auto ok = cells_.take(grid, input_.points); !ok) return ok;
     input_.cells = cells_.own();
     contoured_.name = scalars->GetName() ? scalars->GetName() : "scalars";
     contoured_.values = field_.of(scalars);

@@ -75,7 +75,7 @@ std::string Blocks::make_frame(const Ranks& ranks, const isotet::Run& run) {
     is_framed_ = true;
     const auto whole = merge_common(surveys);
     if (whole && whole->field_count == 0) return {}; // nowhere is a cell
-    if (whole)
+    if (whole && whole->field_count <= isotet::Survey::max_fields)
         if (const auto frame = isotet::make_frame({{*whole}})) frame_ = *frame;
     if (!frame_)
         notes_.push_back("surfaces of blocks may not fit where these meet: their points or scalars are not of one type");

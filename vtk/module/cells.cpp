@@ -60,7 +60,7 @@ void write_faces(vtkUnstructuredGrid* grid, std::vector<std::int64_t>& faces, st
 
 } // namespace
 
-isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid) {
+isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid, const isotet::Array& points) {
     vtkCellArray* const cells = grid->GetCells();
     const isotet::Array connectivity = connectivity_.of(cells ? cells->GetConnectivityArray() : nullptr);
     const isotet::Array offsets = offsets_.of(cells ? cells->GetOffsetsArray() : nullptr);
@@ -74,7 +74,7 @@ isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid) {
     own_ = all_;
     has_ghosts_ = has_ghost(marks_);
     if (has_ghosts_)
-        if (auto ok = leave_out_ghosts(); !ok) return ok;
+        if (auto ok = leave_out_ghosts(points); !ok) return ok;
     if (types.tuples() > 0 && kinds_of(types) == tetrahedra()) {
         all_.offsets = {}; // four corners a cell
         all_.types = {};
@@ -106,8 +106,9 @@ void SharedCells::share_faces(vtkUnstructuredGrid* grid) {
     all_.face_offsets = isotet::Array::own(std::move(first));
 }
 
-isotet::Result<void> SharedCells::leave_out_ghosts() {
+isotet::Result<void> SharedCells::leave_out_ghosts(const isotet::Array& points) {
     isotet::Grid grid;
+    grid.points = points;
     grid.cells = all_;
     const isotet::Result<isotet::Grid> without = isotet::leave_out_cells(grid, marks_);
     if (!without) {

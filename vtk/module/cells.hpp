@@ -22,7 +22,7 @@ public:
     /// Shares the arrays of cells, types, faces and ghost marks.
     /// Cost     nothing while they are the same; else a pass over the types, and over ghost marks where there are some
     /// Errors   invalid_data where arrays do not fit together
-    isotet::Result<void> take(vtkUnstructuredGrid* grid);
+    isotet::Result<void> take(vtkUnstructuredGrid* grid, const isotet::Array& points);
     void release();
 
     /// All cells; without those that VTK's ghost marks give to others, or hide.
@@ -42,7 +42,7 @@ public:
 
 private:
     void share_faces(vtkUnstructuredGrid* grid);
-    isotet::Result<void> leave_out_ghosts();
+    isotet::Result<void> leave_out_ghosts(const isotet::Array& points);
 
     SharedArray connectivity_, offsets_, types_, faces_, face_places_, ghosts_;
     isotet::Cells all_, own_;
