@@ -112,6 +112,7 @@ isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, b
     isotet::Result<isotet::ContourResult> result = session_->extract(wishes_.isovalues, run);
     if (!result) return result.error();
     method_ = result->method;
+    extract_seconds_ = result->extract_seconds;
     std::vector<isotet::Surface> surfaces;
     for (isotet::Extraction& extraction : result->surfaces) {
         surfaces.push_back(std::move(extraction.surface));

@@ -45,10 +45,12 @@ public:
     /// Lets go of VTK's arrays, which only take() may give back.
     void release();
 
-    /// Of the last extract(): what had to be done, by which method, and the bytes of the packed grid.
+    /// Of the last extract(): what had to be done, by which method, the bytes of the packed grid, and the
+    /// seconds that the library extracted.
     isotet::ContourUpdate update() const { return update_; }
     isotet::Method method() const { return method_; }
     std::uint64_t packed_bytes() const;
+    double extract_seconds() const { return extract_seconds_; }
 
 private:
     isotet::Result<void> set(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run);
@@ -69,6 +71,7 @@ private:
     std::optional<isotet::Contour> session_;
     isotet::ContourUpdate update_ = isotet::ContourUpdate::grid;
     isotet::Method method_ = isotet::Method::direct;
+    double extract_seconds_ = 0;
 };
 
 } // namespace isotet_vtk

@@ -145,4 +145,10 @@ std::uint64_t Blocks::packed_bytes() const {
     return bytes;
 }
 
+double Blocks::extract_seconds() const {
+    double seconds = 0;
+    for (const auto& [index, block] : blocks_) seconds += block.extract_seconds();
+    return seconds;
+}
+
 } // namespace isotet_vtk

@@ -40,6 +40,7 @@ public:
     isotet::ContourUpdate update() const { return update_; }
     bool all_packed() const;
     std::uint64_t packed_bytes() const;
+    double extract_seconds() const;
 
 private:
     std::string take(const std::vector<BlockTask>& tasks, const Wishes& wishes);

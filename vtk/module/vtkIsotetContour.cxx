@@ -179,6 +179,11 @@ vtkTypeInt64 vtkIsotetContour::GetPackedBytes()
   return static_cast<vtkTypeInt64>(this->Internal->Blocks.packed_bytes());
 }
 
+double vtkIsotetContour::GetExtractSeconds()
+{
+  return this->Internal->Blocks.extract_seconds();
+}
+
 //------------------------------------------------------------------------------
 int vtkIsotetContour::FillInputPortInformation(int, vtkInformation* info)
 {

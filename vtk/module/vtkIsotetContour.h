@@ -18,7 +18,7 @@
  * scalars with components, and cells that are neither linear 3D cells nor polyhedra.
  *
  * Differs from vtkContourFilter: vertices are welded exactly; triangles are counter-clockwise, and normals point, towards
- * higher values; normals are gradients of the array; points without data (NaN) give no triangles; cells of integer point
+ * higher values; normals are gradients of the array; points without data (NaN) give no triangles; integer point
  * arrays become float64.
  */
 #ifndef vtkIsotetContour_h
@@ -124,6 +124,11 @@ public:
    */
   bool GetUsedPackedGrids();
   vtkTypeInt64 GetPackedBytes();
+
+  /**
+   * The seconds that isotet extracted in the last execution: without packing, and what was done for VTK.
+   */
+  double GetExtractSeconds();
 
 protected:
   vtkIsotetContour();
