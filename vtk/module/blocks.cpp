@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <isotet/memory.hpp>
+
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -126,6 +128,7 @@ std::string Blocks::contour(const std::vector<BlockTask>& tasks, const Wishes& w
     if (!error.empty())
         for (const BlockTask& task : tasks) task.out->Initialize();
     for (auto& [index, block] : blocks_) block.release();
+    if (update_ == isotet::ContourUpdate::grid) isotet::release_memory(); // packing leaves more than surfaces need
     return error;
 }
 
