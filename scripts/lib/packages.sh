@@ -8,9 +8,12 @@ readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libfreet
 readonly packages_for_software_vulkan=(
     libdrm2 libexpat1 libllvm15 libwayland-client0 libx11-xcb1 libxcb-dri3-0 libxcb-present0 libxcb-randr0 libxcb-shm0
     libxcb-sync1 libxcb-xfixes0 libxcb1 libxshmfence1 libzstd1 zlib1g)
-readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers "${packages_for_software_vulkan[@]}")
+# What the tests of VTK's filter run in.
+readonly packages_to_test_vtk=(python3-vtk9 python3-mpi4py python3-numpy openmpi-bin libopenmpi-dev)
+readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers "${packages_for_software_vulkan[@]}" "${packages_to_test_vtk[@]}")
 readonly packages_for_python=(python3-dev python3-venv)
-readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils chromium)
+readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils chromium xvfb xauth
+    libgl1-mesa-dri)
 
 missing_packages() {
     local package

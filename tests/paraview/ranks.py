@@ -69,5 +69,6 @@ def write_whole():
 if sys.argv[1] == "write":
     write_pieces(3)
     write_whole()
+    print("ok")
 else:
     check()
