@@ -12,7 +12,7 @@ readonly packages_for_software_vulkan=(
 readonly packages_to_test_vtk=(python3-vtk9 python3-mpi4py python3-numpy openmpi-bin libopenmpi-dev)
 readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers "${packages_for_software_vulkan[@]}" "${packages_to_test_vtk[@]}")
 readonly packages_for_python=(python3-dev python3-venv)
-readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils chromium xvfb xauth
+readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils chromium xvfb
     libgl1-mesa-dri)
 
 missing_packages() {

@@ -6,17 +6,17 @@ from support import *
 load()
 points, cells, field = lattice(32)
 wave = (np.sin(12 * points[:, 2]) * np.cos(9 * points[:, 1])).astype(np.float32)
-filter = contour(made(grid_of(points, cells, {"r": field, "wave": wave})), [0.2, 0.42])
+filter = contour(made(grid_of(points, cells, {"r": field, "wave": wave})), [0.2, 0.3, 0.4])
 clip = simple.Clip(Input=filter, ClipType="Plane")
-clip.ClipType.Origin, clip.ClipType.Normal = [0.5, 0.5, 0.5], [0.3, 1, -0.2]
+clip.ClipType.Origin, clip.ClipType.Normal = [0.5, 0.5, 0.5], [0.45, -1, 0.35]
 view = simple.CreateRenderView(ViewSize=[640, 480], Background=[1, 1, 1], UseColorPaletteForBackground=0, OrientationAxesVisibility=0)
 shown = simple.Show(clip, view)
 simple.ColorBy(shown, ("POINTS", "wave"))
 shown.SetScalarBarVisibility(view, False)
 simple.ResetCamera(view)
-view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [2.0, -1.1, 1.6], [0.5, 0.5, 0.47], [0, 0, 1]
-view.CameraParallelScale = 0.5
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0.0, 2.2, 0.1], [0.5, 0.4, 0.47], [0, 0, 1]
 simple.ResetCamera(view)
+view.GetActiveCamera().Zoom(1.5)
 simple.SaveScreenshot(sys.argv[1], view)
 if ranks == 1:
     from vtkmodules.vtkIOImage import vtkPNGReader
