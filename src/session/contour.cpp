@@ -122,7 +122,7 @@ ContourUpdate update_for(const std::optional<Frame>& before, const std::optional
 } // namespace
 
 struct Contour::Data {
-    std::mutex mutex;   ///< of all that follows
+    std::mutex mutex; ///< of all that follows
     session::LinearInput linear;
     ContourInput input; ///< with linear cells; without the grid when that is packed
     ContourOptions options;

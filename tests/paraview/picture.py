@@ -14,9 +14,9 @@ shown = simple.Show(clip, view)
 simple.ColorBy(shown, ("POINTS", "wave"))
 shown.SetScalarBarVisibility(view, False)
 simple.ResetCamera(view)
-view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0.0, 2.2, 0.1], [0.5, 0.4, 0.47], [0, 0, 1]
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0.9, -1.4, 1.1], [0.5, 0.5, 0.47], [0, 0, 1]
 simple.ResetCamera(view)
-view.GetActiveCamera().Zoom(1.5)
+view.GetActiveCamera().Zoom(1.3)
 simple.SaveScreenshot(sys.argv[1], view)
 if ranks == 1:
     from vtkmodules.vtkIOImage import vtkPNGReader

@@ -122,7 +122,8 @@ void lend(vtkDataArray* array, const isotet::Array& values) {
         const std::lock_guard lock(all.mutex);
         all.owners.emplace(memory, values);
     }
-    array->SetVoidArray(memory, static_cast<vtkIdType>(values.size()), 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
+    array->SetVoidArray(memory, static_cast<vtkIdType>(values.size()), 0,
+                        vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
     array->SetArrayFreeFunction(&give_back);
 }
 

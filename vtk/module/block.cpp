@@ -106,8 +106,8 @@ isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool 
     return {};
 }
 
-isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run,
-                                    vtkPolyData* out) {
+isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, bool with_numbers,
+                                    const isotet::Run& run, vtkPolyData* out) {
     if (auto ok = set(frame, with_numbers, run); !ok) return ok;
     isotet::Result<isotet::ContourResult> result = session_->extract(wishes_.isovalues, run);
     if (!result) return result.error();

@@ -48,7 +48,8 @@ std::string Blocks::take(const std::vector<BlockTask>& tasks, const Wishes& wish
     });
     std::string error;
     for (const BlockTask& task : tasks)
-        if (auto ok = blocks_[task.index].take(task.grid, task.scalars, wishes); !ok && error.empty()) error = ok.error().message;
+        if (auto ok = blocks_[task.index].take(task.grid, task.scalars, wishes); !ok && error.empty())
+            error = ok.error().message;
     return error;
 }
 
@@ -80,13 +81,19 @@ std::string Blocks::make_frame(const Ranks& ranks, const isotet::Run& run) {
     if (whole && whole->field_count <= isotet::Survey::max_fields)
         if (const auto frame = isotet::make_frame({{*whole}})) frame_ = *frame;
     if (!frame_)
-        notes_.push_back("surfaces of blocks may not fit where these meet: their points or scalars are not of one type");
+        notes_.push_back(
+            "surfaces of blocks may not fit where these meet: their points or scalars are not of one type");
     return {};
 }
 
 /// The first collective call: whether all may go on, and whether the frame must be made again.
-std::string Blocks::agree(const std::vector<BlockTask>& tasks, const Ranks& ranks, const isotet::Run& run, std::string error) {
-    Ranks::Flags mine{.failed = !error.empty(), .changed = !is_framed_, .renumbered = false, .no_global_ids = false, .too_many = tasks.size() > 1};
+std::string Blocks::agree(const std::vector<BlockTask>& tasks, const Ranks& ranks, const isotet::Run& run,
+                          std::string error) {
+    Ranks::Flags mine{.failed = !error.empty(),
+                      .changed = !is_framed_,
+                      .renumbered = false,
+                      .no_global_ids = false,
+                      .too_many = tasks.size() > 1};
     for (const auto& [index, block] : blocks_) {
         mine.changed |= block.is_new();
         mine.renumbered |= block.is_renumbered();
@@ -138,8 +145,9 @@ std::vector<std::uint8_t> Blocks::other_types(unsigned int index) const {
 }
 
 bool Blocks::all_packed() const {
-    return !blocks_.empty() &&
-           std::ranges::all_of(blocks_, [](const auto& block) { return block.second.method() == isotet::Method::clusters; });
+    return !blocks_.empty() && std::ranges::all_of(blocks_, [](const auto& block) {
+        return block.second.method() == isotet::Method::clusters;
+    });
 }
 
 std::uint64_t Blocks::packed_bytes() const {

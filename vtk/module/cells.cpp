@@ -127,7 +127,8 @@ void SharedCells::release() {
 
 bool SharedCells::has_contoured() const {
     for (int type = 0; type < 256; ++type)
-        if (kinds_[static_cast<std::size_t>(type)] && isotet::Contour::contours(static_cast<std::uint8_t>(type))) return true;
+        if (kinds_[static_cast<std::size_t>(type)] && isotet::Contour::contours(static_cast<std::uint8_t>(type)))
+            return true;
     return false;
 }
 

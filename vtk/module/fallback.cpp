@@ -22,7 +22,8 @@ namespace isotet_vtk {
 
 std::string reason_against(vtkDataObject* data, vtkDataArray* scalars) {
     if (!vtkUnstructuredGrid::SafeDownCast(data))
-        return std::string(data->GetClassName()) + " is contoured by vtkContourFilter: isotet contours vtkUnstructuredGrid";
+        return std::string(data->GetClassName()) +
+               " is contoured by vtkContourFilter: isotet contours vtkUnstructuredGrid";
     if (scalars->GetNumberOfComponents() != 1)
         return "array '" + std::string(scalars->GetName() ? scalars->GetName() : "") + "' has " +
                std::to_string(scalars->GetNumberOfComponents()) +
@@ -44,12 +45,13 @@ void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishe
     if (scalars->GetName()) filter->SetInputArrayToProcess(0, 0, 0, points, scalars->GetName());
     else filter->SetInputArrayToProcess(0, 0, 0, points, vtkDataSetAttributes::SCALARS);
     filter->SetNumberOfContours(static_cast<int>(wishes.isovalues.size()));
-    for (std::size_t i = 0; i < wishes.isovalues.size(); ++i) filter->SetValue(static_cast<int>(i), wishes.isovalues[i]);
+    for (std::size_t i = 0; i < wishes.isovalues.size(); ++i)
+        filter->SetValue(static_cast<int>(i), wishes.isovalues[i]);
     filter->SetComputeNormals(wishes.normals);
     filter->SetComputeScalars(wishes.scalars);
     if (wishes.points)
         filter->SetOutputPointsPrecision(*wishes.points == isotet::Precision::float32 ? vtkAlgorithm::SINGLE_PRECISION
-                                                                                       : vtkAlgorithm::DOUBLE_PRECISION);
+                                                                                      : vtkAlgorithm::DOUBLE_PRECISION);
     filter->Update();
     out->ShallowCopy(filter->GetOutput());
 }

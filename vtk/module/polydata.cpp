@@ -81,7 +81,8 @@ vtkSmartPointer<vtkDataArray> isovalues_of(const std::vector<isotet::Surface>& s
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const double value = wishes.isovalues[i];
         const std::size_t length = surfaces[i].vertex_count();
-        if (is_single) std::fill_n(static_cast<float*>(array->GetVoidPointer(0)) + at, length, static_cast<float>(value));
+        if (is_single)
+            std::fill_n(static_cast<float*>(array->GetVoidPointer(0)) + at, length, static_cast<float>(value));
         else std::fill_n(static_cast<double*>(array->GetVoidPointer(0)) + at, length, value);
         at += length;
     }
@@ -108,7 +109,8 @@ void write_polydata(const std::vector<isotet::Surface>& surfaces, const Wishes& 
     out->SetPolys(triangles_of(surface));
     vtkPointData* const of_points = out->GetPointData();
     if (wishes.scalars) of_points->SetScalars(isovalues_of(surfaces, wishes, scalars));
-    for (const isotet::Field& field : surface.point_fields) of_points->AddArray(to_vtk(field.values, field.name.c_str()));
+    for (const isotet::Field& field : surface.point_fields)
+        of_points->AddArray(to_vtk(field.values, field.name.c_str()));
     for (const isotet::Field& field : surface.cell_fields)
         out->GetCellData()->AddArray(to_vtk(field.values, field.name.c_str()));
     if (wishes.normals && surface.normals_kind == isotet::Normals::gradient)

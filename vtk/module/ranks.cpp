@@ -39,8 +39,8 @@ std::string Ranks::first_error(const std::string& mine) const {
 std::vector<isotet::Survey> Ranks::gather(const isotet::Survey& mine) const {
     std::vector<isotet::Survey> all(static_cast<std::size_t>(count_), mine);
     if (count_ > 1)
-        controller_->AllGather(reinterpret_cast<const unsigned char*>(&mine), reinterpret_cast<unsigned char*>(all.data()),
-                               static_cast<vtkIdType>(sizeof mine));
+        controller_->AllGather(reinterpret_cast<const unsigned char*>(&mine),
+                               reinterpret_cast<unsigned char*>(all.data()), static_cast<vtkIdType>(sizeof mine));
     return all;
 }
 
