@@ -1,8 +1,8 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Isotet Contour against ParaView's Contour, in ParaView: a moving isovalue.
 
-    ISOTET_PLUGIN=.../Isotet.so pvbatch bench/vtk/paraview.py [MILLION_TETS] [REPEATS]
-    ISOTET_PLUGIN=.../Isotet.so mpirun -np 2 --bind-to core pvbatch bench/vtk/paraview.py
+    ISOTET_PLUGIN=.../Isotet.so pvbatch bench/vtk/in_paraview.py [MILLION_TETS] [REPEATS]
+    ISOTET_PLUGIN=.../Isotet.so mpirun -np 2 --bind-to core pvbatch bench/vtk/in_paraview.py
 """
 
 import os
