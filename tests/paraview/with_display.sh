@@ -4,7 +4,8 @@
 set -euo pipefail
 folder=$(mktemp -d)
 mkfifo "$folder/display"
-Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>"$folder/display" 2>"$folder/log" &
+# -noreset: a server that starts anew when its first client leaves refuses the next one for a moment.
+Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp -noreset 3>"$folder/display" 2>"$folder/log" &
 server=$!
 trap 'kill "$server" 2>/dev/null || true; rm -rf "$folder"' EXIT
 if ! read -r -t 30 display <"$folder/display"; then
