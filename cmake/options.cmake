@@ -8,6 +8,7 @@ option(ISOTET_IO "Read more formats (Exodus, CGNS, VTKHDF, XDMF, ...): build the
 option(ISOTET_VULKAN "Extract on graphics cards through Vulkan, opened at run time" ON)
 option(ISOTET_PROGRAM "Build the program isotet" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_PYTHON "Build the Python package" OFF)
+option(ISOTET_VTK "Build the filter for VTK's pipelines, a VTK module" OFF)
 option(ISOTET_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(ISOTET_BENCH "Build the benchmarks" OFF)
 option(ISOTET_FUZZ "Build the fuzz targets (clang with libFuzzer)" OFF)

@@ -5,6 +5,7 @@
 # The trees stand in build/test. What ctest says about all of them together comes last, below a table of where the time went.
 source "$(dirname "${BASH_SOURCE[0]}")/lib/common.sh"
 source "$root/scripts/lib/packages.sh"
+source "$root/scripts/lib/paraview.sh"
 source "$root/scripts/lib/software_vulkan.sh"
 source "$root/scripts/lib/test_times.sh"
 source "$root/scripts/lib/thread_sanitizer.sh"
@@ -21,7 +22,7 @@ fi
 # What a sanitizer can say nothing about: these look at the tree, at installing, at the program, or count memory. And tests
 # on a Vulkan device: drivers and layers leave memory behind and are unloaded, so that their leaks cannot be told from ours
 # by name.
-readonly not_for_address=(cli docs fuzz gpu_engine headers includes install memory python render vulkan)
+readonly not_for_address=(cli docs fuzz gpu_engine headers includes install memory paraview python render vtk vulkan)
 # Of these, the tests that use several threads.
 readonly for_thread='api;check;determinism;direct;draw;ops' threaded='*Thread*:*AtOnce*:InstructionLevels.*'
 
@@ -37,16 +38,37 @@ kinds_for_address() {
 build_release() {
     local python=
     if [[ $mode == full ]]; then python=$trees/python/venv/bin/python; fi
-    build release "$trees/release" -DCMAKE_BUILD_TYPE=Release -DISOTET_WERROR=ON -DISOTET_TEST_PYTHON="$python"
+    build release "$trees/release" -DCMAKE_BUILD_TYPE=Release -DISOTET_WERROR=ON -DISOTET_VTK=ON -DISOTET_TEST_PYTHON="$python"
+}
+
+# What other projects build against.
+readonly prefix=$trees/prefix
+install_release() {
+    in_log "installs release" "$trees/install.log" cmake --install "$trees/release" --prefix "$prefix"
 }
 
 # The wheel, and the environment that its tests run in, which are tests of release. The library inside is that of release
 # where its component io needs no VTK, else it is compiled once more.
 build_python() {
-    local prefix=$trees/python/prefix installed=
-    in_log "python: installs release" "$trees/python.install.log" cmake --install "$trees/release" --prefix "$prefix" || return
+    local installed=
+    install_release || return
     if ! grep -q VTK "$prefix/lib/cmake/isotet/isotet-io.cmake"; then installed=$prefix; fi
     ISOTET_INSTALLED=$installed measured python "$root/scripts/wheel.sh" "$trees/python"
+}
+
+# The ParaView plugin, against the installed release and Debian's ParaView.
+build_paraview() {
+    local unpacked=$trees/paraview/unpacked wheel=$trees/paraview/wheel packages
+    packages=$(echo "$trees"/python/venv/lib/python3*/site-packages)
+    measured "paraview: unpack" paraview "$unpacked" || return
+    install_release || return
+    rm -rf "$wheel" # without the VTK of that environment
+    mkdir -p "$wheel"
+    ln -s "$packages"/isotet "$packages"/isotet.libs "$packages"/nanobind_backend* "$wheel" || return
+    build_source=$root/paraview build paraview "$trees/paraview/build" -DCMAKE_BUILD_TYPE=Release -DISOTET_WERROR=ON \
+        -DPython3_EXECUTABLE=/usr/bin/python3 -DCMAKE_PREFIX_PATH="$prefix" \
+        -DParaView_DIR="$(echo "$unpacked"/root/usr/lib/*/cmake/paraview-*)" \
+        -DISOTET_PARAVIEW_TESTS="$unpacked/root/usr" -DISOTET_PARAVIEW_WHEEL="$wheel"
 }
 
 # Without VTK: its readers run as uninstrumented children under a limit on address space that a sanitizer cannot live in.
@@ -97,6 +119,7 @@ mkdir -p "$trees"
 try_stage release release
 if [[ $mode == full ]]; then
     try_stage python
+    try_stage paraview paraview/build
     try_stage tidy
     try_stage address address
     try_stage thread thread

@@ -14,7 +14,7 @@ fi
 
 sources() {
     sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$build/compile_commands.json" |
-        grep -v -e "^$root/tests/" -e "^$build/tests/" -e '/cmake_pch' -e 'shaders_hpp\.'
+        grep -v -e "^$root/tests/" -e "^$build/tests/" -e "^$build/vtk/" -e '/cmake_pch' -e 'shaders_hpp\.'
 }
 
 # The commands hold options that g++ alone knows.

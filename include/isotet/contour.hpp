@@ -103,6 +103,10 @@ public:
     ///          the arrays of the grid do not fit together
     static Result<Contour> create(ContourInput input, const ContourOptions& options = {});
 
+    /// Whether cells of this type, a number of VTK's, are contoured (polyhedra where they have their faces). Others are
+    /// left out, and counted in ContourResult::cells_left_out.
+    static bool contours(std::uint8_t vtk_type) noexcept;
+
     Contour(Contour&&) noexcept;
     Contour& operator=(Contour&&) noexcept;
     ~Contour();

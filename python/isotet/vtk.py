@@ -23,6 +23,7 @@ from ._surface import Surface, call_options
 __all__ = ["IsotetContour", "grid_of", "to_polydata"]
 
 _TETRAHEDRON, _POLYHEDRON = 10, 42
+_GHOSTS = 57  # marks of cells that are another piece's, refined, outside or hidden
 
 
 def _types_of(grid):
@@ -37,6 +38,8 @@ def _cells_of(grid) -> _isotet.Cells:
     if grid.GetNumberOfCells() == 0 or types is None:
         return _isotet.Cells(np.empty(0, np.int64), None, None, _TETRAHEDRON)
     types = vtk_to_numpy(types)
+    if (ghosts := grid.GetCellGhostArray()) is not None:
+        types = np.where(vtk_to_numpy(ghosts) & _GHOSTS, 0, types).astype(np.uint8)
     cells = grid.GetCells()
     connectivity = np.ascontiguousarray(vtk_to_numpy(cells.GetConnectivityArray()))
     if types[0] == _TETRAHEDRON and (types == _TETRAHEDRON).all():
@@ -161,22 +164,25 @@ class _Session:
         """Modified times of the cells. VTK never gives the same one twice, so they tell arrays apart, too."""
         cells, types = grid.GetCells(), _types_of(grid)
         parts = (cells, cells.GetConnectivityArray(), cells.GetOffsetsArray(), types) if cells else (types,)
+        parts += (grid.GetCellGhostArray(),)
         return tuple(part.GetMTime() for part in parts if part is not None)
 
     def contour(self, grid, scalars, isovalues: list[float], *, normals: bool, surfaces: int,
-                fields: list[tuple[str, np.ndarray]], cell_fields: list[tuple[str, np.ndarray]]) -> Surface:  # fmt: skip
-        self.set(grid, scalars, normals=normals, surfaces=surfaces, fields=fields, cell_fields=cell_fields)
+                fields: list[tuple[str, np.ndarray]], cell_fields: list[tuple[str, np.ndarray]],
+                precision: str = "float32") -> Surface:  # fmt: skip
+        self.set(grid, scalars, normals=normals, surfaces=surfaces, fields=fields, cell_fields=cell_fields, precision=precision)
         assert self._session is not None
         return Surface._of(*self._session.extract(isovalues, call_options(0, None)))
 
-    def set(self, grid, scalars, *, normals: bool, surfaces: int, fields, cell_fields) -> None:
+    def set(self, grid, scalars, *, normals: bool, surfaces: int, fields, cell_fields,
+            precision: str = "float32") -> None:  # fmt: skip
         times = self.times_of(grid)
         if self._cells is None or times != self._times:
             self._cells, self._times = _cells_of(grid), times
         values = scalars_in(scalars.GetName() or "scalars", vtk_to_numpy(scalars))
         field = _isotet.PointField(scalars.GetName() or "scalars", values)
         kind = "gradient" if normals else "none"
-        options = _isotet.ContourOptions(kind, False, False, "merge", "float32", None, surfaces)
+        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces)
         mine = _isotet.Grid(_points_of(grid), self._cells, [], [])
         call = call_options(0, None)
         if self._session is None:
@@ -233,6 +239,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
         self._values: list[float] = [0.0]
         self._compute_normals, self._compute_scalars = False, True
         self._expected = 0
+        self._precision = "float32"
         self._sessions: OrderedDict[Any, _Session] = OrderedDict()
         self.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, 0)
 
@@ -283,6 +290,13 @@ class IsotetContour(VTKPythonAlgorithmBase):
     def GetExpectedSurfaces(self) -> int:
         return self._expected
 
+    def SetPrecision(self, precision: str) -> None:
+        """In "float32", or "float64": pieces of a grid in double precision meet without knowing of each other."""
+        self._set("_precision", precision)
+
+    def GetPrecision(self) -> str:
+        return self._precision
+
     def _scalars_of(self, grid):
         info = self.GetInputArrayInformation(0)
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
@@ -312,7 +326,8 @@ class IsotetContour(VTKPythonAlgorithmBase):
             cell_fields = _arrays_of(grid.GetCellData())
             surface = self._session_of(grid).contour(
                 grid, scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
-                fields=_arrays_of(grid.GetPointData(), scalars.GetName()), cell_fields=cell_fields)  # fmt: skip
+                fields=_arrays_of(grid.GetPointData(), scalars.GetName()), cell_fields=cell_fields,
+                precision=self._precision)  # fmt: skip
             _finish(surface, self._values, scalars, self._compute_scalars, any(n == "isovalue" for n, _ in cell_fields), out)
             out.GetFieldData().PassData(grid.GetFieldData())
         except Exception as error:  # noqa: BLE001 - VTK would say that a method failed, and not why

@@ -8,10 +8,14 @@ readonly packages_to_build=(g++ cmake ninja-build libtbb-dev libfmt-dev libfreet
 readonly packages_for_software_vulkan=(
     libdrm2 libexpat1 libllvm15 libwayland-client0 libx11-xcb1 libxcb-dri3-0 libxcb-present0 libxcb-randr0 libxcb-shm0
     libxcb-sync1 libxcb-xfixes0 libxcb1 libxshmfence1 libzstd1 zlib1g)
+# What the tests of VTK's filter run in.
+readonly packages_to_test_vtk=(python3-vtk9 python3-mpi4py python3-numpy openmpi-bin libopenmpi-dev)
 # chromium: the browser of the tests of `isotet view`, and SwiftShader, a second software Vulkan device.
-readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium "${packages_for_software_vulkan[@]}")
+readonly packages_to_test=(libgtest-dev pkg-config vulkan-validationlayers spirv-tools chromium
+    "${packages_for_software_vulkan[@]}" "${packages_to_test_vtk[@]}")
 readonly packages_for_python=(python3-dev python3-venv)
-readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils)
+readonly packages_to_test_fully=("${packages_for_python[@]}" clang-19 clang-tidy-19 libclang-rt-19-dev xz-utils xvfb
+    libgl1-mesa-dri)
 
 missing_packages() {
     local package

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "core/array_identity.hpp"
+#include "core/cell_faces.hpp"
+#include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/frame.hpp"
 #include "core/guard.hpp"
@@ -47,13 +49,22 @@ struct CellsMark {
           print(session::fingerprint(grid.cells)),
           numbers_print(session::fingerprint(grid.point_numbers)) {}
 
-    bool is(const Grid& grid) const {
+    /// Equal cells in other memory are known by that memory afterwards.
+    bool is(const Grid& grid) {
         const Cells& cells = grid.cells;
-        if (!is_same(numbers, grid.point_numbers) && numbers_print != session::fingerprint(grid.point_numbers))
-            return false;
+        if (!is_same(numbers, grid.point_numbers)) {
+            if (numbers_print != session::fingerprint(grid.point_numbers)) return false;
+            numbers = core::ArrayIdentity(grid.point_numbers);
+        }
         const bool same_memory = is_same(connectivity, cells.connectivity) && is_same(offsets, cells.offsets) &&
                                  is_same(types, cells.types) && uniform_type == cells.uniform_type;
-        return same_memory || print == session::fingerprint(cells);
+        if (same_memory) return true;
+        if (print != session::fingerprint(cells)) return false;
+        connectivity = core::ArrayIdentity(cells.connectivity);
+        offsets = core::ArrayIdentity(cells.offsets);
+        types = core::ArrayIdentity(cells.types);
+        uniform_type = cells.uniform_type;
+        return true;
     }
 };
 
@@ -63,7 +74,13 @@ struct ArrayMark {
     session::Fingerprint print;
 
     explicit ArrayMark(const Array& array) : identity(array), print(session::fingerprint(array)) {}
-    bool is(const Array& array) const { return identity.is(array) || print == session::fingerprint(array); }
+    /// Equal contents in other memory are known by that memory afterwards.
+    bool is(const Array& array) {
+        if (identity.is(array)) return true;
+        if (print != session::fingerprint(array)) return false;
+        identity = core::ArrayIdentity(array);
+        return true;
+    }
 };
 
 Result<void> check(const ContourOptions& options) {
@@ -355,6 +372,10 @@ Result<Contour> Contour::create(ContourInput input, const ContourOptions& option
         data->sample = *std::move(sample);
         return Contour(std::move(data));
     });
+}
+
+bool Contour::contours(std::uint8_t vtk_type) noexcept {
+    return core::is_contoured(vtk_type) || vtk_type == core::polyhedron_type;
 }
 
 Contour::Contour(std::unique_ptr<Data> data) : data_(std::move(data)) {}

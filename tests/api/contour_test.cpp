@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -61,6 +62,29 @@ TEST(Contour, ExtractsDirectlyForAFewSurfacesAndPacksForMany) {
                   packed ? packed_bytes(grid, 0, isovalue) : direct_bytes(grid, 0, isovalue));
     }
     EXPECT_EQ(contour.extract(0.5).value().pack_seconds, 0) << "packed once";
+}
+
+TEST(Contour, TellsWhichCellTypesItContours) {
+    for (int type = 0; type < 256; ++type) {
+        const bool contoured = (type >= 10 && type <= 14) || type == 42;
+        EXPECT_EQ(Contour::contours(static_cast<std::uint8_t>(type)), contoured) << type;
+    }
+}
+
+/// Seen by a change in place, which the same owner hides.
+TEST(Contour, KnowsEqualCellsAndPointsByTheMemoryThatItMetLast) {
+    const Grid first = kuhn();
+    Contour contour = Contour::create(input_of(first), {.surfaces = 100}).value();
+    ASSERT_TRUE(contour.extract(0.1));
+    Grid second = copy_of(first);
+    std::vector<float> points(first.points.as<float>().begin(), first.points.as<float>().end());
+    const auto owner = std::make_shared<int>(0);
+    second.points = Array(ScalarType::float32, points.data(), first.points.tuples(), 3, owner);
+    EXPECT_EQ(contour.set(input_of(second)).value(), ContourUpdate::nothing);
+    points[0] += 1;
+    EXPECT_EQ(contour.set(input_of(second)).value(), ContourUpdate::nothing);
+    second.points = Array(ScalarType::float32, points.data(), first.points.tuples(), 3, std::make_shared<int>(0));
+    EXPECT_EQ(contour.set(input_of(second)).value(), ContourUpdate::points);
 }
 
 TEST(Contour, KnowsFromTheStartHowManySurfacesWillBeAskedFor) {

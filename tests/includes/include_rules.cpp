@@ -41,6 +41,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/io/", {"io/own/", "io/formats.hpp", "io/reader.hpp", "core/"}},
         {"apps/cli/", {"view/"}}, // its own headers have no folder
         {"examples/", {}},
+        {"vtk/", {}},    // its own headers have no folder
         {"python/", {}}, // its own headers have no folder
     };
     return rules;
@@ -55,7 +56,7 @@ struct LibraryRule {
 
 const std::vector<LibraryRule>& library_rules() {
     static const std::vector<LibraryRule> rules = {
-        {"VTK", {"vtk"}, {"src/io/vtk/", "bench/", "tests/"}},
+        {"VTK", {"vtk"}, {"src/io/vtk/", "vtk/", "bench/", "tests/"}},
         {"pugixml", {"pugixml"}, {"src/io/", "tests/"}},
         {"HDF5", {"hdf5", "H5"}, {"src/io/vtk/", "tests/"}},
         {"oneTBB", {"tbb/", "oneapi/"}, {"src/", "bench/", "tests/"}},

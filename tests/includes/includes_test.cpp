@@ -21,7 +21,7 @@ bool is_source(const fs::path& path) {
 TEST(Includes, GoOnlyTheDirectionsOfTheArchitecture) {
     const fs::path root = source_folder();
     std::size_t includes = 0;
-    for (const char* folder : {"include", "src", "apps", "bench", "examples", "python", "tests"}) {
+    for (const char* folder : {"include", "src", "apps", "bench", "examples", "python", "tests", "vtk"}) {
         if (!fs::exists(root / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
             if (!entry.is_regular_file() || !is_source(entry.path())) continue;

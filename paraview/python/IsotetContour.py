@@ -1,0 +1,72 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Isotet Contour for ParaView, in Python: for the official binaries, which plugins in C++ cannot be built for.
+
+Needs the package isotet in ParaView's own Python. Load this file as a plugin, on the server too (docs/paraview.md).
+"""
+
+from paraview.util.vtkAlgorithm import smdomain, smhint, smproperty, smproxy
+from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+from isotet.vtk import IsotetContour
+
+_NAME = "IsotetContourPython"
+
+
+@smproxy.filter(name=_NAME, label="Isotet Contour (Python)")
+@smhint.xml('<ShowInMenu category="Common"/><Visibility replace_input="1"/>')
+@smproperty.xml("""
+    <InputProperty name="Input" command="SetInputConnection">
+      <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
+      <DataTypeDomain name="input_type" composite_data_supported="0"><DataType value="vtkUnstructuredGrid"/></DataTypeDomain>
+      <InputArrayDomain name="scalar_array" attribute_type="point" number_of_components="1"/>
+      <Documentation>The unstructured grid.</Documentation>
+    </InputProperty>
+    <StringVectorProperty name="ContourBy" label="Contour By" command="SetInputArrayToProcess" number_of_elements="5"
+                          element_types="0 0 0 0 2" animateable="0">
+      <ArrayListDomain name="array_list" attribute_type="Scalars" input_domain_name="scalar_array">
+        <RequiredProperties><Property name="Input" function="Input"/></RequiredProperties>
+      </ArrayListDomain>
+      <Documentation>The point array whose isosurfaces are computed.</Documentation>
+    </StringVectorProperty>
+    <DoubleVectorProperty name="Isosurfaces" command="SetValue" set_number_command="SetNumberOfContours" use_index="1"
+                          repeat_command="1" number_of_elements="0" number_of_elements_per_command="1" animateable="1">
+      <ArrayRangeDomain name="scalar_range">
+        <RequiredProperties>
+          <Property name="Input" function="Input"/>
+          <Property name="ContourBy" function="ArraySelection"/>
+        </RequiredProperties>
+      </ArrayRangeDomain>
+      <Documentation>The values of the isosurfaces.</Documentation>
+    </DoubleVectorProperty>
+    <IntVectorProperty name="ComputeNormals" command="SetComputeNormals" number_of_elements="1" default_values="1">
+      <BooleanDomain name="bool"/>
+      <Documentation>Give each point a normal along the gradient of the array, towards higher values.</Documentation>
+    </IntVectorProperty>
+    <IntVectorProperty name="ComputeScalars" command="SetComputeScalars" number_of_elements="1" default_values="1">
+      <BooleanDomain name="bool"/>
+      <Documentation>Give each point the array that is contoured: its isovalue.</Documentation>
+    </IntVectorProperty>
+    <IntVectorProperty name="ExpectedSurfaces" command="SetExpectedSurfaces" number_of_elements="1" default_values="0"
+                       panel_visibility="advanced">
+      <IntRangeDomain name="range" min="0"/>
+      <Documentation>How many surfaces will be asked for; 0: not known.</Documentation>
+    </IntVectorProperty>
+""")
+class IsotetContourPython(IsotetContour):
+    """On several ranks surfaces meet without a word between these: in double precision where the data are not float32."""
+
+    def RequestData(self, request, inputs, outputs):
+        controller = vtkMultiProcessController.GetGlobalController()
+        self._precision = "float32"
+        if controller is not None and controller.GetNumberOfProcesses() > 1:
+            self._precision = self._precision_of(self.GetInputData(inputs, 0, 0))
+        return super().RequestData(request, inputs, outputs)
+
+    def _precision_of(self, grid):
+        name = self.GetInputArrayInformation(0).Get(vtkDataObject.FIELD_NAME())
+        scalars = grid.GetPointData().GetArray(name) if name else grid.GetPointData().GetScalars()
+        if scalars is None or grid.GetPoints() is None:  # an empty piece, or an error that the filter tells
+            return "float32"
+        single = scalars.GetDataTypeAsString() == "float" and grid.GetPoints().GetData().GetDataTypeAsString() == "float"
+        return "float32" if single else "float64"

@@ -1,0 +1,408 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""vtkIsotetContour against vtkContourFilter."""
+
+import unittest
+
+import numpy as np
+from isotet_vtk.vtkIsotet import vtkIsotetContour, vtkIsotetContourFilter
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObjectFactory, vtkStringArray
+from vtkmodules.vtkCommonDataModel import (vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection,
+                                           vtkPolyData)
+from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+
+from grids import (HEXAHEDRON, add, area_of, corners_of, grid_of, lattice, names, open_edges, points_of, sphere, triangles_of)
+
+
+def start(grid, name="r", value=0.3, kind=vtkIsotetContour):
+    contour = kind()
+    contour.said = []
+    for event in ("ErrorEvent", "WarningEvent"):
+        contour.AddObserver(event, Listener(contour.said))
+    contour.SetInputDataObject(grid)
+    contour.SetInputArrayToProcess(0, 0, 0, 0, name)
+    contour.SetValue(0, value)
+    return contour
+
+
+class Listener:
+    """Keeps the text of warnings and errors."""
+
+    CallDataType = "string0"
+
+    def __init__(self, said):
+        self.said = said
+
+    def __call__(self, caller, event, text=""):
+        self.said.append(text)
+
+
+def run(grid, **options):
+    contour = start(grid, **options)
+    contour.Update()
+    return contour
+
+
+class Surfaces(unittest.TestCase):
+    def test_has_the_arrays_and_active_arrays_of_vtk(self):
+        grid = sphere()
+        points, count = grid.GetNumberOfPoints(), grid.GetNumberOfCells()
+        add(grid.GetPointData(), "p", np.arange(points, dtype=np.float64))
+        grid.GetPointData().SetVectors(add(grid.GetPointData(), "v", np.ones((points, 3), np.float32)))
+        add(grid.GetCellData(), "material", np.arange(count, dtype=np.int32))
+        words = vtkStringArray()
+        words.SetName("words")
+        words.SetNumberOfValues(count)
+        for normals in (0, 1):
+            for scalars in (0, 1):
+                outputs = []
+                for kind in (vtkIsotetContour, vtkContourFilter):
+                    contour = start(grid, kind=kind)
+                    contour.SetComputeNormals(normals)
+                    contour.SetComputeScalars(scalars)
+                    contour.Update()
+                    outputs.append(contour.GetOutput())
+                ours, theirs = outputs
+                self.assertEqual(names(ours.GetPointData()), names(theirs.GetPointData()))
+                self.assertEqual(names(ours.GetCellData()), names(theirs.GetCellData()))
+                for get in ("GetScalars", "GetVectors", "GetNormals"):
+                    active = [getattr(o.GetPointData(), get)() for o in outputs]
+                    self.assertEqual(*[a and (a.GetName(), a.GetDataType()) for a in active], get)
+
+    def test_is_the_surface_of_vtk(self):
+        for options in ({}, {"bits": 32}, {"dtype": np.float64}):
+            grid = sphere(12, **options)
+            ours, theirs = run(grid).GetOutput(), run(grid, kind=vtkContourFilter).GetOutput()
+            self.assertEqual(ours.GetNumberOfPoints(), theirs.GetNumberOfPoints())
+            self.assertAlmostEqual(area_of(ours), area_of(theirs), places=3)
+            self.assertEqual(open_edges(ours), 0)
+            self.assertEqual(ours.GetPoints().GetDataType(), theirs.GetPoints().GetDataType())
+
+    def test_is_the_same_from_32_and_64_bit_cells(self):
+        for n in (1, 2):  # directly, and from packed cells
+            a, b = (start(sphere(bits=bits)) for bits in (32, 64))
+            for contour in (a, b):
+                contour.SetExpectedSurfaces(0 if n == 1 else 100)
+                contour.Update()
+            self.assertEqual(points_of(a.GetOutput()).tobytes(), points_of(b.GetOutput()).tobytes())
+            self.assertEqual(triangles_of(a.GetOutput()).tobytes(), triangles_of(b.GetOutput()).tobytes())
+
+    def test_joins_several_isovalues_as_vtk_does(self):
+        ours, theirs = (start(sphere(), kind=kind) for kind in (vtkIsotetContour, vtkContourFilter))
+        for contour in (ours, theirs):
+            contour.GenerateValues(3, 0.2, 0.4)
+            contour.Update()
+        self.assertEqual([ours.GetValue(i) for i in range(3)], [theirs.GetValue(i) for i in range(3)])
+        values, wanted = (np.unique(vtk_to_numpy(c.GetOutput().GetPointData().GetArray("r"))) for c in (ours, theirs))
+        np.testing.assert_allclose(values, np.float32([0.2, 0.3, 0.4]))
+        self.assertEqual(ours.GetOutput().GetNumberOfPoints(), theirs.GetOutput().GetNumberOfPoints())
+
+    def test_is_empty_beyond_the_range_and_without_cells(self):
+        self.assertEqual(run(sphere(), value=9).GetOutput().GetNumberOfCells(), 0)
+        self.assertEqual(run(grid_of(np.zeros((0, 3), np.float32), np.zeros((0, 4), int), {"r": np.zeros(0, np.float32)})).GetOutput().GetNumberOfCells(), 0)
+
+    def test_gives_points_in_the_precision_asked_for(self):
+        grid = sphere()
+        for precision, wanted in ((0, np.float32), (1, np.float64), (2, np.float32)):
+            contour = start(grid)
+            contour.SetOutputPointsPrecision(precision)
+            contour.Update()
+            self.assertEqual(points_of(contour.GetOutput()).dtype, wanted)
+
+    def test_points_normals_to_higher_values(self):
+        out = run(sphere(16)).GetOutput()
+        outwards = points_of(out) - 0.47
+        self.assertGreater((vtk_to_numpy(out.GetPointData().GetNormals()) * outwards).sum(axis=1).min(), 0)
+
+    def test_leaves_out_ghost_cells(self):
+        points, cells, field = lattice(8)
+        ghosts = np.where(points[cells[:, 0], 0] > 0.5, 1, 0)
+        for normals in (0, 1):
+            whole = start(grid_of(points, cells[ghosts == 0], {"r": field}))
+            marked = start(grid_of(points, cells, {"r": field}, ghosts=ghosts))
+            for contour in (whole, marked):
+                contour.SetComputeNormals(normals)
+                contour.Update()
+            self.assertTrue(corners_of(whole.GetOutput()) == corners_of(marked.GetOutput()))
+            self.assertNotIn("vtkGhostType", names(marked.GetOutput().GetCellData()))
+
+    def test_contours_polyhedra(self):
+        tets = sphere(4)
+        contour = start(as_polyhedra(tets))
+        contour.Update()
+        self.assertEqual(contour.said, [])
+        self.assertTrue(corners_of(run(tets).GetOutput()) == corners_of(contour.GetOutput()))
+
+
+def as_polyhedra(tets):
+    from vtkmodules.vtkCommonCore import vtkIdList
+    from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+
+    grid = vtkUnstructuredGrid()
+    grid.SetPoints(tets.GetPoints())
+    grid.GetPointData().ShallowCopy(tets.GetPointData())
+    for c in range(tets.GetNumberOfCells()):
+        corners = [tets.GetCell(c).GetPointId(i) for i in range(4)]
+        if c % 2:
+            grid.InsertNextCell(10, 4, corners)
+            continue
+        stream = vtkIdList()
+        stream.InsertNextId(4)
+        for left_out in range(4):
+            stream.InsertNextId(3)
+            for i in range(4):
+                if i != left_out:
+                    stream.InsertNextId(corners[i])
+        grid.InsertNextCell(42, stream)
+    return grid
+
+
+class Kept(unittest.TestCase):
+    def updates(self, contour, value):
+        contour.SetValue(0, value)
+        contour.Update()
+        return contour.GetLastUpdate(), contour.GetUsedPackedGrids()
+
+    def test_packs_cells_once(self):
+        points, cells, field = lattice(8)
+        grid = grid_of(points, cells, {"r": field, "s": 1 - field})
+        contour = start(grid)
+        contour.SetExpectedSurfaces(100)
+        self.assertEqual(self.updates(contour, 0.3), (3, True))
+        self.assertEqual(self.updates(contour, 0.31), (0, True))
+        contour.SetInputArrayToProcess(0, 0, 0, 0, "s")
+        self.assertEqual(self.updates(contour, 0.7), (1, True))
+        moved = vtk_to_numpy(grid.GetPoints().GetData())
+        moved[:] *= 2
+        grid.GetPoints().GetData().Modified()
+        grid.GetPoints().Modified()
+        grid.Modified()
+        self.assertEqual(self.updates(contour, 0.7), (2, True))
+        wanted = run(grid_of(points * 2, cells, {"s": 1 - field}), name="s", value=0.7).GetOutput()
+        self.assertTrue(corners_of(contour.GetOutput()) == corners_of(wanted))
+        contour.SetInputDataObject(sphere(6))
+        contour.SetInputArrayToProcess(0, 0, 0, 0, "r")
+        self.assertEqual(self.updates(contour, 0.3), (3, True))
+
+    def test_knows_equal_cells_in_arrays_of_another_time_step(self):
+        points, cells, field = lattice(8)
+        contour = start(grid_of(points, cells, {"r": field}))
+        contour.SetExpectedSurfaces(100)
+        contour.Update()
+        contour.SetInputDataObject(grid_of(points, cells, {"r": field * 2}))
+        self.assertEqual(self.updates(contour, 0.6), (1, True))
+        self.assertEqual(self.updates(contour, 0.61), (0, True))
+
+    def test_packs_when_a_second_surface_is_wanted(self):
+        contour = start(sphere())
+        self.assertFalse(self.updates(contour, 0.3)[1])
+        for value in np.linspace(0.2, 0.4, 30):
+            self.updates(contour, value)
+        self.assertTrue(contour.GetUsedPackedGrids())
+        self.assertGreater(contour.GetPackedBytes(), 0)
+
+    def test_keeps_no_array_of_vtk(self):
+        for expected in (0, 100):
+            grid = sphere()
+            contour = start(grid)
+            contour.SetExpectedSurfaces(expected)
+            contour.Update()
+            array = grid.GetCells().GetConnectivityArray()
+            self.assertLessEqual(array.GetReferenceCount(), 2)  # the cell array's, and this one
+
+    def test_surfaces_outlive_filter_and_input(self):
+        contour = run(sphere())
+        out = vtkPolyData()
+        out.ShallowCopy(contour.GetOutput())
+        before = corners_of(out)
+        del contour
+        self.assertTrue(corners_of(out) == before)
+        copy = vtkPolyData()
+        copy.DeepCopy(out)
+        out.GetPoints().GetData().Resize(7)
+        self.assertTrue(corners_of(copy) == before)
+
+
+class Composite(unittest.TestCase):
+    def halves(self, dtype=np.float64):
+        points, cells, field = lattice(8, HEXAHEDRON, dtype=dtype, origin=5e5)
+        left = points[cells[:, 0], 0] < 5e5 + 0.45
+        ids = np.arange(len(points))
+        whole = grid_of(points, cells, {"r": field}, ids=ids)
+        out = []
+        for part in (left, ~left):
+            used, local = np.unique(cells[part], return_inverse=True)
+            out.append(grid_of(points[used], local.reshape(-1, 8), {"r": field[used]}, ids=used))
+        return whole, out
+
+    def test_keeps_the_structure(self):
+        _, (a, b) = self.halves()
+        blocks = vtkMultiBlockDataSet()
+        inner = vtkMultiBlockDataSet()
+        inner.SetBlock(1, b)
+        blocks.SetBlock(0, a)
+        blocks.SetBlock(2, inner)
+        out = run(blocks).GetOutputDataObject(0)
+        self.assertEqual(out.GetClassName(), "vtkMultiBlockDataSet")
+        self.assertEqual(out.GetNumberOfBlocks(), 3)
+        self.assertIsNone(out.GetBlock(1))
+        self.assertEqual(out.GetBlock(2).GetBlock(1).GetClassName(), "vtkPolyData")
+        collection = vtkPartitionedDataSetCollection()
+        for i, grid in enumerate((a, b)):
+            part = vtkPartitionedDataSet()
+            part.SetPartition(0, grid)
+            collection.SetPartitionedDataSet(i, part)
+        out = run(collection).GetOutputDataObject(0)
+        self.assertEqual(out.GetClassName(), "vtkPartitionedDataSetCollection")
+        self.assertGreater(out.GetPartition(1, 0).GetNumberOfCells(), 0)
+
+    def test_blocks_fit_bit_for_bit(self):
+        whole, parts = self.halves()
+        blocks = vtkMultiBlockDataSet()
+        for i, part in enumerate(parts):
+            blocks.SetBlock(i, part)
+        for expected in (0, 100):
+            contour = start(blocks)
+            contour.SetExpectedSurfaces(expected)
+            contour.Update()
+            out = contour.GetOutputDataObject(0)
+            pieces = [corners_of(out.GetBlock(i)) for i in range(2)]
+            self.assertTrue(pieces[0] | pieces[1] == corners_of(run(whole).GetOutput()))
+            self.assertEqual(contour.said, [])
+
+    def test_contours_blocks_that_have_the_array(self):
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, sphere())
+        other = sphere(4)
+        other.GetPointData().Initialize()
+        blocks.SetBlock(1, other)
+        contour = run(blocks)
+        self.assertGreater(contour.GetOutputDataObject(0).GetBlock(0).GetNumberOfCells(), 0)
+        self.assertEqual(contour.GetOutputDataObject(0).GetBlock(1).GetNumberOfCells(), 0)
+        self.assertEqual(contour.said, [])
+
+    def test_says_when_blocks_cannot_fit(self):
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, sphere())
+        blocks.SetBlock(1, sphere(dtype=np.float64))
+        contour = run(blocks)
+        self.assertGreater(contour.GetOutputDataObject(0).GetBlock(1).GetNumberOfCells(), 0)
+        self.assertIn("may not fit", contour.said[0])
+
+
+class HandedToVtk(unittest.TestCase):
+    def test_other_data_sets_with_a_warning(self):
+        source = vtkRTAnalyticSource()
+        source.Update()
+        image = source.GetOutput()
+        ours, theirs = run(image, name="RTData", value=150), run(image, name="RTData", value=150, kind=vtkContourFilter)
+        self.assertEqual(ours.GetOutput().GetNumberOfCells(), theirs.GetOutput().GetNumberOfCells())
+        self.assertEqual(len(ours.said), 1)
+        self.assertIn("vtkImageData is contoured by vtkContourFilter", ours.said[0])
+        ours.SetValue(0, 160)
+        ours.Update()
+        self.assertEqual(len(ours.said), 1)  # the same reason is not said again
+
+    def test_other_cells_beside_isotets_own(self):
+        points, cells, field = lattice(6)
+        tets = grid_of(points, cells, {"r": field})
+        faces = grid_of(points, cells[:, [0, 1, 2]], {"r": field}, kind=5)
+        both = vtkAppendFilter()
+        for part in (tets, faces):
+            add(part.GetCellData(), "c", np.arange(len(cells)))
+            both.AddInputData(part)
+        both.Update()
+        contour = run(both.GetOutput())
+        self.assertIn("triangle", contour.said[0])
+        out = contour.GetOutput()
+        self.assertEqual(out.GetNumberOfPolys(), run(tets).GetOutput().GetNumberOfPolys())
+        self.assertEqual(out.GetNumberOfLines(), run(faces, kind=vtkContourFilter).GetOutput().GetNumberOfLines())
+        self.assertIn("c", names(out.GetCellData()))
+
+    def test_vectors(self):
+        grid = sphere()
+        add(grid.GetPointData(), "w", np.random.default_rng(1).random((grid.GetNumberOfPoints(), 3), np.float32))
+        ours, theirs = run(grid, name="w", value=0.5), run(grid, name="w", value=0.5, kind=vtkContourFilter)
+        self.assertEqual(ours.GetOutput().GetNumberOfCells(), theirs.GetOutput().GetNumberOfCells())
+        self.assertIn("3 components", ours.said[0])
+
+
+class Failing(unittest.TestCase):
+    def test_says_what_is_wrong_with_a_grid(self):
+        points, cells, field = lattice(3)
+        cells[5, 2] = 99999
+        for expected in (0, 100):
+            contour = start(grid_of(points, cells, {"r": field}))
+            contour.SetExpectedSurfaces(expected)
+            contour.Update()
+            self.assertIn("99999", contour.said[0])
+            self.assertEqual(contour.GetOutput().GetNumberOfCells(), 0)
+
+    def test_says_that_there_is_no_array(self):
+        self.assertIn("no array", run(sphere(), name="other").said[0])
+
+    def test_recovers_after_an_error(self):
+        contour = run(sphere(), name="other")
+        contour.SetInputArrayToProcess(0, 0, 0, 0, "r")
+        contour.Update()
+        self.assertGreater(contour.GetOutput().GetNumberOfCells(), 0)
+
+    def test_is_aborted_by_an_observer_of_progress(self):
+        contour = start(sphere(24))
+        contour.SetExpectedSurfaces(100)
+        calls = []
+
+        def stop(caller, event):
+            calls.append(caller.GetProgress())
+            caller.SetAbortExecute(1)
+
+        contour.AddObserver("ProgressEvent", stop)
+        contour.Update()
+        self.assertGreater(len(calls), 0)
+        self.assertEqual(contour.GetOutput().GetNumberOfCells(), 0)
+        self.assertEqual(contour.said, [])
+
+
+class Replacing(unittest.TestCase):
+    def tearDown(self):
+        vtkIsotetContourFilter.SetEnabled(False)
+        vtkIsotetContourFilter.Clear()
+
+    def test_is_off_unless_switched_on(self):
+        make = vtkObjectFactory.CreateInstance
+        self.assertFalse(vtkIsotetContourFilter.GetEnabled())
+        self.assertIsNone(make("vtkContourFilter"))
+        vtkIsotetContourFilter.SetEnabled(True)
+        self.assertEqual(make("vtkContourFilter").GetClassName(), "vtkIsotetContourFilter")
+        self.assertIsNone(make("vtkPolyData"))
+        vtkIsotetContourFilter.SetEnabled(False)
+        self.assertIsNone(make("vtkContourFilter"))
+
+    def test_gives_the_surface_of_isotet(self):
+        grid = sphere(12)
+        contour = run(grid, kind=vtkIsotetContourFilter)
+        self.assertTrue(contour.GetUsedIsotet())
+        self.assertTrue(corners_of(contour.GetOutput()) == corners_of(run(grid).GetOutput()))
+        self.assertEqual(contour.GetOutput().GetPointData().GetScalars().GetName(), "r")
+
+    def test_leaves_to_vtk_what_isotet_does_not_do(self):
+        source = vtkRTAnalyticSource()
+        source.Update()
+        flat = grid_of(*lattice(4)[:1], lattice(4)[1][:, :3], {"r": lattice(4)[2]}, kind=5)
+        for data, name, value in ((source.GetOutput(), "RTData", 150), (flat, "r", 0.3)):
+            ours, theirs = (run(data, name=name, value=value, kind=k) for k in (vtkIsotetContourFilter, vtkContourFilter))
+            self.assertFalse(ours.GetUsedIsotet())
+            self.assertEqual(ours.said, [])
+            self.assertEqual(ours.GetOutput().GetNumberOfCells(), theirs.GetOutput().GetNumberOfCells())
+
+    def test_pieces_in_double_precision_meet_without_a_word_to_each_other(self):
+        whole, parts = Composite().halves()
+        pieces = [corners_of(run(part, kind=vtkIsotetContourFilter).GetOutput()) for part in parts]
+        vertices = {corner for piece in pieces for triangle in piece for corner in triangle}
+        wanted = {c for t in corners_of(run(whole, kind=vtkIsotetContourFilter).GetOutput()) for c in t}
+        self.assertTrue(vertices == wanted)
+
+
+if __name__ == "__main__":
+    unittest.main()

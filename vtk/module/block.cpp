@@ -1,0 +1,147 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "block.hpp"
+
+#include <utility>
+
+#include <vtkCellData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+
+#include "polydata.hpp"
+
+namespace isotet_vtk {
+
+namespace {
+
+/// Whether an array of numbers is carried onto the surface: all that have a name, ids and ghost marks aside.
+bool is_carried(vtkDataSetAttributes* attributes, vtkDataArray* array) {
+    if (!array || !array->GetName() || !scalar_type(array)) return false; // null: strings
+    if (array == attributes->GetGlobalIds() || array == attributes->GetPedigreeIds()) return false;
+    return array->GetName() != std::string(vtkDataSetAttributes::GhostArrayName());
+}
+
+/// The carried arrays of `attributes`, by name. Those that were there before keep their SharedArray.
+void share_carried(vtkDataSetAttributes* attributes, vtkDataArray* but, std::map<std::string, SharedArray>& carried) {
+    std::map<std::string, SharedArray> before = std::exchange(carried, {});
+    for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
+        vtkDataArray* const array = attributes->GetArray(i);
+        if (array == but || !is_carried(attributes, array)) continue;
+        if (auto kept = before.extract(array->GetName())) carried.insert(std::move(kept));
+        carried[array->GetName()].of(array);
+    }
+}
+
+std::vector<isotet::Field> fields_of(std::map<std::string, SharedArray>& carried) {
+    std::vector<isotet::Field> fields;
+    for (auto& [name, array] : carried) fields.push_back({name, array.last()});
+    return fields;
+}
+
+} // namespace
+
+isotet::Result<void> Block::take(vtkUnstructuredGrid* grid, vtkDataArray* scalars, const Wishes& wishes) {
+    grid_ = grid;
+    scalars_ = scalars;
+    wishes_ = wishes;
+    input_ = {};
+    input_.points = points_.of(grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr);
+    if (auto ok = cells_.take(grid, input_.points); !ok) return ok;
+    input_.cells = cells_.own();
+    contoured_.name = scalars->GetName() ? scalars->GetName() : "scalars";
+    contoured_.values = field_.of(scalars);
+    numbers_ = global_ids_.of(grid->GetPointData()->GetGlobalIds());
+    const std::size_t carried_before = carried_.size();
+    vtkPointData* const point_data = grid->GetPointData();
+    share_carried(point_data, scalars, carried_);
+    // isotet's own normals have the name that those of the input mostly have.
+    if (wishes.normals) carried_.erase("Normals");
+    share_carried(grid->GetCellData(), nullptr, carried_cells_);
+    point_fields_ = fields_of(carried_);
+    cell_fields_ = fields_of(carried_cells_);
+    is_renumbered_ = cells_.changed() || global_ids_.changed() || !survey_;
+    is_new_ = is_renumbered_ || points_.changed() || field_.changed() || carried_before != carried_.size();
+    for (const auto& [name, array] : carried_) is_new_ |= array.changed();
+    if (is_new_) survey_.reset();
+    return {};
+}
+
+isotet::Result<isotet::Survey> Block::survey(const isotet::Run& run) {
+    if (survey_) return *survey_;
+    std::vector<isotet::Field> fields = {{contoured_.name, contoured_.values}};
+    for (const isotet::Field& field : point_fields_)
+        if (fields.size() < isotet::Survey::max_fields) fields.push_back(field);
+    isotet::Result<isotet::Survey> survey = isotet::survey_piece(input_, fields, {}, run);
+    if (survey) survey_ = *survey;
+    return survey;
+}
+
+isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool with_numbers, const isotet::Run& run) {
+    isotet::ContourInput input;
+    input.grid = input_;
+    // Gradients are sums over the cells around a point, ghost cells among them.
+    const bool needs_ghosts = wishes_.normals && cells_.has_ghosts();
+    if (needs_ghosts) input.grid.cells = cells_.all();
+    if (with_numbers) input.grid.point_numbers = numbers_;
+    input.field = contoured_;
+    input.point_fields = point_fields_;
+    input.cell_fields = cell_fields_;
+    isotet::ContourOptions options;
+    options.surfaces = wishes_.expected_surfaces;
+    options.normals = wishes_.normals ? isotet::Normals::gradient : isotet::Normals::none;
+    options.source_cells = needs_ghosts;
+    options.frame = frame;
+    if (wishes_.points == isotet::Precision::float64) options.precision = isotet::Precision::float64;
+    if (session_) {
+        const isotet::Result<isotet::ContourUpdate> update = session_->set(std::move(input), options, run);
+        if (!update) return update.error();
+        update_ = *update;
+        return {};
+    }
+    isotet::Result<isotet::Contour> session = isotet::Contour::create(std::move(input), options);
+    if (!session) return session.error();
+    session_.emplace(*std::move(session));
+    update_ = isotet::ContourUpdate::grid;
+    return {};
+}
+
+isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, bool with_numbers,
+                                    const isotet::Run& run, vtkPolyData* out) {
+    if (auto ok = set(frame, with_numbers, run); !ok) return ok;
+    isotet::Result<isotet::ContourResult> result = session_->extract(wishes_.isovalues, run);
+    if (!result) return result.error();
+    method_ = result->method;
+    extract_seconds_ = result->extract_seconds;
+    std::vector<isotet::Surface> surfaces;
+    for (isotet::Extraction& extraction : result->surfaces) {
+        surfaces.push_back(std::move(extraction.surface));
+        if (surfaces.back().source_cells.empty()) continue;
+        auto own = isotet::leave_out_triangles(surfaces.back(), cells_.ghosts(), ghost_bits, run);
+        if (!own) return own.error();
+        surfaces.back() = *std::move(own);
+    }
+    write_polydata(surfaces, wishes_, scalars_, grid_, out);
+    return {};
+}
+
+void Block::release() {
+    cells_.release();
+    for (SharedArray* array : {&points_, &field_, &global_ids_}) array->release();
+    for (auto* carried : {&carried_, &carried_cells_})
+        for (auto& [name, array] : *carried) array.release();
+    grid_ = nullptr;
+    scalars_ = nullptr;
+    input_ = {};
+    contoured_ = {};
+    point_fields_.clear();
+    cell_fields_.clear();
+    numbers_ = {};
+}
+
+std::uint64_t Block::packed_bytes() const {
+    const auto packed = session_ ? session_->packed() : std::nullopt;
+    return packed ? packed->report().bytes : 0;
+}
+
+} // namespace isotet_vtk

@@ -1,0 +1,91 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "fallback.hpp"
+
+#include <isotet/contour.hpp>
+#include <isotet/grid.hpp>
+
+#include <vtkAlgorithm.h>
+#include <vtkAppendPolyData.h>
+#include <vtkCellData.h>
+#include <vtkContourFilter.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include "cells.hpp"
+#include "vtkIsotetContourFilter.h"
+
+namespace isotet_vtk {
+
+std::string reason_against(vtkDataObject* data, vtkDataArray* scalars) {
+    if (!vtkUnstructuredGrid::SafeDownCast(data))
+        return std::string(data->GetClassName()) +
+               " is contoured by vtkContourFilter: isotet contours vtkUnstructuredGrid";
+    if (scalars->GetNumberOfComponents() != 1)
+        return "array '" + std::string(scalars->GetName() ? scalars->GetName() : "") + "' has " +
+               std::to_string(scalars->GetNumberOfComponents()) +
+               " components and is contoured by vtkContourFilter: isotet contours scalars";
+    return {};
+}
+
+std::string reason_against(const std::vector<std::uint8_t>& types) {
+    std::string names;
+    for (const std::uint8_t type : types) names += (names.empty() ? "" : ", ") + isotet::name_of_cell_type(type);
+    return "cells of these types are contoured by vtkContourFilter, all others by isotet: " + names;
+}
+
+void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishes, vtkPolyData* out) {
+    const vtkIsotetContourFilter::Suspend suspend; // VTK's own, also where isotet takes its place
+    vtkNew<vtkContourFilter> filter;
+    filter->SetInputData(data);
+    constexpr int points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    if (scalars->GetName()) filter->SetInputArrayToProcess(0, 0, 0, points, scalars->GetName());
+    else filter->SetInputArrayToProcess(0, 0, 0, points, vtkDataSetAttributes::SCALARS);
+    filter->SetNumberOfContours(static_cast<int>(wishes.isovalues.size()));
+    for (std::size_t i = 0; i < wishes.isovalues.size(); ++i)
+        filter->SetValue(static_cast<int>(i), wishes.isovalues[i]);
+    filter->SetComputeNormals(wishes.normals);
+    filter->SetComputeScalars(wishes.scalars);
+    if (wishes.points)
+        filter->SetOutputPointsPrecision(*wishes.points == isotet::Precision::float32 ? vtkAlgorithm::SINGLE_PRECISION
+                                                                                      : vtkAlgorithm::DOUBLE_PRECISION);
+    filter->Update();
+    out->ShallowCopy(filter->GetOutput());
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> other_cells(vtkUnstructuredGrid* grid) {
+    auto others = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    others->SetPoints(grid->GetPoints());
+    others->GetPointData()->ShallowCopy(grid->GetPointData());
+    others->GetCellData()->CopyAllOn();
+    others->GetCellData()->CopyAllocate(grid->GetCellData());
+    others->Allocate();
+    vtkUnsignedCharArray* const ghosts = grid->GetCellGhostArray();
+    vtkNew<vtkIdList> points;
+    for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+        const int type = grid->GetCellType(cell);
+        if (type == 0 || isotet::Contour::contours(static_cast<std::uint8_t>(type))) continue;
+        if (ghosts && (ghosts->GetValue(cell) & ghost_bits)) continue;
+        grid->GetCellPoints(cell, points);
+        others->GetCellData()->CopyData(grid->GetCellData(), cell, others->InsertNextCell(type, points));
+    }
+    return others;
+}
+
+void append(vtkPolyData* more, vtkPolyData* out) {
+    if (more->GetNumberOfCells() == 0) return;
+    if (out->GetNumberOfCells() == 0) {
+        out->ShallowCopy(more);
+        return;
+    }
+    vtkNew<vtkAppendPolyData> both;
+    both->AddInputData(out);
+    both->AddInputData(more);
+    both->Update();
+    out->ShallowCopy(both->GetOutput());
+}
+
+} // namespace isotet_vtk

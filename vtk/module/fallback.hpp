@@ -1,0 +1,36 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What isotet does not contour goes to vtkContourFilter.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <vtkSmartPointer.h>
+
+#include "wishes.hpp"
+
+class vtkDataArray;
+class vtkDataObject;
+class vtkDataSet;
+class vtkPolyData;
+class vtkUnstructuredGrid;
+
+namespace isotet_vtk {
+
+/// Why isotet does not contour `data` at all: a sentence; empty when it does.
+std::string reason_against(vtkDataObject* data, vtkDataArray* scalars);
+
+/// The sentence for cells of these types, VTK's numbers, in a grid that isotet contours but for them.
+std::string reason_against(const std::vector<std::uint8_t>& types);
+
+/// Contours a data set with vtkContourFilter.
+void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishes, vtkPolyData* out);
+
+/// The cells of `grid` that isotet does not contour, without ghost cells, with all points and fields.
+vtkSmartPointer<vtkUnstructuredGrid> other_cells(vtkUnstructuredGrid* grid);
+
+/// Appends `more` to `out`.
+void append(vtkPolyData* more, vtkPolyData* out);
+
+} // namespace isotet_vtk

@@ -1,0 +1,356 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "vtkIsotetContour.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "vtkCompositeDataIterator.h"
+#include "vtkContourValues.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGrid.h"
+
+#include "blocks.hpp"
+#include "fallback.hpp"
+#include "run.hpp"
+
+vtkStandardNewMacro(vtkIsotetContour);
+vtkCxxSetObjectMacro(vtkIsotetContour, Controller, vtkMultiProcessController);
+
+namespace
+{
+
+using isotet_vtk::BlockTask;
+
+/// A data set that is no composite one, and where its surface goes.
+struct Leaf
+{
+  unsigned int Index;
+  vtkDataSet* Data;
+  vtkSmartPointer<vtkPolyData> Out;
+};
+
+/// What is contoured by whom.
+struct Work
+{
+  std::vector<BlockTask> Tasks;
+  std::vector<std::pair<Leaf, vtkDataArray*>> ForVtk;
+  std::set<std::string> Reasons; ///< why VTK contours
+  std::string Error;
+};
+
+/// The data sets of `input`; the output is given a polydata for each.
+std::vector<Leaf> LeavesOf(vtkDataObject* input, vtkDataObject* output)
+{
+  if (auto* const data = vtkDataSet::SafeDownCast(input))
+  {
+    return { { 0, data, vtkPolyData::SafeDownCast(output) } };
+  }
+  std::vector<Leaf> leaves;
+  auto* const composite = vtkCompositeDataSet::SafeDownCast(input);
+  if (!composite)
+  {
+    return leaves;
+  }
+  auto* const tree = vtkDataObjectTree::SafeDownCast(output);
+  auto* const list = vtkMultiBlockDataSet::SafeDownCast(output);
+  const bool is_tree = vtkDataObjectTree::SafeDownCast(input) != nullptr;
+  if (is_tree)
+  {
+    tree->CopyStructure(composite);
+  }
+  auto it = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  for (it->InitTraversal(); !it->IsDoneWithTraversal(); it->GoToNextItem())
+  {
+    auto* const data = vtkDataSet::SafeDownCast(it->GetCurrentDataObject());
+    if (!data)
+    {
+      continue;
+    }
+    Leaf leaf{ it->GetCurrentFlatIndex(), data, vtkSmartPointer<vtkPolyData>::New() };
+    leaf.Out->GetFieldData()->PassData(data->GetFieldData());
+    if (is_tree)
+    {
+      tree->SetDataSet(it, leaf.Out);
+    }
+    else
+    {
+      list->SetBlock(list->GetNumberOfBlocks(), leaf.Out);
+    }
+    leaves.push_back(leaf);
+  }
+  return leaves;
+}
+
+} // namespace
+
+struct vtkIsotetContour::Internals
+{
+  isotet_vtk::Blocks Blocks;
+  std::set<std::string> Warned; ///< in the last execution: a slider does not repeat warnings
+};
+
+//------------------------------------------------------------------------------
+vtkIsotetContour::vtkIsotetContour()
+  : ContourValues(vtkContourValues::New())
+  , Internal(std::make_unique<Internals>())
+{
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+}
+
+vtkIsotetContour::~vtkIsotetContour()
+{
+  this->SetController(nullptr);
+  this->ContourValues->Delete();
+}
+
+//------------------------------------------------------------------------------
+void vtkIsotetContour::SetValue(int i, double value)
+{
+  this->ContourValues->SetValue(i, value);
+}
+
+double vtkIsotetContour::GetValue(int i)
+{
+  return this->ContourValues->GetValue(i);
+}
+
+double* vtkIsotetContour::GetValues()
+{
+  return this->ContourValues->GetValues();
+}
+
+void vtkIsotetContour::GetValues(double* contourValues)
+{
+  this->ContourValues->GetValues(contourValues);
+}
+
+void vtkIsotetContour::SetNumberOfContours(int number)
+{
+  this->ContourValues->SetNumberOfContours(number);
+}
+
+vtkIdType vtkIsotetContour::GetNumberOfContours()
+{
+  return this->ContourValues->GetNumberOfContours();
+}
+
+void vtkIsotetContour::GenerateValues(int numContours, double range[2])
+{
+  this->ContourValues->GenerateValues(numContours, range);
+}
+
+void vtkIsotetContour::GenerateValues(int numContours, double rangeStart, double rangeEnd)
+{
+  this->ContourValues->GenerateValues(numContours, rangeStart, rangeEnd);
+}
+
+vtkMTimeType vtkIsotetContour::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->ContourValues->GetMTime());
+}
+
+int vtkIsotetContour::GetLastUpdate()
+{
+  return static_cast<int>(this->Internal->Blocks.update());
+}
+
+bool vtkIsotetContour::GetUsedPackedGrids()
+{
+  return this->Internal->Blocks.all_packed();
+}
+
+vtkTypeInt64 vtkIsotetContour::GetPackedBytes()
+{
+  return static_cast<vtkTypeInt64>(this->Internal->Blocks.packed_bytes());
+}
+
+double vtkIsotetContour::GetExtractSeconds()
+{
+  return this->Internal->Blocks.extract_seconds();
+}
+
+//------------------------------------------------------------------------------
+int vtkIsotetContour::FillInputPortInformation(int, vtkInformation* info)
+{
+  // Composite data sets are taken whole: the executive must not come once a block.
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+int vtkIsotetContour::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+vtkTypeBool vtkIsotetContour::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  {
+    return this->RequestDataObject(request, inputs, outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+int vtkIsotetContour::RequestDataObject(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkDataObject* const input = vtkDataObject::GetData(inputs[0], 0);
+  vtkSmartPointer<vtkDataObject> wanted;
+  if (vtkDataObjectTree::SafeDownCast(input))
+  {
+    wanted.TakeReference(input->NewInstance());
+  }
+  else if (vtkCompositeDataSet::SafeDownCast(input))
+  {
+    wanted = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  }
+  else
+  {
+    wanted = vtkSmartPointer<vtkPolyData>::New();
+  }
+  vtkDataObject* const output = vtkDataObject::GetData(outputs, 0);
+  if (!output || output->GetDataObjectType() != wanted->GetDataObjectType())
+  {
+    outputs->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), wanted);
+  }
+  return 1;
+}
+
+int vtkIsotetContour::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* const input = inputs[0]->GetInformationObject(0);
+  vtkInformation* const output = outputs->GetInformationObject(0);
+  if (!input || !this->ComputeNormals || output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) < 2)
+  {
+    return 1;
+  }
+  // Gradients are sums over the cells around a point.
+  const int levels = output->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
+  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), std::max(levels, 1));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkIsotetContour::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  isotet_vtk::Wishes wishes;
+  wishes.isovalues.assign(this->GetValues(), this->GetValues() + this->GetNumberOfContours());
+  wishes.normals = this->ComputeNormals;
+  wishes.scalars = this->ComputeScalars;
+  wishes.expected_surfaces = static_cast<std::uint64_t>(this->ExpectedSurfaces);
+  if (this->OutputPointsPrecision != DEFAULT_PRECISION)
+  {
+    wishes.points = this->OutputPointsPrecision == SINGLE_PRECISION ? isotet::Precision::float32
+                                                                    : isotet::Precision::float64;
+  }
+
+  vtkDataObject* const input = vtkDataObject::GetData(inputs[0], 0);
+  Work work;
+  for (const Leaf& leaf : LeavesOf(input, vtkDataObject::GetData(outputs, 0)))
+  {
+    if (leaf.Data->GetNumberOfCells() == 0)
+    {
+      continue;
+    }
+    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    vtkDataArray* const scalars = this->GetInputArrayToProcess(0, leaf.Data, association);
+    if (!scalars || association != vtkDataObject::FIELD_ASSOCIATION_POINTS)
+    {
+      if (scalars)
+      {
+        work.Error = "the array to process is of cells, but isosurfaces are of point data: use vtkCellDataToPointData";
+      }
+      else if (leaf.Data == input) // blocks need not all have the array
+      {
+        work.Error = "there is no array to process";
+      }
+      continue;
+    }
+    const std::string reason = isotet_vtk::reason_against(leaf.Data, scalars);
+    if (reason.empty())
+    {
+      work.Tasks.push_back({ leaf.Index, vtkUnstructuredGrid::SafeDownCast(leaf.Data), scalars, leaf.Out });
+    }
+    else
+    {
+      work.ForVtk.push_back({ leaf, scalars });
+      work.Reasons.insert(reason);
+    }
+  }
+
+  isotet_vtk::AlgorithmRun run(this, this->NumberOfThreads);
+  const isotet_vtk::Ranks ranks(this->Controller);
+  isotet_vtk::Blocks& blocks = this->Internal->Blocks;
+  const std::string error = blocks.contour(work.Tasks, wishes, ranks, run.run(), work.Error);
+  if (run.cancelled())
+  {
+    return 1; // VTK knows
+  }
+  if (!error.empty())
+  {
+    vtkErrorMacro(<< error);
+    return 0;
+  }
+  for (const auto& [leaf, scalars] : work.ForVtk)
+  {
+    isotet_vtk::contour_by_vtk(leaf.Data, scalars, wishes, leaf.Out);
+  }
+  for (const BlockTask& task : work.Tasks)
+  {
+    const std::vector<std::uint8_t> types = blocks.other_types(task.index);
+    if (types.empty())
+    {
+      continue;
+    }
+    work.Reasons.insert(isotet_vtk::reason_against(types));
+    vtkNew<vtkPolyData> others;
+    isotet_vtk::contour_by_vtk(isotet_vtk::other_cells(task.grid), task.scalars, wishes, others);
+    isotet_vtk::append(others, task.out);
+  }
+  work.Reasons.insert(blocks.notes().begin(), blocks.notes().end());
+  for (const std::string& reason : work.Reasons)
+  {
+    if (!this->Internal->Warned.count(reason))
+    {
+      vtkWarningMacro(<< reason);
+    }
+  }
+  this->Internal->Warned = work.Reasons;
+  this->UpdateProgress(1.0);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkIsotetContour::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  this->ContourValues->PrintSelf(os, indent);
+  os << indent << "ComputeNormals: " << this->ComputeNormals << "\n";
+  os << indent << "ComputeScalars: " << this->ComputeScalars << "\n";
+  os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "ExpectedSurfaces: " << this->ExpectedSurfaces << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+}

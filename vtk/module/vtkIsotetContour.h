@@ -1,0 +1,160 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkIsotetContour
+ * @brief isosurfaces of unstructured grids that follow a moving isovalue
+ *
+ * Has the interface of vtkContourFilter, and its output: triangles with the isovalue under the name of the contoured array,
+ * all other point arrays interpolated, cell arrays copied, and "Normals".
+ *
+ * The cells of a vtkUnstructuredGrid are packed when a second surface is asked for, and not again while modified times say
+ * that they are the same: another isovalue costs the time of its surface, another array or time step that of storing
+ * values, moved points that of storing points. Arrays of VTK are read where they are, with 32- or 64-bit cells.
+ *
+ * Composite data are taken whole: the output has the same blocks. The blocks of all ranks of the Controller are contoured as
+ * one grid: surfaces have the same bits where pieces meet, without ghost cells. Ghost cells, where there are some, give no
+ * triangles. Every rank must execute the filter, those without data, too. An error on one rank is one on all.
+ *
+ * What isotet does not contour is given to vtkContourFilter, with a warning that says why: data sets of other classes,
+ * scalars with components, and cells that are neither linear 3D cells nor polyhedra.
+ *
+ * Differs from vtkContourFilter: vertices are welded exactly; triangles are counter-clockwise, and normals point, towards
+ * higher values; normals are gradients of the array; points without data (NaN) give no triangles; integer point
+ * arrays become float64.
+ */
+#ifndef vtkIsotetContour_h
+#define vtkIsotetContour_h
+
+#include "vtkIsotetModule.h" // For export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkContourValues;
+class vtkMultiProcessController;
+
+class VTKISOTET_EXPORT vtkIsotetContour : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkIsotetContour* New();
+  vtkTypeMacro(vtkIsotetContour, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The isovalues, as in vtkContourFilter.
+   */
+  void SetValue(int i, double value);
+  double GetValue(int i);
+  double* GetValues();
+  void GetValues(double* contourValues);
+  void SetNumberOfContours(int number);
+  vtkIdType GetNumberOfContours();
+  void GenerateValues(int numContours, double range[2]);
+  void GenerateValues(int numContours, double rangeStart, double rangeEnd);
+  vtkMTimeType GetMTime() override;
+  ///@}
+
+  ///@{
+  /**
+   * Normals along the gradient of the array, towards higher values. On by default, as in vtkContourFilter. With pieces, one
+   * level of ghost cells is asked for: with it, normals are those of the whole.
+   */
+  vtkSetMacro(ComputeNormals, vtkTypeBool);
+  vtkGetMacro(ComputeNormals, vtkTypeBool);
+  vtkBooleanMacro(ComputeNormals, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether points have the contoured array, which is their isovalue. On by default.
+   */
+  vtkSetMacro(ComputeScalars, vtkTypeBool);
+  vtkGetMacro(ComputeScalars, vtkTypeBool);
+  vtkBooleanMacro(ComputeScalars, vtkTypeBool);
+  ///@}
+
+  ///@{
+  /**
+   * SINGLE_PRECISION, DOUBLE_PRECISION (computed in double precision, too) or DEFAULT_PRECISION, that of the input.
+   */
+  vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
+  vtkGetMacro(OutputPointsPrecision, int);
+  ///@}
+
+  ///@{
+  /**
+   * How many surfaces will be asked for, over all isovalues and time steps: from a few on, the first one packs. 0, the
+   * default: not known.
+   */
+  vtkSetClampMacro(ExpectedSurfaces, int, 0, VTK_INT_MAX);
+  vtkGetMacro(ExpectedSurfaces, int);
+  ///@}
+
+  ///@{
+  /**
+   * At most so many threads; 0, the default: VTK_SMP_MAX_THREADS of the environment, else as many as the process may use.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, VTK_INT_MAX);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whose ranks have the pieces. Default: the global controller.
+   */
+  virtual void SetController(vtkMultiProcessController*);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+  enum Updates
+  {
+    NOTHING, ///< cells, points and values were kept
+    FIELD,   ///< values were stored
+    POINTS,  ///< points and values were stored
+    GRID     ///< another grid
+  };
+
+  /**
+   * What the last execution had to do before it extracted; of several blocks, the most.
+   */
+  int GetLastUpdate();
+
+  /**
+   * Whether the last execution extracted from packed grids, and the bytes that these take.
+   */
+  bool GetUsedPackedGrids();
+  vtkTypeInt64 GetPackedBytes();
+
+  /**
+   * The seconds that isotet extracted in the last execution: without packing, and what was done for VTK.
+   */
+  double GetExtractSeconds();
+
+protected:
+  vtkIsotetContour();
+  ~vtkIsotetContour() override;
+
+  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  virtual int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*);
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+
+  vtkContourValues* ContourValues;
+  vtkTypeBool ComputeNormals = 1;
+  vtkTypeBool ComputeScalars = 1;
+  int OutputPointsPrecision = DEFAULT_PRECISION;
+  int ExpectedSurfaces = 0;
+  int NumberOfThreads = 0;
+  vtkMultiProcessController* Controller = nullptr;
+
+private:
+  struct Internals;
+  std::unique_ptr<Internals> Internal;
+
+  vtkIsotetContour(const vtkIsotetContour&) = delete;
+  void operator=(const vtkIsotetContour&) = delete;
+};
+
+#endif

@@ -1,0 +1,22 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <isotet/pack.hpp>
+
+namespace isotet_vtk {
+
+/// What a filter was told about its surfaces.
+struct Wishes {
+    std::vector<double> isovalues;
+    bool normals = true;
+    bool scalars = true;
+    std::optional<isotet::Precision> points; ///< of the output's points; nothing: that of the input
+    std::uint64_t expected_surfaces = 0;     ///< as ContourOptions::surfaces
+    int threads = 0;
+};
+
+} // namespace isotet_vtk
