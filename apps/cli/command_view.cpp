@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet view`: a grid in the browser.
+#include <mutex>
+
 #include <fmt/format.h>
 
 #include <isotet/version.hpp>
@@ -25,8 +27,6 @@ std::vector<std::string> reading_options(const GridOptions& grid) {
     std::vector<std::string> words;
     const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
     if (!grid.format.empty()) add("--format", grid.format);
-    if (grid.time) add("--time", shortest(*grid.time));
-    if (grid.step) add("--step", std::to_string(*grid.step));
     if (grid.merge_points) add("--merge-points", shortest(*grid.merge_points));
     if (grid.keep_pieces) words.emplace_back("--keep-pieces");
     if (grid.allow_outside) words.emplace_back("--allow-outside");
@@ -42,9 +42,11 @@ Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSourc
     view::ViewerInput input;
     input.state.field = command.field.name;
     if (input.state.field.empty()) input.state.field = default_field(*grid).name;
-    if (input.state.field.empty()) input.state.field = "x";
+    if (input.state.field.empty()) input.state.field = std::string("x");
     input.state.isovalues = command.isovalues;
     input.state.color_by = command.color_by;
+    input.times = source.info().times;
+    if (input.times.size() > 1) input.state.step = step;
     input.notes = console.noted();
     input.grid = *std::move(grid);
     return input;
@@ -91,6 +93,11 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.keep = command.keep;
     options.threads = command.common.threads;
     options.read = [&](const Run& run) { return read_input(command, *source, steps->front(), console, run); };
+    std::mutex reading; // steps are read by several threads
+    options.read_step = [&](std::size_t step, const Run& run) {
+        const std::lock_guard lock(reading);
+        return source->read({}, step, console, run);
+    };
     auto viewer = view::Viewer::open(std::move(options));
     if (!viewer) return viewer.error();
     if (Result<void> told = tell_address(command, **viewer, console); !told) return told.error();

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view/viewer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <map>
@@ -49,6 +50,12 @@ public:
         const Result<Chart> chart = view_.chart(field, {threads_, run.progress});
         if (!chart) return chart.error();
         return chart_text(field, *chart);
+    }
+
+    Result<std::string> pick(const PickMessage& message, const Run& run) override {
+        const Result<Picked> picked = view_.pick(message, {threads_, run.progress});
+        if (!picked) return picked.error();
+        return picked_text(*picked);
     }
 
 private:
@@ -132,7 +139,7 @@ void Viewer::Data::set_grid(const ViewerInput& input) {
         fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
     Json grid = {{"say", "grid"},          {"file", options.file},        {"points", view->points()},
                  {"cells", view->cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
-                 {"notes", input.notes}};
+                 {"notes", input.notes},   {"times", input.times}};
     const Box& box = view->bounds();
     if (!box.empty()) {
         grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
@@ -160,15 +167,22 @@ void Viewer::Data::read_and_pack() {
     tell_progress("read", 0);
     Result<ViewerInput> input = options.read(run);
     if (!input) return set_failure(input.error());
-    Result<std::unique_ptr<GridView>> made =
-        GridView::create(std::move(input->grid), GridViewOptions{.threads = options.threads});
+    GridViewOptions view_options;
+    view_options.threads = options.threads;
+    view_options.step = input->state.step.value_or(0);
+    view_options.steps = std::max<std::size_t>(1, input->times.size());
+    if (view_options.steps > 1) view_options.read_step = options.read_step;
+    Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());
     view = *std::move(made);
     set_grid(*input);
     worker->start(std::make_shared<GridFrames>(*view, options.threads));
     tell_progress("pack", 0);
     const Result<void> packed = view->pack(input->state.field, run);
-    tell_progress(packed ? "ready" : "not packed: " + packed.error().message, 1);
+    tell_progress("boundary", 0);
+    const Result<void> found = view->find_boundary(run);
+    if (!packed) return tell_progress("not packed: " + packed.error().message, 1);
+    tell_progress(found ? "ready" : "no boundary: " + found.error().message, 1);
 }
 
 void Viewer::Data::start() {
@@ -209,6 +223,7 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     if (auto* show = std::get_if<ShowMessage>(&message)) worker->wish(from, std::move(*show));
     else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
     else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
+    else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {
         server->send_text(
             from, text_of({{"say", "command"},

@@ -14,6 +14,7 @@
 #include <isotet/result.hpp>
 
 #include "view/state.hpp"
+#include "view/steps.hpp"
 
 namespace isotet::view {
 
@@ -22,6 +23,7 @@ struct ViewerInput {
     Grid grid;
     ViewState state; ///< to begin with; no isovalues: Chart::first
     std::vector<std::string> notes;
+    std::vector<double> times; ///< of the file's steps; fewer than two: it has one
 };
 
 struct ViewerOptions {
@@ -36,6 +38,7 @@ struct ViewerOptions {
     std::size_t max_pages = 4;                           ///< at once
     int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
+    ReadStep read_step;                                  ///< of another step; nothing where there is one
 };
 
 /// 128 random bits as 32 hexadecimal digits. Errors   system
