@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet view`: a grid in the browser.
+#include <filesystem>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -63,6 +64,17 @@ Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer
         const Result<ExitCode> told = finish(console, command.common, address + "\n", std::move(report));
         if (!told) return told.error();
     }
+    constexpr std::string_view unix_prefix = "unix:";
+    if (command.listen.starts_with(unix_prefix)) {
+        console.note("on the machine with the browser: ssh -N -L 8123:" + command.listen.substr(unix_prefix.size()) +
+                     " HOST  then open the address there");
+        return {};
+    }
+    if (!command.listen.empty() && command.listen != "127.0.0.1" && command.listen != "::1")
+        console.note(
+            fmt::format("warning: other machines reach this page at {}, and the line is not encrypted: whoever "
+                        "reads it can look at the file{}. ssh -L is the safe way",
+                        command.listen, command.out.empty() ? "" : ", and write into --out"));
     if (is_over_ssh()) {
         console.note("on the machine with the browser: " + ssh_line(viewer.port()) + "  then open the address there");
     } else if (!command.no_browser && !open_browser(address)) {
@@ -92,6 +104,14 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.version = ISOTET_VERSION;
     options.keep = command.keep;
     options.threads = command.common.threads;
+    if (!command.out.empty()) {
+        std::error_code ignored;
+        if (!std::filesystem::is_directory(command.out, ignored))
+            return usage_error("--out is '{}', which is no folder", command.out);
+        options.out = command.out;
+        options.program = "/proc/self/exe";
+    }
+    options.listen = command.listen;
     options.read = [&](const Run& run) { return read_input(command, *source, steps->front(), console, run); };
     std::mutex reading; // steps are read by several threads
     options.read_step = [&](std::size_t step, const Run& run) {

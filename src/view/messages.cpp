@@ -70,6 +70,33 @@ Result<PageMessage> parse_pick(const Json& json) {
     return PageMessage(std::move(message));
 }
 
+Result<PageMessage> parse_save(const Json& json) {
+    Result<ViewState> state = message_state(json);
+    if (!state) return state.error();
+    const auto name = message_text(json, "name", 256), kind_name = message_text(json, "kind", 32);
+    const auto kind = parse_save_kind(kind_name.value_or(""));
+    if (!name || !kind) return wrong_message("a file has a \"name\", and a \"kind\": picture, surface, sweep or turn");
+    SaveMessage message;
+    SaveRequest& request = message.request;
+    request.kind = *kind;
+    request.name = *name;
+    request.state = *std::move(state);
+    for (const auto& [key, target] : {std::pair("width", &request.width), std::pair("height", &request.height),
+                                      std::pair("pictures", &request.pictures)})
+        if (const Json* value = find(json, key)) {
+            const auto number = whole_number(*value);
+            if (!number || *number > 100'000) return wrong_message(fmt::format("\"{}\" takes a whole number", key));
+            *target = static_cast<std::uint32_t>(*number);
+        }
+    for (const auto& [key, target] : {std::pair("from", &request.from), std::pair("to", &request.to)})
+        if (const Json* value = find(json, key)) {
+            const auto number = finite_number(*value);
+            if (!number) return wrong_message(fmt::format("\"{}\" takes a number", key));
+            *target = *number;
+        }
+    return PageMessage(std::move(message));
+}
+
 Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     constexpr std::size_t max_command_bytes = 32'768;
     if (action == "hello") {
@@ -98,7 +125,8 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
         return wrong_message("\"text\" takes a command line");
     }
     if (action == "pick") return parse_pick(json);
-    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste, pick");
+    if (action == "save") return parse_save(json);
+    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste, pick, save");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }

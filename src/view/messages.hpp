@@ -16,6 +16,7 @@
 #include "view/json.hpp"
 #include "view/mesh.hpp"
 #include "view/pick.hpp"
+#include "view/save.hpp"
 #include "view/state.hpp"
 
 namespace isotet::view {
@@ -62,8 +63,13 @@ struct PickMessage {
     std::array<double, 3> point{};
 };
 
-using PageMessage =
-    std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage, PickMessage>;
+/// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n}
+struct SaveMessage {
+    SaveRequest request;
+};
+
+using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage,
+                                 PickMessage, SaveMessage>;
 
 /// Any bytes from a page. Errors   invalid_argument
 Result<PageMessage> parse_page_message(std::string_view text);

@@ -23,7 +23,8 @@ namespace isotet::view {
 
 namespace {
 
-constexpr double hello_seconds = 5; ///< within which a page says its token
+constexpr int forwarded_port = 8123; ///< in what is told of a Unix socket
+constexpr double hello_seconds = 5;  ///< within which a page says its token
 
 double now_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -111,6 +112,7 @@ struct Viewer::Data {
 
     std::unique_ptr<GridView> view;
     std::optional<Worker> worker;
+    std::unique_ptr<Saver> saver; ///< with ViewerOptions::out
     std::thread reader;
 
     void start();
@@ -122,6 +124,7 @@ struct Viewer::Data {
     void take_message(ConnectionNumber from, std::string_view text);
     void take_hello(ConnectionNumber from, const HelloMessage& message);
     void answer(ConnectionNumber from, PageMessage message);
+    void save(ConnectionNumber from, const SaveRequest& request);
     void page_closed(ConnectionNumber which);
     bool tick();
     std::size_t admitted() const;
@@ -190,6 +193,7 @@ void Viewer::Data::start() {
         WorkerOutput{[this](PageNumber page, std::string bytes) { server->send_bytes(page, std::move(bytes)); },
                      [this](PageNumber page, std::string text) { server->send_text(page, std::move(text)); }},
         now_seconds);
+    if (!options.out.empty()) saver = std::make_unique<Saver>(options.program, options.out);
     reader = std::thread([this] { read_and_pack(); });
 }
 
@@ -211,12 +215,27 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
     pages[from].admitted = true;
     alone_since.reset();
     worker->add_page(from);
-    server->send_text(
-        from,
-        text_of({{"say", "welcome"}, {"version", options.version}, {"file", options.file}, {"maps", maps_json()}}));
+    server->send_text(from, text_of({{"say", "welcome"},
+                                     {"version", options.version},
+                                     {"file", options.file},
+                                     {"maps", maps_json()},
+                                     {"out", options.out}}));
     const std::lock_guard lock(news_mutex);
     if (!grid_text.empty()) server->send_text(from, grid_text);
     if (!progress.empty()) server->send_text(from, progress);
+}
+
+void Viewer::Data::save(ConnectionNumber from, const SaveRequest& request) {
+    const auto refuse = [&](std::string_view sentence) { server->send_text(from, error_text("save", sentence)); };
+    if (!saver) return refuse("Nothing can be saved: isotet view --out FOLDER lets the page write there.");
+    Result<std::vector<std::string>> words = save_words(request, saver->folder(), options.file, options.reading);
+    if (!words) return refuse(words.error().message);
+    const std::string name = request.name;
+    Result<void> started = saver->start(*std::move(words), name, [this, from, name](const Result<std::string>& path) {
+        server->send_text(from, path ? text_of({{"say", "saved"}, {"name", name}, {"path", *path}})
+                                     : error_text("save", path.error().message));
+    });
+    if (!started) refuse(started.error().message);
 }
 
 void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
@@ -224,6 +243,7 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
     else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
     else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
+    else if (const auto* wanted = std::get_if<SaveMessage>(&message)) save(from, wanted->request);
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {
         server->send_text(
             from, text_of({{"say", "command"},
@@ -296,6 +316,7 @@ Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
     ServerOptions server_options;
     server_options.port = data->options.port;
     server_options.hosts = data->options.hosts;
+    server_options.listen = data->options.listen;
     server_options.files = page_files();
     Data* all = data.get();
     ServerEvents events;
@@ -311,7 +332,15 @@ Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
 
 std::uint16_t Viewer::port() const noexcept { return data_->server->port(); }
 
-std::string Viewer::address() const { return fmt::format("http://127.0.0.1:{}/#{}", port(), data_->options.token); }
+std::string Viewer::address() const {
+    const std::string& listen = data_->options.listen;
+    const std::string& token = data_->options.token;
+    if (listen.starts_with("unix:")) return fmt::format("http://localhost:{}/#{}", forwarded_port, token);
+    const bool anywhere = listen.empty() || listen == "0.0.0.0" || listen == "::";
+    const bool brackets = !anywhere && listen.find(':') != std::string::npos;
+    return fmt::format("http://{}{}{}:{}/#{}", brackets ? "[" : "", anywhere ? "127.0.0.1" : listen,
+                       brackets ? "]" : "", port(), token);
+}
 
 Result<void> Viewer::run(const std::atomic<bool>& stop) {
     data_->asked_to_stop = &stop;
@@ -320,6 +349,7 @@ Result<void> Viewer::run(const std::atomic<bool>& stop) {
     data_->stop = true; // of reading and packing
     data_->reader.join();
     data_->worker.reset();
+    data_->saver.reset();
     const std::lock_guard lock(data_->news_mutex);
     if (data_->failure && data_->failure->code != ErrorCode::cancelled) return *data_->failure;
     return {};

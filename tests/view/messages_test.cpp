@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "view/command_line.hpp"
 #include "view/messages.hpp"
 #include "view/random_state.hpp"
 
@@ -66,6 +67,48 @@ TEST(ParsePageMessage, SurvivesEveryTruncationAndManyChanges) {
 TEST(Texts, ReplaceBytesThatAreNotUtf8) {
     EXPECT_TRUE(parse_json(error_text("file", "caf\xe9 \xff")));
     EXPECT_TRUE(parse_json(refusal_text(1, std::string("\0\x01\"\\", 4))));
+}
+
+SaveRequest picture_request(std::string name) {
+    SaveRequest request;
+    request.name = std::move(name);
+    request.state.isovalues = {0.5};
+    return request;
+}
+
+TEST(SaveWords, NameOneFileOfTheFolderAndNothingElse) {
+    const std::string folder = "/out";
+    for (const char* name : {"", "../a.png", "a/b.png", "/etc/a.png", ".a.png", "a.png\n", "a\0.png", "a;b.png",
+                             "-.vtp", "a", "a.exe", "a.PNG"})
+        EXPECT_FALSE(save_words(picture_request(name), folder, "grid.vtu", {})) << name;
+    EXPECT_FALSE(is_file_name(std::string(101, 'a')));
+    const auto words = save_words(picture_request("-a b.png"), folder, "grid.vtu", {});
+    ASSERT_TRUE(words) << words.error().message;
+    EXPECT_EQ(words->back(), "/out/-a b.png");
+    EXPECT_EQ((*words)[1], "render");
+}
+
+TEST(SaveWords, SweepsReplaceTheIsovaluesAndTurnsKeepThem) {
+    SaveRequest request = picture_request("a.webp");
+    request.kind = SaveKind::sweep;
+    request.from = -1;
+    request.to = 2;
+    request.pictures = 5;
+    const std::string sweep = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(sweep.find("--sweep=-1,2,5"), std::string::npos) << sweep;
+    EXPECT_EQ(sweep.find("--isovalue"), std::string::npos) << sweep;
+    request.kind = SaveKind::turn;
+    const std::string turn = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(turn.find("--orbit=5"), std::string::npos) << turn;
+    EXPECT_NE(turn.find("--isovalue 0.5"), std::string::npos) << turn;
+}
+
+TEST(SaveWords, PicturesHaveASize) {
+    SaveRequest request = picture_request("a.png");
+    request.width = 0;
+    EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
+    request.width = 100'000;
+    EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
 }
 
 } // namespace

@@ -65,7 +65,7 @@ export class Cuts {
     const get = (name) => row.querySelector('.' + name), plane = () => this.on.state().planes[i];
     get('axis').addEventListener('change', () => {
       const chosen = get('axis').value;
-      this.turn(plane(), axes[chosen] || (chosen === 'view' ? this.on.direction() : plane().normal.map((v, k) => v || (k === 2 ? 0.5 : 0))));
+      this.turn(plane(), axes[chosen] || (chosen === 'view' ? this.on.direction() : this.tilted(plane().normal)));
     });
     get('normal').addEventListener('change', () => {
       const numbers = get('normal').value.split(/[ ,;]+/).filter(Boolean).map(Number);
@@ -94,6 +94,12 @@ export class Cuts {
       (this.list.children[i] || this.list.children[i - 1])?.querySelector('.remove').focus();
     });
     return row;
+  }
+
+  /** A direction that is none of the axes, to be changed. */
+  tilted(normal) {
+    const axis = normal.findIndex((v) => v !== 0);
+    return Object.values(axes).some((one) => same(one, normal.map(Math.abs))) ? normal.map((v, i) => (i === (axis + 1) % 3 ? 0.5 : v)) : normal;
   }
 
   rounded(plane, offset) { const [from, to] = this.range(plane.normal); return roundTo(offset, to - from); }

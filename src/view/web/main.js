@@ -6,6 +6,7 @@ import {Cuts} from './cuts.js';
 import * as format from './format.js';
 import {Link, readFrame} from './link.js';
 import {Pointer} from './pointer.js';
+import {Save} from './save.js';
 import {Scene} from './scene.js';
 import {fromAddress, fromMessage, planesOf, toAddress, toMessage} from './state.js';
 import {TimeSteps} from './time.js';
@@ -522,10 +523,7 @@ let copying = null;
 for (const kind of ['render', 'extract'])
   id('copy-' + kind).addEventListener('click', () => {
     copying = kind;
-    state.camera = camera.text();
-    const message = toMessage(state);
-    message.isovalues = [...new Set(message.isovalues)];
-    link.send({do: 'command', state: message});
+    link.send({do: 'command', state: wholeState()});
   });
 
 async function takeCommand(message) {
@@ -558,6 +556,18 @@ function takeState(message) {
   showState();
 }
 
+/** As a command line has it: each isovalue once. */
+function wholeState() {
+  state.camera = camera.text();
+  const message = toMessage(state);
+  message.isovalues = [...new Set(message.isovalues)];
+  return message;
+}
+
+const save = new Save({state: wholeState, send: (message) => link.send(message),
+  size: () => [id('scene').clientWidth, id('scene').clientHeight].map((side) => Math.round(side * Math.max(1, window.devicePixelRatio))),
+  range: () => (slider.chart ? [slider.chart.lower, slider.chart.upper] : [0, 1])});
+
 // --- keys ------------------------------------------------------------------------------------------------------------
 
 id('help-open').addEventListener('click', () => id('help').showModal());
@@ -565,12 +575,12 @@ id('help-close').addEventListener('click', () => id('help').close());
 
 const keys = {
   f: () => lookFrom('fit'), Home: () => lookFrom('fit'), 1: () => lookFrom('front'), 3: () => lookFrom('right'), 7: () => lookFrom('top'),
-  v: () => pickAt(0, 0), ' ': () => time.toggle(), ',': () => { time.stop(); time.on.go((state.step ?? 0) - 1); }, '.': () => { time.stop(); time.on.go((state.step ?? 0) + 1); },
+  s: () => save.open(), v: () => pickAt(0, 0), ' ': () => time.toggle(), ',': () => { time.stop(); time.on.go((state.step ?? 0) - 1); }, '.': () => { time.stop(); time.on.go((state.step ?? 0) + 1); },
   Escape: closePicked, 9: () => lookFrom('oblique'), 5: () => id('parallel').click(), e: () => id('edges').click(), b: () => id('outline').click(), p: pin,
   '[': () => slider.step(-1), ']': () => slider.step(1), '{': () => slider.step(-0.1), '}': () => slider.step(0.1), '?': () => id('help').showModal(),
 };
 addEventListener('keydown', (event) => {
-  const typing = event.target.matches('input[type=text], select') || id('help').open || (event.key === ' ' && event.target.matches('button, input'));
+  const typing = event.target.matches('input[type=text], select') || id('help').open || id('save').open || (event.key === ' ' && event.target.matches('button, input'));
   const action = keys[event.key] || keys[event.key.toLowerCase()];
   if (typing || event.ctrlKey || event.altKey || event.metaKey || !action) return;
   event.preventDefault();
@@ -619,6 +629,7 @@ function takeProgress({step, fraction}) {
 const messages = {
   welcome(message) {
     maps = message.maps;
+    save.out = message.out;
     fill(id('map'), Object.keys(maps).map((name) => [name, name]), state.map in maps ? state.map : (state.map = 'viridis'));
     const name = message.file.split('/').pop();
     id('file').textContent = name;
@@ -638,7 +649,8 @@ const messages = {
     sent = null;
     say(message.sentence);
   },
-  error: (message) => say(message.sentence),
+  saved: (message) => save.tell(`Saved: ${message.path}`),
+  error: (message) => (message.about === 'save' ? save.tell(message.sentence) : say(message.sentence)),
 };
 
 try {
