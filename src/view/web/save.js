@@ -14,7 +14,7 @@ export class Save {
     this.out = '';
     id('save-open').addEventListener('click', () => this.open());
     id('save-close').addEventListener('click', () => id('save').close());
-    id('save-kind').addEventListener('change', () => this.show());
+    id('save-kind').addEventListener('change', () => { this.show(); this.tell(this.out ? `Into the folder ${this.out}` : id('save-told').textContent); });
     id('save-form').addEventListener('submit', (event) => { event.preventDefault(); this.go(); });
   }
 
