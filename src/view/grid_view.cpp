@@ -297,22 +297,24 @@ Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double iso
     return keep(key, extracted->surfaces.front().surface, scale, facts, run);
 }
 
+std::optional<ColorField> GridView::color_field(const ViewState& state, const ColorScale& scale, const Run& run) {
+    ColorField colors{state.color_by, {}, Association::point, scale, false, {}};
+    if (const Field* cells = whole_cell_field(grid_, state.color_by)) {
+        colors.values = cells->values;
+        colors.association = Association::cell;
+        return colors;
+    }
+    const Result<PointField> field = field_of(state.color_by, run);
+    if (!field) return std::nullopt; // scale_of() has told it
+    colors.values = field->values;
+    return colors;
+}
+
 Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, const Plane& plane,
                                                        const std::string& key, const std::optional<ColorScale>& scale,
                                                        FrameFacts& facts, const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
-    std::optional<ColorField> colors;
-    if (scale) {
-        colors = ColorField{state.color_by, {}, Association::point, *scale, false, {}};
-        if (const Field* cells = whole_cell_field(grid_, state.color_by)) {
-            colors->values = cells->values;
-            colors->association = Association::cell;
-        } else {
-            const Result<PointField> field = field_of(state.color_by, run);
-            if (!field) return field.error();
-            colors->values = field->values;
-        }
-    }
+    const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
     const auto start = std::chrono::steady_clock::now();
     const Result<Surface> slice = scene::slice_of(grid_, plane, colors ? &*colors : nullptr, run);
     if (!slice) return slice.error();
@@ -408,6 +410,8 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
                               const Run& run) {
     const ViewState& state = message.state;
     if (Result<void> there = go_to_step(message, run); !there) return there.error();
+    if (message.picture) return picture_frame(message, wait_seconds, known, run);
+    scene_.reset();
     Result<std::optional<ColorScale>> scale = scale_of(state, run);
     if (!scale) return scale.error();
     for (Kept& kept : kept_) kept.used = false;

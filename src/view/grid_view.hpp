@@ -12,6 +12,7 @@
 
 #include <isotet/camera.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/isosurface_scene.hpp>
 
 #include "view/messages.hpp"
 #include "view/pick.hpp"
@@ -101,6 +102,10 @@ private:
     Result<ContourInput> input_of(const std::string& field, const std::string& color_by, const Run& run);
     Result<std::optional<ColorScale>> scale_of(const ViewState& state, const Run& run);
     Result<Source*> source_for(const ViewState& state, const Run& run);
+    Result<Frame> picture_frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                                const Run& run);
+    Result<void> make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run);
+    std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
     Result<void> go_to_step(const ShowMessage& message, const Run& run);
     std::shared_ptr<const Mesh> kept_mesh(const std::string& key);
     Result<std::shared_ptr<const Mesh>> keep(const std::string& key, const Surface& surface,
@@ -130,6 +135,9 @@ private:
     std::atomic<bool> is_packed_{false};
     std::size_t step_ = 0; ///< that grid_ is
     std::unique_ptr<StepReader> steps_;
+    std::optional<IsosurfaceScene> scene_; ///< of pictures, while they are asked for
+    std::string scene_key_;
+    std::vector<double> scene_isovalues_;
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
 };

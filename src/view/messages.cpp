@@ -47,6 +47,15 @@ Result<PageMessage> parse_show(const Json& json) {
     message.moving = moving && moving->is_boolean() && moving->get<bool>();
     if (const Json* most = find(json, "most")) message.most = whole_number(*most);
     if (const Json* next = find(json, "next")) message.next = whole_number(*next);
+    if (const Json* picture = find(json, "picture")) {
+        constexpr std::uint64_t max_side = 8192;
+        const bool two = picture->is_array() && picture->size() == 2;
+        const auto width = two ? whole_number((*picture)[0]) : std::nullopt;
+        const auto height = two ? whole_number((*picture)[1]) : std::nullopt;
+        if (!width || !height || *width < 1 || *height < 1 || *width > max_side || *height > max_side)
+            return wrong_message("\"picture\" takes a width and a height, 1 to 8192");
+        message.picture = {static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+    }
     return PageMessage(std::move(message));
 }
 
@@ -192,6 +201,11 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                          {"no_data", color_text(facts.scale->no_data)}};
     Json& list = head["surfaces"] = Json::array();
     for (const FrameSurface& surface : surfaces) list.push_back(surface_json(surface, blocks));
+    if (facts.picture) {
+        const auto& [width, height, type, coded] = *facts.picture;
+        const std::size_t at = blocks.add(std::vector<char>(coded.begin(), coded.end()));
+        head["picture"] = {{"width", width}, {"height", height}, {"type", type}, {"at", at}, {"bytes", coded.size()}};
+    }
     const std::string text = text_of(head);
     const auto head_bytes = static_cast<std::uint32_t>(text.size());
     std::string bytes;

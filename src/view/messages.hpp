@@ -13,6 +13,7 @@
 #include <isotet/result.hpp>
 
 #include "view/chart.hpp"
+#include "view/encode.hpp"
 #include "view/json.hpp"
 #include "view/mesh.hpp"
 #include "view/pick.hpp"
@@ -26,14 +27,15 @@ struct HelloMessage {
     std::string token;
 };
 
-/// {"do": "show", "number": n, "state": ..., "moving": true, "most": N, "next": N}: what the page wants to see. `number` grows.
+/// {"do": "show", "number": n, "state": ..., "moving": true, "most": N, "next": N, "picture": [w, h]}: what the page wants to see. `number` grows.
 struct ShowMessage {
     std::uint64_t number = 0;
     ViewState state;
     bool moving = false; ///< a preview will do
     std::optional<std::uint64_t>
         most; ///< triangles of a surface that the page draws in time; nothing: the server's limit
-    std::optional<std::uint64_t> next; ///< the step that will be wanted next: read ahead
+    std::optional<std::uint64_t> next;                   ///< the step that will be wanted next: read ahead
+    std::optional<std::array<std::uint32_t, 2>> picture; ///< width and height: the server draws
 };
 
 /// {"do": "shown", "number": n}: the page has drawn frame n.
@@ -94,6 +96,7 @@ struct FrameFacts {
     std::optional<ColorScale> scale; ///< of values on the surfaces
     std::vector<std::string> notes;
     std::uint64_t step = 0;
+    std::optional<EncodedPicture> picture = {}; ///< instead of meshes
 };
 
 /// A frame in bytes: "isof", the bytes of its head (uint32), the head (JSON), then from the next multiple of 8 on the blocks

@@ -364,6 +364,64 @@ def test_time_steps(browser, viewer):
         browser.call('Page.navigate', url='about:blank')
 
 
+def rendered(browser, folder):
+    """Pixels of `isotet render` for the command that the page copies, at the size of its picture."""
+    browser.value('document.getElementById("copied").textContent = ""')
+    browser.click('#copy-render')
+    browser.wait('document.getElementById("copied").textContent.includes("--camera")')
+    words = shlex.split(browser.value('document.getElementById("copied").textContent'))
+    w, h = browser.value('["width", "height"].map(side => document.getElementById("picture")[side])')
+    path = f'{folder}/picture.png'
+    subprocess.run([os.environ['ISOTET_PROGRAM'], *words[1:-1], path, '--plain', '--size', f'{w}x{h}', '-q'], check=True)
+    with open(path, 'rb') as file:
+        return pixels(file.read())
+
+
+def test_pictures_of_the_server(browser, viewer):
+    """JPEG while the hand moves; at rest exactly the pixels of `isotet render`."""
+    start(browser, viewer)
+    browser.click('#pin')
+    choose(browser, '#color-by', 'gyroid')
+    choose(browser, '#drawn-by', 'server')
+    browser.wait('document.body.dataset.picture === "image/png"')
+    browser.value('window.kinds = new Set(); new MutationObserver(() => kinds.add(document.body.dataset.picture))'
+                  '.observe(document.body, {attributes: true})')
+    before = browser.value('document.body.dataset.camera')
+    x, y, w, h = (int(v) for v in browser.box('#scene'))
+    browser.drag((x + w / 2, y + h / 2), (x + w / 2 + 90, y + h / 2 + 30), steps=20)
+    x0, y0, w0, h0 = browser.box('#slider')
+    browser.drag((x0 + 0.4 * w0, y0 + h0 / 2), (x0 + 0.5 * w0, y0 + h0 / 2), steps=10)
+    browser.wait('kinds.has("image/jpeg")')
+    check(browser.value('document.body.dataset.camera') != before, 'the camera moves')
+    browser.wait('document.body.dataset.picture === "image/png" && document.body.dataset.preview === "false"')
+    at_rest(browser)
+    check('chosen' in browser.value('document.getElementById("facts").textContent'), 'why the server draws is told')
+    browser.value('new Promise(done => setTimeout(done, 400))')
+    _, _, page = pixels(browser.picture(pictures and f'{pictures}/server.png'))
+    with tempfile.TemporaryDirectory() as folder:
+        _, _, drawn = rendered(browser, folder)
+    rows = range(0, h - 100)  # above the axes
+    differ = sum(page[y + j][3 * x:3 * (x + w)] != drawn[j] for j in rows)
+    check(len(set(drawn[h // 2][i:i + 3] for i in range(0, 3 * w, 3))) > 20, 'there is something to see')
+    check(differ == 0, f'{differ} of {len(rows)} rows differ')
+    choose(browser, '#drawn-by', '')
+    browser.wait('document.body.dataset.picture === "" && document.getElementById("picture").hidden')
+
+
+def test_without_webgl_the_server_draws(browser, viewer):
+    script = browser.call('Page.addScriptToEvaluateOnNewDocument', source='HTMLCanvasElement.prototype.getContext = (get => function(kind, '
+                          '...more) { return kind === "webgl2" ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype'
+                          '.getContext)')['identifier']
+    start(browser, viewer)
+    browser.call('Page.removeScriptToEvaluateOnNewDocument', identifier=script)
+    browser.wait('document.body.dataset.picture === "image/png"')
+    check('no WebGL2' in browser.value('document.getElementById("facts").textContent'), 'the reason is told')
+    check(0.1 < share_of_surface(browser) < 0.7, 'the surface is in the picture')
+    browser.key('1')
+    browser.wait('document.body.dataset.camera.split(":")[2] === "0,-1,0"')
+    at_rest(browser)
+
+
 def test_save(browser, viewer):
     """By name into the folder of --out; without it not at all."""
     start(browser, viewer)

@@ -54,9 +54,22 @@ function chooseScale() {
 }
 let resting = false;
 
+/** Why the server draws, or nothing where the browser does. */
+const serverDraws = () => (!scene ? 'no WebGL2 here' : state.drawn === 'server' ? 'chosen' : '');
+const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);
+const pictureSize = () => ['clientWidth', 'clientHeight'].map((side) => Math.max(1, Math.min(4096, Math.round(id('scene')[side] * (window.devicePixelRatio || 1)))));
+
 function draw() {
   drawPlanned = false;
-  if (!scene || !grid?.lower) return;
+  if (!grid?.lower) return;
+  if (serverDraws()) {
+    drawAxes();
+    placeMark();
+    document.body.dataset.camera = camera.text();
+    if (frame && !frame.picture) wishSoon();
+    return;
+  }
+  if (frame?.picture) return wishSoon();
   chooseScale();
   const pad = grid.upper.map((u, i) => (u - grid.lower[i]) * 0.001);
   const start = performance.now();
@@ -108,24 +121,56 @@ function drawAxes() {
 function tellFacts() {
   const [first] = isosurfaces();
   const triangles = [...new Map(isosurfaces().map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
-  const drawn = isosurfaces().reduce((sum, one) => sum + (scene.meshes.get(one.key)?.count || 0) / 3, 0);
+  const drawn = isosurfaces().reduce((sum, one) => sum + (scene?.meshes.get(one.key)?.count || 0) / 3, 0);
   id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
-  const parts = [`${format.grouped(triangles)} triangles` + (frame.preview ? `, preview of ${format.rough(drawn)}` : '')];
+  const parts = [`${format.grouped(triangles)} triangles` + (frame.preview && !frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
   if (triangles === 0 && first) parts[0] = 'no triangles at this value';
-  parts.push(`extract ${format.duration(frame.extract_ms)}`, `code ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
-    `draw ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
+  const {picture} = frame;
+  if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
+  parts.push(`extract ${format.duration(frame.extract_ms)}`, `${picture ? 'draw and code' : 'code'} ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
+    `${picture ? 'show' : 'draw'} ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
   if (frame.method === 'direct') parts.push('direct, while the grid is packed');
   id('facts').textContent = parts.join(' · ');
   id('facts').title = parts.join('\n');
   Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: frame.preview, method: frame.method,
     frame: frame.number, field: frame.field, step_shown: frame.step,
-    kinds: frame.surfaces.map(({kind}) => kind).join(' ')});
+    picture: frame.picture?.type ?? '', kinds: frame.surfaces.map(({kind}) => kind).join(' ')});
   id('scene').setAttribute('aria-label', `Isosurface of ${state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
     `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
 }
 
+/** A picture of the server: newer ones only. */
+async function takePicture(next) {
+  const start = performance.now(), canvas = id('picture');
+  const bitmap = await createImageBitmap(new Blob([next.picture.coded], {type: next.picture.type}));
+  if (frame?.picture && frame.number > next.number) return link.send({do: 'shown', number: next.number});
+  [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+  canvas.getContext('2d').drawImage(bitmap, 0, 0);
+  // A pixel of the picture is one of the screen, also where the stage has a part of a pixel more.
+  ['width', 'height'].forEach((side, i) => { canvas.style[side] = `${pictureSize()[i] / (window.devicePixelRatio || 1)}px`; });
+  canvas.hidden = !serverDraws();
+  next.field = state.field;
+  next.acknowledged = true;
+  next.draw_ms = performance.now() - start;
+  next.age_ms = performance.now() - (sentAt.get(next.number) ?? start);
+  for (const old of sentAt.keys()) if (old <= next.number) sentAt.delete(old);
+  frame = next;
+  link.send({do: 'shown', number: next.number});
+  if (next.number >= number) stopWaiting();
+  say(next.notes.join(' '));
+  showSurfaces();
+  showRange();
+  tellFacts();
+  drawSoon();
+  if (next.preview && next.number >= number) restSoon();
+  time.shown(next.step);
+}
+
 function takeFrame(buffer) {
   const next = readFrame(buffer);
+  if (next.picture) return takePicture(next);
+  if (!scene) return;
+  id('picture').hidden = true;
   const keep = new Set(next.surfaces.map(({key}) => key));
   for (const key of [...scene.meshes.keys()]) if (!keep.has(key)) scene.remove(key);
   for (const {key, mesh} of next.surfaces) if (mesh) scene.add(key, mesh);
@@ -150,7 +195,7 @@ function stopWaiting() {
 
 /** What a frame depends on. */
 const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic,
-  planesOf(state, 'slice'), state.boundary > 0, state.step, document.body.dataset.step === 'ready']);
+  planesOf(state, 'slice'), state.boundary > 0, state.step, document.body.dataset.step === 'ready', serverDraws() && [camera.text(), pictureSize(), toMessage(state)]]);
 
 /** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 0.6 s for one that rests. In few steps. */
 let speed = null, lastMost = 0; // triangles a ms
@@ -167,7 +212,8 @@ function wish(moving) {
   const what = wanted() + (moving ? '' : '|rest');
   if (what === sent || (moving && sent === wanted() + '|rest')) return;
   const message = {do: 'show', number: number + 1, state: toMessage(state), moving, most: mostTriangles(moving)};
-  delete message.state.camera;
+  if (serverDraws()) Object.assign(message, {picture: pictureSize()}).state.camera = camera.text();
+  else delete message.state.camera;
   if (time.playing) message.next = time.next(state.step);
   if (!link.send(message)) return;
   sent = what;
@@ -218,7 +264,7 @@ addEventListener('popstate', () => {
 
 /** The controls and the picture follow a new state. */
 function showState() {
-  if (!state.camera || !camera.set(state.camera)) camera.fit(grid.lower, grid.upper, scene?.aspect() || 1);
+  if (!state.camera || !camera.set(state.camera)) camera.fit(grid.lower, grid.upper, aspect());
   id('field').value = state.field;
   id('color-by').value = state.colorBy;
   id('map').value = state.map;
@@ -227,6 +273,9 @@ function showState() {
   id('edges').checked = state.edges;
   id('parallel').checked = camera.projection === 'parallel';
   id('color-details').hidden = !state.colorBy;
+  id('drawn-by').value = serverDraws() ? 'server' : '';
+  id('drawn-by').disabled = !scene;
+  id('picture').hidden = !serverDraws();
   showBoundary();
   cuts.show();
   time.show(state.step ?? 0);
@@ -335,8 +384,8 @@ function surfaceRow(i) {
     (i === 0 ? '<span class="spacer"></span>' : '<button type="button">×</button>');
   const own = () => (i === 0 ? state : state.pins[i - 1]);
   const [color, , opacity] = row.children;
-  color.addEventListener('input', () => { own().color = color.value; showValue(); drawSoon(); commitSoon(); });
-  opacity.addEventListener('input', () => { own().opacity = Number(opacity.value); drawSoon(); commitSoon(); });
+  color.addEventListener('input', () => { own().color = color.value; showValue(); if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
+  opacity.addEventListener('input', () => { own().opacity = Number(opacity.value); if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
   row.querySelector('button')?.addEventListener('click', () => {
     state.pins.splice(i - 1, 1);
     pinsChanged();
@@ -411,11 +460,12 @@ function takeRange() {
 function lookFrom(name) {
   if (!grid?.lower) return;
   if (name !== 'fit') camera.look(name);
-  camera.fit(grid.lower, grid.upper, scene.aspect());
+  camera.fit(grid.lower, grid.upper, aspect());
   moved();
 }
 
 function moved() {
+  if (serverDraws()) wishSoon();
   id('parallel').checked = camera.projection === 'parallel';
   drawSoon();
   commitSoon();
@@ -424,7 +474,16 @@ function moved() {
 for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => lookFrom(button.dataset.view));
 id('parallel').addEventListener('change', () => { camera.setProjection(id('parallel').checked ? 'parallel' : 'perspective'); moved(); });
 for (const flag of ['edges', 'outline'])
-  id(flag).addEventListener('change', () => { state[flag] = id(flag).checked; drawSoon(); commitSoon(); });
+  id(flag).addEventListener('change', () => { state[flag] = id(flag).checked; if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
+id('drawn-by').addEventListener('change', () => {
+  state.drawn = id('drawn-by').value;
+  sent = null;
+  closePicked();
+  wishSoon();
+  drawSoon();
+  commit();
+});
+
 function showBoundary() {
   id('boundary').value = state.boundary;
   id('boundary-text').textContent = state.boundary > 0 ? state.boundary.toFixed(2) : 'off';
@@ -438,7 +497,7 @@ id('boundary').addEventListener('input', () => {
   commitSoon();
 });
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { showValue(); drawSoon(); });
-new ResizeObserver(drawSoon).observe(id('stage'));
+new ResizeObserver(() => { if (grid && serverDraws()) wishSoon(); drawSoon(); }).observe(id('stage'));
 
 // --- cuts, time, values -----------------------------------------------------------------------------------------------
 
@@ -470,6 +529,7 @@ const time = new TimeSteps({section: id('time'), slider: id('step'), label: id('
 
 let picked = null;
 function pickAt(x, y) {
+  if (serverDraws()) return say('Values are shown where the browser draws.');
   const found = scene?.pickSurface(x, y);
   if (!found) return closePicked();
   const {surface, point} = found, message = {do: 'pick', state: toMessage(state), point};
@@ -510,7 +570,7 @@ function closePicked() {
 id('picked-close').addEventListener('click', () => { closePicked(); id('scene').focus(); });
 
 function placeMark() {
-  const at = picked && !id('picked').hidden && scene?.project(picked.point);
+  const at = picked && !id('picked').hidden && !serverDraws() && scene?.project(picked.point);
   id('mark').toggleAttribute('hidden', !at);
   if (!at) return;
   id('mark').style.left = `${50 + 50 * at[0]}%`;
@@ -548,7 +608,7 @@ function takeState(message) {
   if (!next.field) next.field = state.field;
   if (next.value === null && next.field === state.field) next.value = state.value;
   if (next.step === null) next.step = state.step;
-  state = next;
+  state = {...next, drawn: state.drawn};
   if (!state.camera) state.camera = camera.text();
   id('command').value = '';
   say('');
@@ -656,8 +716,8 @@ const messages = {
 try {
   scene = new Scene(id('scene'));
   scene.onRestored = () => { frame = null; sent = null; link.socket.close(); };
-} catch (error) {
-  say(error.message);
+} catch {
+  scene = null; // the server draws
 }
 
 const link = new Link(token, {
@@ -670,9 +730,9 @@ const link = new Link(token, {
     document.body.dataset.link = 'lost';
   },
   text: (message) => messages[message.say]?.(message),
-  frame: (buffer) => { if (scene) takeFrame(buffer); },
+  frame: takeFrame,
 });
 
-new Pointer(id('scene'), camera, () => scene, {
+new Pointer(id('scene'), camera, () => (serverDraws() ? null : scene), {
   moved, middle: () => grid && grid.lower.map((v, i) => (v + grid.upper[i]) / 2), level: (steps) => slider.step(steps), click: pickAt,
 });

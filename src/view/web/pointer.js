@@ -26,7 +26,7 @@ export class Pointer {
   /** The point of a surface there; else at the depth of the middle of the grid. */
   pointAt(event) {
     const [x, y] = this.place(event);
-    return this.scene()?.pick(x, y) || this.camera.under(x, y, this.scene()?.aspect() || 1, this.on.middle() || this.camera.target);
+    return this.scene()?.pick(x, y) || this.camera.under(x, y, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), this.on.middle() || this.camera.target);
   }
 
   press(event) {

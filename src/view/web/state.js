@@ -5,7 +5,8 @@ export const firstState = () => ({
   field: '', value: null, pins: [], // [{value, color, opacity}], color null: the one that isotet render gives
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
-  boundary: 0.1, planes: [], step: null, // planes: [{kind: 'clip' or 'slice', normal, offset}]
+  boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures
+  // planes: [{kind: 'clip' or 'slice', normal, offset}]
 });
 
 const isColor = (text) => /^#[0-9a-f]{6}$/.test(text);
@@ -28,6 +29,7 @@ export function toAddress(state) {
   if (state.boundary !== 0.1) parts.set('boundary', state.boundary);
   for (const {kind, normal, offset} of state.planes) parts.append(kind, [...normal, offset].join(','));
   if (state.step !== null) parts.set('step', state.step);
+  if (state.drawn) parts.set('drawn', state.drawn);
   if (state.camera) parts.set('camera', state.camera);
   return parts.toString();
 }
@@ -62,6 +64,7 @@ export function fromAddress(text) {
   }
   const step = number(parts.get('step'));
   if (step !== null && Number.isInteger(step) && step >= 0) state.step = step;
+  if (parts.get('drawn') === 'server') state.drawn = 'server';
   state.camera = parts.get('camera');
   return state;
 }
