@@ -69,6 +69,31 @@ TEST(Texts, ReplaceBytesThatAreNotUtf8) {
     EXPECT_TRUE(parse_json(refusal_text(1, std::string("\0\x01\"\\", 4))));
 }
 
+TEST(ParsePageMessage, RefusesPicksPicturesAndFilesThatMakeNoSense) {
+    for (
+        const char* text : {
+            R"({"do":"pick","state":{"isovalues":[1]},"point":[1,2]})",
+            R"({"do":"pick","state":{"isovalues":[1]},"point":[1,2,"3"]})",
+            R"({"do":"pick","state":{},"point":[1,2,3]})",
+            R"({"do":"pick","state":{"isovalues":[1]},"slice":0,"point":[1,2,3]})",
+            R"({"do":"show","number":1,"state":{},"picture":[0,10]})",
+            R"({"do":"show","number":1,"state":{},"picture":[10,8193]})",
+            R"({"do":"show","number":1,"state":{},"picture":[10]})",
+            R"({"do":"show","number":1,"state":{"boundary":1.5}})",
+            R"({"do":"show","number":1,"state":{"clips":[[0,0,0,1]]}})",
+            R"({"do":"show","number":1,"state":{"slices":[[1,0,0]]}})",
+            R"({"do":"show","number":1,"state":{"slices":[[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0]]}})",
+            R"({"do":"show","number":1,"state":{"step":-1}})",
+            R"({"do":"save","kind":"program","name":"a.png","state":{}})",
+            R"({"do":"save","kind":"picture","state":{}})",
+            R"({"do":"save","kind":"picture","name":"a.png","width":-1,"state":{}})",
+            R"({"do":"save","kind":"sweep","name":"a.webp","from":"1","state":{}})",
+        })
+        EXPECT_FALSE(parse_page_message(text)) << text;
+    EXPECT_TRUE(parse_page_message(R"({"do":"pick","state":{"slices":[[1,0,0,0]]},"slice":0,"point":[1,2,3]})"));
+    EXPECT_TRUE(parse_page_message(R"({"do":"save","kind":"turn","name":"a.webp","pictures":8,"state":{}})"));
+}
+
 SaveRequest picture_request(std::string name) {
     SaveRequest request;
     request.name = std::move(name);

@@ -129,7 +129,7 @@ function tellFacts() {
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
   parts.push(`extract ${format.duration(frame.extract_ms)}`, `${picture ? 'draw and code' : 'code'} ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
     `${picture ? 'show' : 'draw'} ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
-  if (frame.method === 'direct') parts.push('direct, while the grid is packed');
+  if (frame.method === 'direct' && !picture) parts.push('direct, while the grid is packed');
   id('facts').textContent = parts.join(' · ');
   id('facts').title = parts.join('\n');
   Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: frame.preview, method: frame.method,
