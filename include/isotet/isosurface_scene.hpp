@@ -79,6 +79,16 @@ struct SurfaceLook {
 ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,
                                              const SceneLook& look);
 
+/// normal . p of each point: one float64 a point.
+ISOTET_API Array heights_over(const Array& points, const Plane& plane);
+
+/// The cut through a grid along a plane, as IsosurfaceScene draws it; with `field`, if it is not null, as its first field of
+/// points or cells.
+///
+/// Cost     a direct extraction
+/// Errors   as linearize() and extract_direct()
+ISOTET_API Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run = {});
+
 /// Where surfaces of a grid are extracted.
 enum class ExtractOn : std::uint8_t {
     best, ///< on the device that draws if it is a graphics card and clusters pay or are asked for, else on the CPU

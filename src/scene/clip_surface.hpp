@@ -2,7 +2,6 @@
 // Cutting surfaces by planes.
 #pragma once
 
-#include <isotet/export.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/surface.hpp>
 
@@ -10,9 +9,9 @@ namespace isotet::scene {
 
 /// What of a surface lies at normal . p <= offset. Triangles that the plane cuts end there; their new vertices have the
 /// values between those of both ends. Normals of faces, edge ends and source cells are dropped.
-ISOTET_API Surface clipped(const Surface& surface, const Plane& plane);
+Surface clipped(const Surface& surface, const Plane& plane);
 
 /// The edges of the triangles, each once.
-ISOTET_API DrawnLines edges_of(const Surface& surface);
+DrawnLines edges_of(const Surface& surface);
 
 } // namespace isotet::scene

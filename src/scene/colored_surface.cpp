@@ -94,6 +94,15 @@ Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorFiel
     return {};
 }
 
+SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
+    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
+    return {fields.front().values, field.association, field.scale};
+}
+
+} // namespace isotet::scene
+
+namespace isotet {
+
 Array heights_over(const Array& points, const Plane& plane) {
     std::vector<double> heights(points.tuples());
     points.visit([&](auto scalars) {
@@ -123,9 +132,4 @@ Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField*
     return std::move(cut->surfaces.front().surface);
 }
 
-SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
-    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
-    return {fields.front().values, field.association, field.scale};
-}
-
-} // namespace isotet::scene
+} // namespace isotet

@@ -130,7 +130,7 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
     report.boundary_seconds = looking.seconds();
     const ColorField* colors = look.colors ? &*look.colors : nullptr;
     for (const Plane& plane : look.slices) {
-        Result<Surface> slice = scene::slice_of(grid, plane, colors, run);
+        Result<Surface> slice = slice_of(grid, plane, colors, run);
         if (!slice) return slice.error();
         report.slice_triangles += slice->triangle_count();
         if (look.edges) edges.push_back(scene::edges_of(*slice));

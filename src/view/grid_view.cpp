@@ -12,8 +12,6 @@
 #include <isotet/boundary.hpp>
 #include <isotet/field_statistics.hpp>
 
-#include "scene/colored_surface.hpp"
-
 namespace isotet::view {
 
 namespace {
@@ -316,7 +314,7 @@ Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, c
     if (auto kept = kept_mesh(key)) return kept;
     const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
     const auto start = std::chrono::steady_clock::now();
-    const Result<Surface> slice = scene::slice_of(grid_, plane, colors ? &*colors : nullptr, run);
+    const Result<Surface> slice = slice_of(grid_, plane, colors ? &*colors : nullptr, run);
     if (!slice) return slice.error();
     facts.extract_seconds += seconds_of(start);
     return keep(key, *slice, scale, facts, run);
@@ -435,7 +433,7 @@ Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
     double isovalue = 0;
     if (message.slice) {
         const Plane& plane = message.state.slices[*message.slice];
-        field = {"height", scene::heights_over(grid_.points, plane), false, {}};
+        field = {"height", heights_over(grid_.points, plane), false, {}};
         isovalue = plane.offset;
     } else {
         Result<PointField> found = field_of(message.state.field, run);
