@@ -278,6 +278,12 @@ void add_view(const Command& program, ViewCommand& view) {
         "--allow-host",
         [&](const std::vector<std::string>& names) { view.hosts.insert(view.hosts.end(), names.begin(), names.end()); },
         "NAME", "A name by which browsers reach the page, of a proxy say, beside localhost; may be repeated");
+    command.add_file(
+        "--out", view.out, "FOLDER",
+        "A folder into which the page may save pictures, surfaces and animations, by name; without it none");
+    command.add_text("--listen", view.listen, "ADDRESS",
+                     "Serve at this address of the machine, 0.0.0.0 for all, instead of 127.0.0.1: whoever knows the "
+                     "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
     command.add_flag("--keep", view.keep, "Go on when the last page was closed; without it for a minute");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
     add_time(command, view.grid);

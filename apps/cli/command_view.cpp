@@ -1,5 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet view`: a grid in the browser.
+#include <filesystem>
+#include <mutex>
+
 #include <fmt/format.h>
 
 #include <isotet/version.hpp>
@@ -25,8 +28,6 @@ std::vector<std::string> reading_options(const GridOptions& grid) {
     std::vector<std::string> words;
     const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
     if (!grid.format.empty()) add("--format", grid.format);
-    if (grid.time) add("--time", shortest(*grid.time));
-    if (grid.step) add("--step", std::to_string(*grid.step));
     if (grid.merge_points) add("--merge-points", shortest(*grid.merge_points));
     if (grid.keep_pieces) words.emplace_back("--keep-pieces");
     if (grid.allow_outside) words.emplace_back("--allow-outside");
@@ -42,9 +43,11 @@ Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSourc
     view::ViewerInput input;
     input.state.field = command.field.name;
     if (input.state.field.empty()) input.state.field = default_field(*grid).name;
-    if (input.state.field.empty()) input.state.field = "x";
+    if (input.state.field.empty()) input.state.field = std::string("x");
     input.state.isovalues = command.isovalues;
     input.state.color_by = command.color_by;
+    input.times = source.info().times;
+    if (input.times.size() > 1) input.state.step = step;
     input.notes = console.noted();
     input.grid = *std::move(grid);
     return input;
@@ -61,6 +64,17 @@ Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer
         const Result<ExitCode> told = finish(console, command.common, address + "\n", std::move(report));
         if (!told) return told.error();
     }
+    constexpr std::string_view unix_prefix = "unix:";
+    if (command.listen.starts_with(unix_prefix)) {
+        console.note("on the machine with the browser: ssh -N -L 8123:" + command.listen.substr(unix_prefix.size()) +
+                     " HOST  then open the address there");
+        return {};
+    }
+    if (!command.listen.empty() && command.listen != "127.0.0.1" && command.listen != "::1")
+        console.note(
+            fmt::format("warning: other machines reach this page at {}, and the line is not encrypted: whoever "
+                        "reads it can look at the file{}. ssh -L is the safe way",
+                        command.listen, command.out.empty() ? "" : ", and write into --out"));
     if (is_over_ssh()) {
         console.note("on the machine with the browser: " + ssh_line(viewer.port()) + "  then open the address there");
     } else if (!command.no_browser && !open_browser(address)) {
@@ -90,7 +104,20 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     options.version = ISOTET_VERSION;
     options.keep = command.keep;
     options.threads = command.common.threads;
+    if (!command.out.empty()) {
+        std::error_code ignored;
+        if (!std::filesystem::is_directory(command.out, ignored))
+            return usage_error("--out is '{}', which is no folder", command.out);
+        options.out = command.out;
+        options.program = "/proc/self/exe";
+    }
+    options.listen = command.listen;
     options.read = [&](const Run& run) { return read_input(command, *source, steps->front(), console, run); };
+    std::mutex reading; // steps are read by several threads
+    options.read_step = [&](std::size_t step, const Run& run) {
+        const std::lock_guard lock(reading);
+        return source->read({}, step, console, run);
+    };
     auto viewer = view::Viewer::open(std::move(options));
     if (!viewer) return viewer.error();
     if (Result<void> told = tell_address(command, **viewer, console); !told) return told.error();

@@ -155,6 +155,8 @@ struct ViewCommand {
     std::vector<std::string> hosts; ///< names beside localhost by which a browser reaches the page
     bool keep = false;
     bool no_browser = false;
+    std::string out;    ///< a folder where the page may save files; empty: none
+    std::string listen; ///< an address to serve at, or a path of a Unix socket; empty: 127.0.0.1
 };
 
 struct BenchCommand {

@@ -65,6 +65,31 @@ struct SceneLook {
     std::vector<Plane> slices;     ///< through the grid; not clipped
 };
 
+/// Colour and opacity of one of several isosurfaces.
+struct SurfaceLook {
+    Color color;
+    double opacity = 1;
+};
+
+/// What IsosurfaceScene gives isosurfaces that are shown together: colours in the order of their values, and of several
+/// surfaces an opacity of 0.35 to those that may hide others, because a box of another one lies in theirs.
+///
+/// `boxes`    of the surfaces, one an isovalue; empty for a surface that is
+/// `look`     its map, range of isovalues and opacity count
+/// Returns    a look an isovalue
+ISOTET_API std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,
+                                             const SceneLook& look);
+
+/// normal . p of each point: one float64 a point.
+ISOTET_API Array heights_over(const Array& points, const Plane& plane);
+
+/// The cut through a grid along a plane, as IsosurfaceScene draws it; with `field`, if it is not null, as its first field of
+/// points or cells.
+///
+/// Cost     a direct extraction
+/// Errors   as linearize() and extract_direct()
+ISOTET_API Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run = {});
+
 /// Where surfaces of a grid are extracted.
 enum class ExtractOn : std::uint8_t {
     best, ///< on the device that draws if it is a graphics card and clusters pay or are asked for, else on the CPU

@@ -41,7 +41,8 @@ std::optional<double> gain_of_interval_tree(const std::vector<BenchRow>& rows, B
     double sum = 0;
     int grids = 0;
     for (const BenchRow& with : rows) {
-        if (with.pair.method != method || with.pair.index != SearchIndex::interval_tree || !with.missing.empty()) continue;
+        if (with.pair.method != method || with.pair.index != SearchIndex::interval_tree || !with.missing.empty())
+            continue;
         const auto without = std::ranges::find_if(rows, [&](const BenchRow& row) {
             return row.grid == with.grid && row.pair.method == method && row.pair.index == SearchIndex::none &&
                    row.missing.empty();

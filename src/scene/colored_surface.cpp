@@ -94,15 +94,28 @@ Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorFiel
     return {};
 }
 
-Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
-    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
-    if (!linear) return linear.error();
-    std::vector<double> heights(linear->grid.points.tuples());
-    linear->grid.points.visit([&](auto scalars) {
+SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
+    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
+    return {fields.front().values, field.association, field.scale};
+}
+
+} // namespace isotet::scene
+
+namespace isotet {
+
+Array heights_over(const Array& points, const Plane& plane) {
+    std::vector<double> heights(points.tuples());
+    points.visit([&](auto scalars) {
         for (std::size_t i = 0; i < heights.size(); ++i)
             for (std::size_t axis = 0; axis < 3; ++axis)
                 heights[i] += plane.normal[axis] * static_cast<double>(scalars[3 * i + axis]);
     });
+    return Array::own(std::move(heights));
+}
+
+Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
+    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
+    if (!linear) return linear.error();
     DirectOptions options;
     if (field) {
         const bool of_points = field->association == Association::point;
@@ -112,15 +125,11 @@ Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField*
         (of_points ? options.extract.point_fields : options.extract.cell_fields) = {{field->name, *values}};
     }
     const double offset = plane.offset;
-    Result<DirectExtraction> cut = extract_direct(linear->grid, {"height", Array::own(std::move(heights)), false, {}},
-                                                  std::span(&offset, 1), options, run);
+    Result<DirectExtraction> cut =
+        extract_direct(linear->grid, {"height", heights_over(linear->grid.points, plane), false, {}},
+                       std::span(&offset, 1), options, run);
     if (!cut) return cut.error();
     return std::move(cut->surfaces.front().surface);
 }
 
-SurfaceColors carried_colors(const Surface& surface, const ColorField& field) {
-    const auto& fields = field.association == Association::point ? surface.point_fields : surface.cell_fields;
-    return {fields.front().values, field.association, field.scale};
-}
-
-} // namespace isotet::scene
+} // namespace isotet

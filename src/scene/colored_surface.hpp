@@ -11,9 +11,6 @@ namespace isotet::scene {
 /// Errors   invalid_argument when the field does not fit the grid; as split()
 Result<void> color_boundary(Surface& boundary, const Grid& grid, const ColorField& field, const Run& run);
 
-/// The cut through a grid along a plane; with `field`, if there is one, as its first field of points or cells.
-Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run);
-
 /// The first field of points or cells, as `field` is one, with its scale.
 SurfaceColors carried_colors(const Surface& surface, const ColorField& field);
 

@@ -22,7 +22,7 @@ struct Bed {
     std::optional<Device> device;     ///< nothing: surfaces are made, and not drawn
     std::optional<Renderer> renderer; ///< if there is a device
     std::uint64_t estimated_tets = 0;
-    Run run;                          ///< of the call
+    Run run; ///< of the call
     std::optional<PackedGrid> packed = {};
     double pack_seconds = 0;
 

@@ -25,21 +25,31 @@ constexpr Color single_color{0.92F, 0.48F, 0.16F, 1}; ///< stands out from the b
 
 /// Isosurfaces have colours of their own: from the dark to the light of the map, in the order of their values, or by their
 /// place in a range.
-Color color_among(const std::vector<ShownSurface>& surfaces, std::size_t which, const SceneLook& look) {
-    if (look.isovalue_range && surfaces[which].isovalue) {
+template <class ValueAt>
+Color color_among(std::size_t count, std::size_t which, const ValueAt& value_at, const SceneLook& look) {
+    const std::optional<double> isovalue = value_at(which);
+    if (look.isovalue_range && isovalue) {
         const auto [lower, upper] = *look.isovalue_range;
-        return color_at(look.map, lower < upper ? (*surfaces[which].isovalue - lower) / (upper - lower) : 0.5);
+        return color_at(look.map, lower < upper ? (*isovalue - lower) / (upper - lower) : 0.5);
     }
-    if (surfaces.size() < 2) return single_color;
-    const auto below = std::ranges::count_if(
-        surfaces, [&](const ShownSurface& one) { return one.isovalue < surfaces[which].isovalue; });
-    return color_at(look.map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(surfaces.size() - 1));
+    if (count < 2) return single_color;
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < count; ++i) below += value_at(i) < isovalue ? 1 : 0;
+    return color_at(look.map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(count - 1));
 }
 
 bool holds(const Box& box, const Box& other) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (!(box.lower[axis] <= other.lower[axis] && other.upper[axis] <= box.upper[axis])) return false;
     return true;
+}
+
+/// Whether a surface may hide another one: one that has its box inside this one's. Of surfaces side by side, such as planes,
+/// all may.
+bool box_hides_another(std::span<const Box> boxes, std::size_t which) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (i != which && !boxes[i].empty() && !holds(boxes[i], boxes[which])) return true;
+    return false;
 }
 
 /// Device memory that pictures of this size need beside a store, with the numbers of all tets.
@@ -120,7 +130,7 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
     report.boundary_seconds = looking.seconds();
     const ColorField* colors = look.colors ? &*look.colors : nullptr;
     for (const Plane& plane : look.slices) {
-        Result<Surface> slice = scene::slice_of(grid, plane, colors, run);
+        Result<Surface> slice = slice_of(grid, plane, colors, run);
         if (!slice) return slice.error();
         report.slice_triangles += slice->triangle_count();
         if (look.edges) edges.push_back(scene::edges_of(*slice));
@@ -314,13 +324,9 @@ Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
     return {};
 }
 
-/// Whether a surface may hide another one: one that has its box inside this one's. Of surfaces side by side, such as planes,
-/// all may.
 bool IsosurfaceScene::Data::hides_another(std::size_t which) const {
     if (boxes.size() != shown.size()) return shown[which].size() > smallest_size(); // they are on the device
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (i != which && !boxes[i].empty() && !holds(boxes[i], boxes[which])) return true;
-    return false;
+    return box_hides_another(boxes, which);
 }
 
 std::uint64_t IsosurfaceScene::Data::smallest_size() const {
@@ -333,7 +339,8 @@ std::uint64_t IsosurfaceScene::Data::smallest_size() const {
 /// Colours and opacities, and what is around the surfaces.
 void IsosurfaceScene::Data::dress() {
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        scene.surfaces[i].color = color_among(shown, i, look);
+        const auto value_at = [&](std::size_t at) { return shown[at].isovalue; };
+        scene.surfaces[i].color = color_among(shown.size(), i, value_at, look);
         scene.surfaces[i].opacity =
             look.opacity.value_or(shown.size() > 1 && hides_another(i) ? opacity_among_several : 1);
     }
@@ -357,6 +364,18 @@ void IsosurfaceScene::Data::clear() {
     values.clear();
     boxes.clear();
     shown.clear();
+}
+
+std::vector<SurfaceLook> looks_of(std::span<const double> isovalues, std::span<const Box> boxes,
+                                  const SceneLook& look) {
+    std::vector<SurfaceLook> looks(isovalues.size());
+    const auto value_at = [&](std::size_t at) { return std::optional(isovalues[at]); };
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        looks[i].color = color_among(isovalues.size(), i, value_at, look);
+        const bool hides = isovalues.size() > 1 && i < boxes.size() && box_hides_another(boxes, i);
+        looks[i].opacity = look.opacity.value_or(hides ? opacity_among_several : 1);
+    }
+    return looks;
 }
 
 IsosurfaceScene::IsosurfaceScene(std::unique_ptr<Data> data) : data_(std::move(data)) {}

@@ -2,6 +2,7 @@
 #include "view/command_line.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -24,9 +25,11 @@ void add_surfaces(std::vector<std::string>& words, const ViewState& state) {
 }
 
 std::vector<std::string> first_words(const char* command, const std::string& file,
-                                     const std::vector<std::string>& reading) {
+                                     const std::vector<std::string>& reading,
+                                     const std::optional<std::uint64_t>& step) {
     std::vector<std::string> words{"isotet", command, file.starts_with('-') ? "./" + file : file};
     words.insert(words.end(), reading.begin(), reading.end());
+    if (step) words.insert(words.end(), {"--step", std::to_string(*step)});
     return words;
 }
 
@@ -104,11 +107,75 @@ constexpr PageOption page_options[] = {
      }},
 };
 
+/// "x=0.5", "-x=0.5" and "NX,NY,NZ,OFFSET", as isotet render takes it.
+std::optional<Plane> plane_of(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos) {
+        const auto numbers = numbers_of(text);
+        if (!numbers || numbers->size() != 4) return {};
+        const Plane plane{{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, (*numbers)[3]};
+        return plane.normal == std::array<double, 3>{} ? std::nullopt : std::optional(plane);
+    }
+    std::string_view axis = text.substr(0, equals);
+    const bool minus = axis.starts_with('-');
+    if (minus || axis.starts_with('+')) axis.remove_prefix(1);
+    const auto offset = number_of(text.substr(equals + 1));
+    if (axis.size() != 1 || axis[0] < 'x' || axis[0] > 'z' || !offset) return {};
+    Plane plane{{0, 0, 0}, minus && *offset != 0 ? -*offset : *offset};
+    plane.normal[static_cast<std::size_t>(axis[0] - 'x')] = minus ? -1 : 1;
+    return plane;
+}
+
+std::string plane_text(const Plane& plane) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::array<double, 3> unit{};
+        for (const double sign : {1.0, -1.0}) {
+            unit[axis] = sign;
+            if (plane.normal == unit)
+                return fmt::format("{}{}={}", sign < 0 ? "-" : "", "xyz"[axis],
+                                   plane.offset == 0 ? 0 : sign * plane.offset);
+        }
+    }
+    return fmt::format("{},{}", fmt::join(plane.normal, ","), plane.offset);
+}
+
+bool add_plane(std::vector<Plane>& planes, const std::string& value) {
+    const auto plane = plane_of(value);
+    if (!plane || planes.size() >= max_planes) return false;
+    planes.push_back(*plane);
+    return true;
+}
+
+constexpr std::string_view plane_rule = "x=0.5, -x=0.5 (y and z alike), or NX,NY,NZ,OFFSET, at most 6 times";
+
+constexpr PageOption more_page_options[] = {
+    {"--boundary", "", "a number from 0 to 1",
+     [](ViewState& state, const std::string& value) {
+         const auto opacity = number_of(value);
+         if (opacity) state.boundary = *opacity;
+         return opacity && *opacity >= 0 && *opacity <= 1;
+     }},
+    {"--clip", "", plane_rule,
+     [](ViewState& state, const std::string& value) { return add_plane(state.clips, value); }},
+    {"--slice", "", plane_rule,
+     [](ViewState& state, const std::string& value) { return add_plane(state.slices, value); }},
+    {"--step", "", "a whole number",
+     [](ViewState& state, const std::string& value) {
+         std::uint64_t step = 0;
+         const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), step);
+         if (error != std::errc() || end != value.data() + value.size()) return false;
+         state.step = step;
+         return true;
+     }},
+};
+
 const PageOption* find_option(std::string_view name) {
-    const auto* found = std::ranges::find_if(page_options, [&](const PageOption& option) {
+    const auto is_named = [&](const PageOption& option) {
         return name == option.name || (!option.short_name.empty() && name == option.short_name);
-    });
-    return found == std::end(page_options) ? nullptr : found;
+    };
+    if (const auto* found = std::ranges::find_if(page_options, is_named); found != std::end(page_options)) return found;
+    const auto* found = std::ranges::find_if(more_page_options, is_named);
+    return found == std::end(more_page_options) ? nullptr : found;
 }
 
 /// A word with its value: "--range=0,1", "-i0.5", or "--range" with the next word.
@@ -135,7 +202,7 @@ bool is_plain(char c) {
 
 std::vector<std::string> extract_words(const ViewState& state, const std::string& file,
                                        const std::vector<std::string>& reading) {
-    std::vector<std::string> words = first_words("extract", file, reading);
+    std::vector<std::string> words = first_words("extract", file, reading, state.step);
     add_surfaces(words, state);
     words.insert(words.end(), {"-o", "surface.vtp"});
     return words;
@@ -143,7 +210,7 @@ std::vector<std::string> extract_words(const ViewState& state, const std::string
 
 std::vector<std::string> render_words(const ViewState& state, const std::string& file,
                                       const std::vector<std::string>& reading) {
-    std::vector<std::string> words = first_words("render", file, reading);
+    std::vector<std::string> words = first_words("render", file, reading, state.step);
     add_surfaces(words, state);
     if (!state.color_by.empty()) add_option(words, "--color-by", state.color_by);
     if (state.map != ColorMap::viridis) add_option(words, "--colormap", std::string(name_of(state.map)));
@@ -151,6 +218,10 @@ std::vector<std::string> render_words(const ViewState& state, const std::string&
     if (state.logarithmic) words.emplace_back("--log");
     if (state.opacity) add_option(words, "--opacity", fmt::format("{}", *state.opacity));
     if (state.outline) words.emplace_back("--outline");
+    if (state.edges) words.emplace_back("--edges");
+    if (state.boundary != default_boundary_opacity) add_option(words, "--boundary", fmt::format("{}", state.boundary));
+    for (const Plane& plane : state.clips) add_option(words, "--clip", plane_text(plane));
+    for (const Plane& plane : state.slices) add_option(words, "--slice", plane_text(plane));
     if (state.camera) add_option(words, "--camera", to_text(*state.camera));
     words.insert(words.end(), {"-o", "picture.png"});
     return words;
@@ -216,6 +287,7 @@ Result<ViewState> state_of_command(std::string_view text) {
         if (word == "--") break;
         state.logarithmic = state.logarithmic || word == "--log";
         state.outline = state.outline || word == "--outline";
+        state.edges = state.edges || word == "--edges";
         const auto [option, attached] = option_of(word);
         if (!option) continue;
         if (!attached && i + 1 == words->size())

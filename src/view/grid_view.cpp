@@ -5,9 +5,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
 
+#include <isotet/boundary.hpp>
 #include <isotet/field_statistics.hpp>
 
 namespace isotet::view {
@@ -59,20 +61,32 @@ ValueRange range_of_values(const Array& values, bool logarithmic) {
     return {value - half, value + half};
 }
 
-std::string mesh_key(const ViewState& state, double isovalue) {
-    std::string key = fmt::format("{}|{}|{}", isovalue, state.field, state.color_by);
-    if (state.color_by.empty()) return key;
-    key += state.logarithmic ? "|log" : "|";
+/// Of what colours a surface.
+std::string color_key(const ViewState& state) {
+    if (state.color_by.empty()) return "|";
+    std::string key = fmt::format("|{}|{}", state.color_by, state.logarithmic);
     if (state.range) key += fmt::format("|{}|{}", state.range->lower, state.range->upper);
     return key;
 }
 
-/// Colours that tell isovalues apart, as isotet render has them.
-Color color_of(const std::vector<double>& isovalues, std::size_t which, ColorMap map) {
-    constexpr Color single{0.92F, 0.48F, 0.16F, 1};
-    if (isovalues.size() < 2) return single;
-    const auto below = std::ranges::count_if(isovalues, [&](double one) { return one < isovalues[which]; });
-    return color_at(map, 0.12 + 0.76 * static_cast<double>(below) / static_cast<double>(isovalues.size() - 1));
+std::string mesh_key(const ViewState& state, double isovalue, std::size_t step) {
+    return fmt::format("{}|{}|{}", isovalue, state.field, step) + color_key(state);
+}
+
+std::string slice_key(const ViewState& state, const Plane& plane, std::size_t step) {
+    return fmt::format("slice|{},{},{}|{}|{}", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset, step) +
+           color_key(state);
+}
+
+bool same_values(const Array& a, const Array& b) {
+    return a.type() == b.type() && a.size() == b.size() &&
+           (a.data() == b.data() || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
+}
+
+/// Whether the boundary of both is the same.
+bool same_cells(const Grid& a, const Grid& b) {
+    return same_values(a.points, b.points) && same_values(a.cells.types, b.cells.types) &&
+           same_values(a.cells.offsets, b.cells.offsets) && same_values(a.cells.connectivity, b.cells.connectivity);
 }
 
 /// Triangles of a surface above which a preview is sent.
@@ -110,6 +124,8 @@ Result<std::unique_ptr<GridView>> GridView::create(Grid grid, const GridViewOpti
     view->fields_ = offered_fields(grid);
     view->grid_ = std::move(grid);
     view->options_ = options;
+    view->step_ = options.step;
+    if (options.read_step) view->steps_ = std::make_unique<StepReader>(options.read_step, options.threads);
     return view;
 }
 
@@ -160,19 +176,62 @@ Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, con
     return std::optional(scale);
 }
 
+/// Another step takes the place of the grid; the sessions find out what is the same.
+Result<void> GridView::go_to_step(const ShowMessage& message, const Run& run) {
+    const auto& wanted = message.state.step;
+    if (wanted && *wanted != step_) {
+        if (!steps_ || *wanted >= options_.steps)
+            return Error{
+                ErrorCode::invalid_argument,
+                fmt::format("step {} is asked for, but the file has steps 0 to {}", *wanted, options_.steps - 1)};
+        Result<Grid> grid = steps_->take(*wanted, run);
+        if (!grid) return grid.error();
+        const bool same = same_cells(*grid, grid_);
+        {
+            const std::lock_guard lock(grid_mutex_);
+            grid_ = *std::move(grid);
+            step_ = *wanted;
+        }
+        found_.clear();
+        if (!same)
+            if (Result<void> found = find_boundary(run); !found) return found;
+    }
+    if (steps_ && message.next && *message.next < options_.steps && *message.next != step_)
+        steps_->read_ahead(*message.next);
+    return {};
+}
+
 Result<void> GridView::pack(const std::string& field, const Run& run) {
-    // The cache of fields is frame()'s: this thread finds its own.
-    Result<PointField> contoured = find_field(grid_, field, {}, run);
+    // The cache of fields is frame()'s: this thread finds its own, in a copy that shares the arrays.
+    std::unique_lock lock(grid_mutex_);
+    const Grid grid = grid_;
+    const std::size_t step = step_;
+    lock.unlock();
+    Result<PointField> contoured = find_field(grid, field, {}, run);
     if (!contoured) return contoured.error();
     ContourOptions options;
     options.method = Method::clusters;
-    options.source_cells = !grid_.cell_fields.empty();
-    Result<Contour> contour = Contour::create({grid_, *std::move(contoured), {}, {}}, options);
+    options.source_cells = !grid.cell_fields.empty();
+    Result<Contour> contour = Contour::create({grid, *std::move(contoured), {}, {}}, options);
     if (!contour) return contour.error();
     if (Result<void> ready = contour->prepare(run); !ready) return ready;
     packed_.contour = *std::move(contour);
     packed_.field = field;
+    packed_.step = step;
     is_packed_.store(true, std::memory_order_release);
+    return {};
+}
+
+Result<void> GridView::find_boundary(const Run& run) {
+    std::unique_lock lock(grid_mutex_);
+    const Grid grid = grid_;
+    lock.unlock();
+    Result<Surface> boundary = boundary_of(grid, run);
+    if (!boundary) return boundary.error();
+    Result<Mesh> mesh = mesh_of(*boundary, nullptr, run);
+    if (!mesh) return mesh.error();
+    const std::lock_guard boundary_lock(boundary_mutex_);
+    boundary_ = std::make_shared<const Mesh>(*std::move(mesh));
     return {};
 }
 
@@ -180,7 +239,8 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     const bool packed = is_packed_.load(std::memory_order_acquire);
     Source& source = packed ? packed_ : direct_;
     if (packed) direct_.contour.reset();
-    if (source.contour && source.field == state.field && source.color_by == state.color_by) return &source;
+    if (source.contour && source.field == state.field && source.color_by == state.color_by && source.step == step_)
+        return &source;
     Result<ContourInput> input = input_of(state.field, state.color_by, run);
     if (!input) return input.error();
     if (source.contour) {
@@ -195,24 +255,21 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     }
     source.field = state.field;
     source.color_by = state.color_by;
+    source.step = step_;
     return &source;
 }
 
-Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double isovalue, const std::string& key,
-                                                      const std::optional<ColorScale>& scale, FrameFacts& facts,
-                                                      const Run& run) {
-    if (const auto kept = std::ranges::find(kept_, key, &Kept::key); kept != kept_.end()) {
-        kept->used = true;
-        return kept->mesh;
-    }
-    const auto start = std::chrono::steady_clock::now();
-    Result<ContourResult> extracted = source.contour->extract(isovalue, run);
-    if (!extracted) return extracted.error();
-    facts.extract_seconds += seconds_of(start);
-    facts.method = name_of(extracted->method);
-    facts.notes.insert(facts.notes.end(), extracted->notes.begin(), extracted->notes.end());
+std::shared_ptr<const Mesh> GridView::kept_mesh(const std::string& key) {
+    const auto kept = std::ranges::find(kept_, key, &Kept::key);
+    if (kept == kept_.end()) return nullptr;
+    kept->used = true;
+    return kept->mesh;
+}
+
+Result<std::shared_ptr<const Mesh>> GridView::keep(const std::string& key, const Surface& surface,
+                                                   const std::optional<ColorScale>& scale, FrameFacts& facts,
+                                                   const Run& run) {
     const auto coding = std::chrono::steady_clock::now();
-    const Surface& surface = extracted->surfaces.front().surface;
     std::optional<SurfaceColors> colors;
     if (scale && !surface.point_fields.empty())
         colors = SurfaceColors{surface.point_fields.front().values, Association::point, *scale};
@@ -225,50 +282,176 @@ Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double iso
     return kept_.back().mesh;
 }
 
+Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double isovalue, const std::string& key,
+                                                      const std::optional<ColorScale>& scale, FrameFacts& facts,
+                                                      const Run& run) {
+    if (auto kept = kept_mesh(key)) return kept;
+    const auto start = std::chrono::steady_clock::now();
+    Result<ContourResult> extracted = source.contour->extract(isovalue, run);
+    if (!extracted) return extracted.error();
+    facts.extract_seconds += seconds_of(start);
+    facts.method = name_of(extracted->method);
+    facts.notes.insert(facts.notes.end(), extracted->notes.begin(), extracted->notes.end());
+    return keep(key, extracted->surfaces.front().surface, scale, facts, run);
+}
+
+std::optional<ColorField> GridView::color_field(const ViewState& state, const ColorScale& scale, const Run& run) {
+    ColorField colors{state.color_by, {}, Association::point, scale, false, {}};
+    if (const Field* cells = whole_cell_field(grid_, state.color_by)) {
+        colors.values = cells->values;
+        colors.association = Association::cell;
+        return colors;
+    }
+    const Result<PointField> field = field_of(state.color_by, run);
+    if (!field) return std::nullopt; // scale_of() has told it
+    colors.values = field->values;
+    return colors;
+}
+
+Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, const Plane& plane,
+                                                       const std::string& key, const std::optional<ColorScale>& scale,
+                                                       FrameFacts& facts, const Run& run) {
+    if (auto kept = kept_mesh(key)) return kept;
+    const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
+    const auto start = std::chrono::steady_clock::now();
+    const Result<Surface> slice = slice_of(grid_, plane, colors ? &*colors : nullptr, run);
+    if (!slice) return slice.error();
+    facts.extract_seconds += seconds_of(start);
+    return keep(key, *slice, scale, facts, run);
+}
+
+/// Sends the mesh, or a preview of it, unless the page has it.
+void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh, const std::vector<std::string>& known,
+                   Making& making) {
+    surface.triangles = mesh->triangle_count();
+    const bool has_it_in_full = holds(known, surface.key);
+    if (!has_it_in_full && surface.triangles > making.most && !mesh->flat) {
+        making.facts.preview = true;
+        surface.key += fmt::format("|{}", making.most);
+        if (!holds(known, surface.key)) {
+            const auto coding = std::chrono::steady_clock::now();
+            making.meshes.push_back(std::make_shared<const Mesh>(preview_of(*mesh, making.most)));
+            making.facts.mesh_seconds += seconds_of(coding);
+            surface.mesh = making.meshes.back().get();
+        }
+    } else if (!has_it_in_full) {
+        making.meshes.push_back(mesh);
+        surface.mesh = mesh.get();
+    }
+    making.keys.push_back(surface.key);
+    making.surfaces.push_back(std::move(surface));
+}
+
+Result<void> GridView::add_isosurfaces(const ViewState& state, const std::vector<std::string>& known, Making& making,
+                                       const Run& run) {
+    Result<Source*> source = source_for(state, run);
+    if (!source) return source.error();
+    std::vector<std::shared_ptr<const Mesh>> meshes;
+    std::vector<double> values; // each once
+    std::vector<Box> boxes;
+    for (const double isovalue : state.isovalues) {
+        const std::string key = mesh_key(state, isovalue, step_);
+        auto mesh = mesh_at(**source, isovalue, key, making.facts.scale, making.facts, run);
+        if (!mesh) return mesh.error();
+        meshes.push_back(*mesh);
+        if (std::ranges::find(values, isovalue) != values.end()) continue;
+        values.push_back(isovalue);
+        boxes.push_back((*mesh)->box);
+    }
+    SceneLook look;
+    look.map = state.map;
+    look.opacity = state.opacity;
+    const std::vector<SurfaceLook> looks = looks_of(values, boxes, look);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const double isovalue = state.isovalues[i];
+        const auto which = static_cast<std::size_t>(std::ranges::find(values, isovalue) - values.begin());
+        FrameSurface surface;
+        surface.key = mesh_key(state, isovalue, step_);
+        surface.isovalue = isovalue;
+        surface.color = looks[which].color;
+        surface.opacity = looks[which].opacity;
+        add(std::move(surface), meshes[i], known, making);
+    }
+    if (making.facts.method.empty()) making.facts.method = name_of((*source)->contour->method());
+    return {};
+}
+
+Result<void> GridView::add_slices(const ViewState& state, const std::vector<std::string>& known, Making& making,
+                                  const Run& run) {
+    for (const Plane& plane : state.slices) {
+        FrameSurface surface;
+        surface.key = slice_key(state, plane, step_);
+        surface.kind = "slice";
+        surface.color = looks_of(std::span(&plane.offset, 1), {}, {}).front().color; // as IsosurfaceScene
+        auto mesh = slice_at(state, plane, surface.key, making.facts.scale, making.facts, run);
+        if (!mesh) return mesh.error();
+        add(std::move(surface), *mesh, known, making);
+    }
+    return {};
+}
+
+void GridView::add_boundary(const ViewState& state, const std::vector<std::string>& known, Making& making) {
+    if (state.boundary <= 0) return;
+    std::unique_lock lock(boundary_mutex_);
+    const std::shared_ptr<const Mesh> boundary = boundary_;
+    lock.unlock();
+    if (!boundary) return;
+    FrameSurface surface;
+    surface.key = fmt::format("boundary|{}", static_cast<const void*>(boundary.get()));
+    surface.kind = "boundary";
+    surface.color = {0.62F, 0.66F, 0.70F, 1};
+    surface.opacity = state.boundary;
+    add(std::move(surface), boundary, known, making);
+}
+
 Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                               const Run& run) {
     const ViewState& state = message.state;
+    if (Result<void> there = go_to_step(message, run); !there) return there.error();
+    if (message.picture) return picture_frame(message, wait_seconds, known, run);
+    scene_.reset();
     Result<std::optional<ColorScale>> scale = scale_of(state, run);
     if (!scale) return scale.error();
-    Result<Source*> source = source_for(state, run);
-    if (!source) return source.error();
-    const std::uint64_t most = limit_of(message, options_);
-    FrameFacts facts;
-    facts.number = message.number;
-    facts.wait_seconds = wait_seconds;
-    facts.scale = *scale;
     for (Kept& kept : kept_) kept.used = false;
-    std::vector<FrameSurface> surfaces;
-    std::vector<std::shared_ptr<const Mesh>> meshes; // that `surfaces` points to
-    std::vector<std::string> keys;
-    for (std::size_t i = 0; i < state.isovalues.size(); ++i) {
-        const std::string key = mesh_key(state, state.isovalues[i]);
-        auto mesh = mesh_at(**source, state.isovalues[i], key, *scale, facts, run);
-        if (!mesh) return mesh.error();
-        FrameSurface surface{key, state.isovalues[i], color_of(state.isovalues, i, state.map), nullptr,
-                             (*mesh)->triangle_count()};
-        const bool has_it_in_full = holds(known, key);
-        if (!has_it_in_full && surface.triangles > most && !(*mesh)->flat) {
-            facts.preview = true;
-            surface.key += fmt::format("|{}", most);
-            if (!holds(known, surface.key)) {
-                const auto coding = std::chrono::steady_clock::now();
-                meshes.push_back(std::make_shared<const Mesh>(preview_of(**mesh, most)));
-                facts.mesh_seconds += seconds_of(coding);
-                surface.mesh = meshes.back().get();
-            }
-        } else if (!has_it_in_full) {
-            meshes.push_back(*mesh);
-            surface.mesh = meshes.back().get();
-        }
-        keys.push_back(surface.key);
-        surfaces.push_back(std::move(surface));
-    }
+    Making making;
+    making.most = limit_of(message, options_);
+    making.facts.number = message.number;
+    making.facts.wait_seconds = wait_seconds;
+    making.facts.scale = *scale;
+    making.facts.step = step_;
+    if (Result<void> added = add_isosurfaces(state, known, making, run); !added) return added.error();
+    if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
+    add_boundary(state, known, making);
     std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });
-    if (facts.method.empty()) facts.method = name_of((*source)->contour->method());
-    Frame frame{frame_bytes(facts, surfaces), facts.preview};
-    known = std::move(keys);
+    Frame frame{frame_bytes(making.facts, making.surfaces), making.facts.preview};
+    known = std::move(making.keys);
     return frame;
+}
+
+Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
+    PointField field;
+    double isovalue = 0;
+    if (message.slice) {
+        const Plane& plane = message.state.slices[*message.slice];
+        field = {"height", heights_over(grid_.points, plane), false, {}};
+        isovalue = plane.offset;
+    } else {
+        Result<PointField> found = field_of(message.state.field, run);
+        if (!found) return found.error();
+        field = *std::move(found);
+        isovalue = message.state.isovalues.front();
+    }
+    ContourOptions options;
+    options.method = Method::direct;
+    options.source_cells = true;
+    Result<Contour> contour =
+        Contour::create({grid_, std::move(field), grid_.point_fields, grid_.cell_fields}, options);
+    if (!contour) return contour.error();
+    const Result<ContourResult> extracted = contour->extract(isovalue, run);
+    if (!extracted) return extracted.error();
+    std::optional<Picked> picked = nearest_on(extracted->surfaces.front().surface, message.point);
+    if (!picked) return Error{ErrorCode::invalid_data, "the surface has no triangle here"};
+    return *std::move(picked);
 }
 
 Result<Chart> GridView::chart(const std::string& field, const Run& run) {

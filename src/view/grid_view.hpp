@@ -5,14 +5,18 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <isotet/camera.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/isosurface_scene.hpp>
 
 #include "view/messages.hpp"
+#include "view/pick.hpp"
+#include "view/steps.hpp"
 
 namespace isotet::view {
 
@@ -29,6 +33,9 @@ struct GridViewOptions {
     std::size_t preview_triangles = 150'000; ///< of a surface while a hand moves
     std::size_t max_triangles = 8'000'000; ///< of a surface that a page is sent; larger ones are previews of that size
     int threads = 0;                       ///< at most; 0: all
+    std::size_t step = 0;                  ///< that the grid is
+    std::size_t steps = 1;                 ///< of the file
+    ReadStep read_step;                    ///< of another step; nothing where there is none
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
@@ -37,7 +44,7 @@ struct Frame {
     bool preview = false;
 };
 
-/// Threads   pack() beside one other call; all else one call at a time
+/// Threads   pack() and find_boundary() by one thread beside one other call; all else one call at a time
 class GridView {
 public:
     /// Errors   as statistics_of(); the grid is kept, since other fields need it
@@ -52,6 +59,10 @@ public:
     /// Errors   as Contour::prepare(); frame() then goes on directly
     Result<void> pack(const std::string& field, const Run& run);
 
+    /// The grid's boundary; frame() leaves it out until then.
+    /// Errors   as boundary_of()
+    Result<void> find_boundary(const Run& run);
+
     /// The surfaces of a state. Those whose keys are in `known` are not sent again; `known` becomes those of this frame.
     ///
     /// Errors   as find_field() and Contour::extract(); cancelled. `known` is then as before
@@ -59,6 +70,10 @@ public:
                         const Run& run);
 
     Result<Chart> chart(const std::string& field, const Run& run);
+
+    /// All fields, and the cell, at the point of the isosurface or slice that is nearest.
+    /// Errors   as Contour::extract(); invalid_data where there is no triangle
+    Result<Picked> pick(const PickMessage& message, const Run& run);
 
 private:
     /// A mesh of a surface, in full.
@@ -71,6 +86,15 @@ private:
     struct Source {
         std::optional<Contour> contour;
         std::string field, color_by;
+        std::size_t step = 0;
+    };
+    /// What a frame gathers.
+    struct Making {
+        FrameFacts facts;
+        std::vector<FrameSurface> surfaces;
+        std::vector<std::shared_ptr<const Mesh>> meshes; ///< that `surfaces` points to
+        std::vector<std::string> keys;
+        std::uint64_t most = 0;
     };
 
     GridView() = default;
@@ -78,10 +102,29 @@ private:
     Result<ContourInput> input_of(const std::string& field, const std::string& color_by, const Run& run);
     Result<std::optional<ColorScale>> scale_of(const ViewState& state, const Run& run);
     Result<Source*> source_for(const ViewState& state, const Run& run);
+    Result<Frame> picture_frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                                const Run& run);
+    Result<void> make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run);
+    std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
+    Result<void> go_to_step(const ShowMessage& message, const Run& run);
+    std::shared_ptr<const Mesh> kept_mesh(const std::string& key);
+    Result<std::shared_ptr<const Mesh>> keep(const std::string& key, const Surface& surface,
+                                             const std::optional<ColorScale>& scale, FrameFacts& facts, const Run& run);
     Result<std::shared_ptr<const Mesh>> mesh_at(Source& source, double isovalue, const std::string& key,
                                                 const std::optional<ColorScale>& scale, FrameFacts& facts,
                                                 const Run& run);
+    Result<std::shared_ptr<const Mesh>> slice_at(const ViewState& state, const Plane& plane, const std::string& key,
+                                                 const std::optional<ColorScale>& scale, FrameFacts& facts,
+                                                 const Run& run);
+    Result<void> add_isosurfaces(const ViewState& state, const std::vector<std::string>& known, Making& making,
+                                 const Run& run);
+    Result<void> add_slices(const ViewState& state, const std::vector<std::string>& known, Making& making,
+                            const Run& run);
+    void add_boundary(const ViewState& state, const std::vector<std::string>& known, Making& making);
+    static void add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh,
+                    const std::vector<std::string>& known, Making& making);
 
+    mutable std::mutex grid_mutex_; ///< of grid_ and step_, while another thread may copy them
     Grid grid_;
     GridViewOptions options_;
     std::vector<OfferedField> fields_;
@@ -90,6 +133,13 @@ private:
     std::vector<Kept> kept_;                  ///< of the last frame
     Source direct_, packed_;
     std::atomic<bool> is_packed_{false};
+    std::size_t step_ = 0; ///< that grid_ is
+    std::unique_ptr<StepReader> steps_;
+    std::optional<IsosurfaceScene> scene_; ///< of pictures, while they are asked for
+    std::string scene_key_;
+    std::vector<double> scene_isovalues_;
+    std::mutex boundary_mutex_;
+    std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
 };
 
 } // namespace isotet::view

@@ -46,6 +46,63 @@ Result<PageMessage> parse_show(const Json& json) {
     const Json* moving = find(json, "moving");
     message.moving = moving && moving->is_boolean() && moving->get<bool>();
     if (const Json* most = find(json, "most")) message.most = whole_number(*most);
+    if (const Json* next = find(json, "next")) message.next = whole_number(*next);
+    if (const Json* picture = find(json, "picture")) {
+        constexpr std::uint64_t max_side = 8192;
+        const bool two = picture->is_array() && picture->size() == 2;
+        const auto width = two ? whole_number((*picture)[0]) : std::nullopt;
+        const auto height = two ? whole_number((*picture)[1]) : std::nullopt;
+        if (!width || !height || *width < 1 || *height < 1 || *width > max_side || *height > max_side)
+            return wrong_message("\"picture\" takes a width and a height, 1 to 8192");
+        message.picture = {static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+    }
+    return PageMessage(std::move(message));
+}
+
+Result<PageMessage> parse_pick(const Json& json) {
+    Result<ViewState> state = message_state(json);
+    if (!state) return state.error();
+    PickMessage message;
+    message.state = *std::move(state);
+    if (const Json* slice = find(json, "slice")) {
+        const auto which = whole_number(*slice);
+        if (!which || *which >= message.state.slices.size()) return wrong_message("\"slice\" is none of the state");
+        message.slice = *which;
+    } else if (message.state.isovalues.empty()) return wrong_message("a pick takes an isovalue or a slice");
+    const Json* point = find(json, "point");
+    if (!point || !point->is_array() || point->size() != 3) return wrong_message("\"point\" takes three numbers");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto number = finite_number((*point)[axis]);
+        if (!number) return wrong_message("\"point\" takes three numbers");
+        message.point[axis] = *number;
+    }
+    return PageMessage(std::move(message));
+}
+
+Result<PageMessage> parse_save(const Json& json) {
+    Result<ViewState> state = message_state(json);
+    if (!state) return state.error();
+    const auto name = message_text(json, "name", 256), kind_name = message_text(json, "kind", 32);
+    const auto kind = parse_save_kind(kind_name.value_or(""));
+    if (!name || !kind) return wrong_message("a file has a \"name\", and a \"kind\": picture, surface, sweep or turn");
+    SaveMessage message;
+    SaveRequest& request = message.request;
+    request.kind = *kind;
+    request.name = *name;
+    request.state = *std::move(state);
+    for (const auto& [key, target] : {std::pair("width", &request.width), std::pair("height", &request.height),
+                                      std::pair("pictures", &request.pictures)})
+        if (const Json* value = find(json, key)) {
+            const auto number = whole_number(*value);
+            if (!number || *number > 100'000) return wrong_message(fmt::format("\"{}\" takes a whole number", key));
+            *target = static_cast<std::uint32_t>(*number);
+        }
+    for (const auto& [key, target] : {std::pair("from", &request.from), std::pair("to", &request.to)})
+        if (const Json* value = find(json, key)) {
+            const auto number = finite_number(*value);
+            if (!number) return wrong_message(fmt::format("\"{}\" takes a number", key));
+            *target = *number;
+        }
     return PageMessage(std::move(message));
 }
 
@@ -76,7 +133,9 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
         if (command) return PageMessage(PasteMessage{*std::move(command)});
         return wrong_message("\"text\" takes a command line");
     }
-    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste");
+    if (action == "pick") return parse_pick(json);
+    if (action == "save") return parse_save(json);
+    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste, pick, save");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
@@ -87,7 +146,9 @@ Json surface_json(const FrameSurface& surface, Blocks& blocks) {
     Json json = {{"key", surface.key},
                  {"isovalue", surface.isovalue},
                  {"color", color_text(surface.color)},
-                 {"triangles", surface.triangles}};
+                 {"triangles", surface.triangles},
+                 {"opacity", surface.opacity},
+                 {"kind", surface.kind}};
     if (!surface.mesh) return json;
     const Mesh& mesh = *surface.mesh;
     const MeshPlaces places = add_mesh(mesh, blocks);
@@ -131,6 +192,7 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                  {"extract_ms", milliseconds(facts.extract_seconds)},
                  {"mesh_ms", milliseconds(facts.mesh_seconds)},
                  {"wait_ms", milliseconds(facts.wait_seconds)},
+                 {"step", facts.step},
                  {"notes", facts.notes}};
     if (facts.scale)
         head["scale"] = {{"lower", facts.scale->lower},
@@ -139,6 +201,11 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                          {"no_data", color_text(facts.scale->no_data)}};
     Json& list = head["surfaces"] = Json::array();
     for (const FrameSurface& surface : surfaces) list.push_back(surface_json(surface, blocks));
+    if (facts.picture) {
+        const auto& [width, height, type, coded] = *facts.picture;
+        const std::size_t at = blocks.add(std::vector<char>(coded.begin(), coded.end()));
+        head["picture"] = {{"width", width}, {"height", height}, {"type", type}, {"at", at}, {"bytes", coded.size()}};
+    }
     const std::string text = text_of(head);
     const auto head_bytes = static_cast<std::uint32_t>(text.size());
     std::string bytes;
@@ -161,6 +228,14 @@ std::string refusal_text(std::uint64_t number, std::string_view sentence) {
 
 std::string error_text(std::string_view about, std::string_view sentence) {
     return text_of({{"say", "error"}, {"about", about}, {"sentence", sentence}});
+}
+
+std::string picked_text(const Picked& picked) {
+    Json json = {{"say", "picked"}, {"point", corner_json(picked.point)}, {"values", Json::array()}};
+    for (const auto& [name, cell, values] : picked.values)
+        json["values"].push_back({{"name", name}, {"cell", cell}, {"values", values}});
+    if (picked.cell) json["cell"] = *picked.cell;
+    return text_of(json);
 }
 
 std::string chart_text(const std::string& field, const Chart& chart) {

@@ -2,6 +2,7 @@
 // What a page and the server say to each other: text in JSON, and frames with surfaces in bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,8 +13,11 @@
 #include <isotet/result.hpp>
 
 #include "view/chart.hpp"
+#include "view/encode.hpp"
 #include "view/json.hpp"
 #include "view/mesh.hpp"
+#include "view/pick.hpp"
+#include "view/save.hpp"
 #include "view/state.hpp"
 
 namespace isotet::view {
@@ -23,13 +27,15 @@ struct HelloMessage {
     std::string token;
 };
 
-/// {"do": "show", "number": n, "state": ..., "moving": true, "most": N}: what the page wants to see. `number` grows.
+/// {"do": "show", "number": n, "state": ..., "moving": true, "most": N, "next": N, "picture": [w, h]}: what the page wants to see. `number` grows.
 struct ShowMessage {
     std::uint64_t number = 0;
     ViewState state;
     bool moving = false; ///< a preview will do
     std::optional<std::uint64_t>
         most; ///< triangles of a surface that the page draws in time; nothing: the server's limit
+    std::optional<std::uint64_t> next;                   ///< the step that will be wanted next: read ahead
+    std::optional<std::array<std::uint32_t, 2>> picture; ///< width and height: the server draws
 };
 
 /// {"do": "shown", "number": n}: the page has drawn frame n.
@@ -52,7 +58,20 @@ struct PasteMessage {
     std::string text;
 };
 
-using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage>;
+/// {"do": "pick", "state": ..., "slice": n, "point": [x, y, z]}: the values at the point of a surface that is nearest.
+struct PickMessage {
+    ViewState state;                  ///< the first isovalue is that of the surface
+    std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
+    std::array<double, 3> point{};
+};
+
+/// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n}
+struct SaveMessage {
+    SaveRequest request;
+};
+
+using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage,
+                                 PickMessage, SaveMessage>;
 
 /// Any bytes from a page. Errors   invalid_argument
 Result<PageMessage> parse_page_message(std::string_view text);
@@ -63,7 +82,9 @@ struct FrameSurface {
     double isovalue = 0;
     Color color; ///< that isotet render would give it
     const Mesh* mesh = nullptr;
-    std::uint64_t triangles = 0; ///< of the surface, also where the mesh is a preview
+    std::uint64_t triangles = 0;       ///< of the surface, also where the mesh is a preview
+    double opacity = 1;                ///< that isotet render would give it
+    std::string_view kind = "surface"; ///< or "slice", "boundary": shaded by faces
 };
 
 /// What a page is told about a frame.
@@ -74,6 +95,8 @@ struct FrameFacts {
     double extract_seconds = 0, mesh_seconds = 0, wait_seconds = 0;
     std::optional<ColorScale> scale; ///< of values on the surfaces
     std::vector<std::string> notes;
+    std::uint64_t step = 0;
+    std::optional<EncodedPicture> picture = {}; ///< instead of meshes
 };
 
 /// A frame in bytes: "isof", the bytes of its head (uint32), the head (JSON), then from the next multiple of 8 on the blocks
@@ -83,6 +106,7 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
 std::string progress_text(std::string_view step, double fraction);
 std::string refusal_text(std::uint64_t number, std::string_view sentence);
 std::string error_text(std::string_view about, std::string_view sentence);
+std::string picked_text(const Picked& picked);
 std::string chart_text(const std::string& field, const Chart& chart);
 
 /// "#rrggbb"

@@ -9,12 +9,16 @@
 #include <optional>
 #include <utility>
 
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace isotet::view {
 
@@ -25,6 +29,11 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
+using AnyProtocol = asio::generic::stream_protocol; ///< TCP or a Unix socket
+using AnyStream = beast::basic_stream<AnyProtocol>;
+using LocalProtocol = asio::local::stream_protocol;
+
+constexpr std::string_view unix_prefix = "unix:";
 
 constexpr std::uint32_t max_header_bytes = 8192;
 
@@ -77,12 +86,17 @@ struct Server::Data {
     ServerEvents events;
     asio::io_context io{1};
     tcp::acceptor acceptor{io};
+    LocalProtocol::acceptor local_acceptor{io};
+    std::string socket_path; ///< to be removed at the end
     asio::steady_timer timer{io};
     std::uint16_t port = 0;
     ConnectionNumber last = 0;
     std::map<ConnectionNumber, std::shared_ptr<Connection>> open; ///< all sockets
 
-    void accept_next();
+    template <class Acceptor>
+    void accept_next(Acceptor& from);
+    void listen_locally(const std::string& path, beast::error_code& error);
+    void listen_at(const tcp::endpoint& endpoint, beast::error_code& error);
     void wait_for_tick();
     void end();
     template <class Use>
@@ -101,7 +115,7 @@ public:
         std::function<void(ConnectionNumber)> forget;
     };
 
-    Connection(tcp::socket socket, ConnectionNumber number, Owner owner)
+    Connection(AnyProtocol::socket socket, ConnectionNumber number, Owner owner)
         : stream_(std::move(socket)), number_(number), owner_(std::move(owner)) {}
 
     void start();
@@ -124,12 +138,12 @@ private:
     void finish();
 
     template <class Stream>
-    static beast::tcp_stream& lowest(Stream& stream) {
+    static AnyStream& lowest(Stream& stream) {
         return beast::get_lowest_layer(stream);
     }
 
-    beast::tcp_stream stream_;
-    std::optional<websocket::stream<beast::tcp_stream>> socket_;
+    AnyStream stream_;
+    std::optional<websocket::stream<AnyStream>> socket_;
     ConnectionNumber number_;
     Owner owner_;
     beast::flat_buffer buffer_;
@@ -192,7 +206,7 @@ void Connection::respond(http::status status, std::string_view type, std::string
     stream_.expires_after(duration_of(owner_.options.request_seconds));
     http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code, std::size_t) {
         beast::error_code ignored;
-        self->stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
+        self->stream_.socket().shutdown(AnyProtocol::socket::shutdown_both, ignored);
         self->finish();
     });
 }
@@ -200,7 +214,7 @@ void Connection::respond(http::status status, std::string_view type, std::string
 void Connection::open_socket() {
     stream_.expires_never();
     beast::error_code ignored;
-    stream_.socket().set_option(tcp::no_delay(true), ignored);
+    stream_.socket().set_option(tcp::no_delay(true), ignored); // not of a Unix socket
     socket_.emplace(std::move(stream_));
     websocket::stream_base::timeout timeout{};
     timeout.handshake_timeout = duration_of(owner_.options.request_seconds);
@@ -274,19 +288,40 @@ void Connection::finish() {
 
 } // namespace
 
-void Server::Data::accept_next() {
-    acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
+template <class Acceptor>
+void Server::Data::accept_next(Acceptor& from) {
+    from.async_accept([this, &from](beast::error_code error, typename Acceptor::protocol_type::socket socket) {
         if (error == asio::error::operation_aborted) return;
         if (!error && open.size() < options.max_connections) {
             const ConnectionNumber number = ++last;
             auto connection = std::make_shared<Connection>(
-                std::move(socket), number,
+                AnyProtocol::socket(std::move(socket)), number,
                 Connection::Owner{options, events, [this](ConnectionNumber gone) { open.erase(gone); }});
             open.emplace(number, connection);
             connection->start();
         }
-        accept_next();
+        accept_next(from);
     });
+}
+
+/// A socket that its owner alone may open.
+void Server::Data::listen_locally(const std::string& path, beast::error_code& error) {
+    local_acceptor.open(LocalProtocol(), error);
+    if (error) return;
+    const mode_t before = ::umask(0177);
+    local_acceptor.bind(LocalProtocol::endpoint(path), error);
+    ::umask(before);
+    if (error) return;
+    socket_path = path;
+    local_acceptor.listen(16, error);
+}
+
+void Server::Data::listen_at(const tcp::endpoint& endpoint, beast::error_code& error) {
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(16, error);
+    if (!error) port = acceptor.local_endpoint(error).port();
 }
 
 void Server::Data::wait_for_tick() {
@@ -301,6 +336,7 @@ void Server::Data::wait_for_tick() {
 void Server::Data::end() {
     beast::error_code ignored;
     acceptor.close(ignored);
+    local_acceptor.close(ignored);
     const auto all = open; // drop() may change it
     for (const auto& [number, connection] : all) connection->drop();
     io.stop();
@@ -321,16 +357,28 @@ Result<Server> Server::open(ServerOptions options, ServerEvents events) {
     auto data = std::make_shared<Data>();
     data->options = std::move(options);
     data->events = std::move(events);
-    const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), data->options.port);
+    const std::string& listen = data->options.listen;
     beast::error_code error;
-    data->acceptor.open(endpoint.protocol(), error);
-    if (!error) data->acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) data->acceptor.bind(endpoint, error);
-    if (!error) data->acceptor.listen(16, error);
+    if (listen.starts_with(unix_prefix)) {
+        const std::string path = listen.substr(unix_prefix.size());
+        if (path.empty() || path.size() > 100)
+            return Error{
+                ErrorCode::invalid_argument,
+                fmt::format("the path of a Unix socket has 1 to 100 bytes, but '{}' has {}", path, path.size())};
+        data->listen_locally(path, error);
+        if (error)
+            return Error{ErrorCode::system, fmt::format("a socket at {} cannot be made: {}", path, error.message())};
+        return Server(std::move(data));
+    }
+    const auto address = asio::ip::make_address(listen.empty() ? "127.0.0.1" : listen, error);
     if (error)
-        return Error{ErrorCode::system,
-                     fmt::format("port {} of 127.0.0.1 cannot be had: {}", data->options.port, error.message())};
-    data->port = data->acceptor.local_endpoint(error).port();
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("'{}' is neither an IP address to serve at, nor unix:PATH", listen)};
+    if (!address.is_unspecified()) data->options.hosts.push_back(address.is_v6() ? "[" + listen + "]" : listen);
+    data->listen_at({address, data->options.port}, error);
+    if (error)
+        return Error{ErrorCode::system, fmt::format("port {} of {} cannot be had: {}", data->options.port,
+                                                    address.to_string(), error.message())};
     return Server(std::move(data));
 }
 
@@ -340,12 +388,14 @@ Server& Server::operator=(Server&&) noexcept = default;
 Server::~Server() {
     if (!data_) return;
     data_->open.clear();
+    if (!data_->socket_path.empty()) ::unlink(data_->socket_path.c_str());
 }
 
 std::uint16_t Server::port() const noexcept { return data_->port; }
 
 void Server::run() {
-    data_->accept_next();
+    if (data_->acceptor.is_open()) data_->accept_next(data_->acceptor);
+    if (data_->local_acceptor.is_open()) data_->accept_next(data_->local_acceptor);
     data_->wait_for_tick();
     data_->io.run();
 }

@@ -23,8 +23,10 @@ struct ServedFile {
 };
 
 struct ServerOptions {
-    std::uint16_t port = 0;           ///< of 127.0.0.1; 0: a free one
-    std::vector<std::string> hosts;   ///< names besides localhost and 127.0.0.1 that a browser may have reached it by
+    std::uint16_t port = 0;         ///< 0: a free one
+    std::vector<std::string> hosts; ///< names besides localhost and 127.0.0.1 that a browser may have reached it by
+    std::string
+        listen; ///< an IP address of the machine; "unix:PATH": a socket there, for its owner alone; empty: 127.0.0.1
     std::vector<ServedFile> files;    ///< must outlive the server
     std::size_t max_connections = 32; ///< at once; more are closed
     std::size_t max_message = 65'536; ///< bytes from a page; a larger one ends its connection

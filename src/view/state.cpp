@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view/state.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace isotet::view {
@@ -53,6 +55,28 @@ bool take_numbers(const Json& value, std::size_t most, std::vector<double>& numb
     return true;
 }
 
+bool take_planes(const Json& value, std::vector<Plane>& planes) {
+    if (!value.is_array() || value.size() > max_planes) return false;
+    for (const Json& one : value) {
+        std::vector<double> numbers;
+        if (!take_numbers(one, 4, numbers) || numbers.size() != 4) return false;
+        if (numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0) return false;
+        planes.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
+    }
+    return true;
+}
+
+Json planes_json(const std::vector<Plane>& planes) {
+    Json json = Json::array();
+    for (const auto& [normal, offset] : planes) json.push_back({normal[0], normal[1], normal[2], offset});
+    return json;
+}
+
+bool same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
+    return std::ranges::equal(
+        a, b, [](const Plane& p, const Plane& q) { return p.normal == q.normal && p.offset == q.offset; });
+}
+
 } // namespace
 
 bool operator==(const ViewState& a, const ViewState& b) {
@@ -62,12 +86,22 @@ bool operator==(const ViewState& a, const ViewState& b) {
     const auto camera = [](const ViewState& s) { return s.camera ? to_text(*s.camera) : std::string(); };
     return a.field == b.field && a.isovalues == b.isovalues && a.color_by == b.color_by && a.map == b.map &&
            range(a) == range(b) && a.logarithmic == b.logarithmic && a.opacity == b.opacity && a.outline == b.outline &&
-           camera(a) == camera(b);
+           camera(a) == camera(b) && a.boundary == b.boundary && a.edges == b.edges && same_planes(a.clips, b.clips) &&
+           same_planes(a.slices, b.slices) && a.step == b.step;
 }
 
 Json to_json(const ViewState& state) {
-    Json json = {{"field", state.field},      {"isovalues", state.isovalues},     {"color_by", state.color_by},
-                 {"map", name_of(state.map)}, {"logarithmic", state.logarithmic}, {"outline", state.outline}};
+    Json json = {{"field", state.field},
+                 {"isovalues", state.isovalues},
+                 {"color_by", state.color_by},
+                 {"map", name_of(state.map)},
+                 {"logarithmic", state.logarithmic},
+                 {"outline", state.outline},
+                 {"edges", state.edges},
+                 {"boundary", state.boundary},
+                 {"clips", planes_json(state.clips)},
+                 {"slices", planes_json(state.slices)}};
+    if (state.step) json["step"] = *state.step;
     if (state.range) json["range"] = {state.range->lower, state.range->upper};
     if (state.opacity) json["opacity"] = *state.opacity;
     if (state.camera) json["camera"] = to_text(*state.camera);
@@ -82,6 +116,19 @@ Result<ViewState> state_of(const Json& json) {
     reader.read_text("color_by", state.color_by);
     reader.read_flag("logarithmic", state.logarithmic);
     reader.read_flag("outline", state.outline);
+    reader.read_flag("edges", state.edges);
+    reader.read("boundary", "a number from 0 to 1", [&](const Json& value) {
+        const auto opacity = finite_number(value);
+        if (opacity) state.boundary = *opacity;
+        return opacity && *opacity >= 0 && *opacity <= 1;
+    });
+    for (auto& [key, planes] : {std::pair("clips", &state.clips), std::pair("slices", &state.slices)})
+        reader.read(key, fmt::format("at most {} planes of 4 numbers, the first three not all 0", max_planes),
+                    [&](const Json& value) { return take_planes(value, *planes); });
+    reader.read("step", "a whole number", [&](const Json& value) {
+        state.step = whole_number(value);
+        return state.step.has_value();
+    });
     reader.read("isovalues", fmt::format("at most {} finite numbers", max_isovalues),
                 [&](const Json& value) { return take_numbers(value, max_isovalues, state.isovalues); });
     reader.read("map", "the name of a colour map", [&](const Json& value) {

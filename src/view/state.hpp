@@ -9,6 +9,7 @@
 
 #include <isotet/camera.hpp>
 #include <isotet/field_statistics.hpp>
+#include <isotet/isosurface_scene.hpp>
 #include <isotet/result.hpp>
 #include <isotet/scene.hpp>
 
@@ -18,6 +19,8 @@ namespace isotet::view {
 
 inline constexpr std::size_t max_isovalues = 32;
 inline constexpr std::size_t max_name_bytes = 4096;
+inline constexpr std::size_t max_planes = 6;            ///< to clip with, and as many slices
+inline constexpr double default_boundary_opacity = 0.1; ///< as SceneLook has it
 
 struct ViewState {
     std::string field;             ///< as find_field() takes it
@@ -29,6 +32,10 @@ struct ViewState {
     std::optional<double> opacity; ///< 0 to 1, of all surfaces; nothing: as render chooses
     bool outline = false;
     std::optional<Camera> camera;
+    double boundary = default_boundary_opacity; ///< opacity of the grid's boundary, 0 to 1; 0: it is not shown
+    bool edges = false;                         ///< as SceneLook::edges
+    std::vector<Plane> clips, slices;           ///< as SceneLook; at most `max_planes` each
+    std::optional<std::uint64_t> step;          ///< nothing: the one that is read
 };
 
 bool operator==(const ViewState& a, const ViewState& b);

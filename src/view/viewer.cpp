@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view/viewer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <map>
@@ -22,7 +23,8 @@ namespace isotet::view {
 
 namespace {
 
-constexpr double hello_seconds = 5; ///< within which a page says its token
+constexpr int forwarded_port = 8123; ///< in what is told of a Unix socket
+constexpr double hello_seconds = 5;  ///< within which a page says its token
 
 double now_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -49,6 +51,12 @@ public:
         const Result<Chart> chart = view_.chart(field, {threads_, run.progress});
         if (!chart) return chart.error();
         return chart_text(field, *chart);
+    }
+
+    Result<std::string> pick(const PickMessage& message, const Run& run) override {
+        const Result<Picked> picked = view_.pick(message, {threads_, run.progress});
+        if (!picked) return picked.error();
+        return picked_text(*picked);
     }
 
 private:
@@ -104,6 +112,7 @@ struct Viewer::Data {
 
     std::unique_ptr<GridView> view;
     std::optional<Worker> worker;
+    std::unique_ptr<Saver> saver; ///< with ViewerOptions::out
     std::thread reader;
 
     void start();
@@ -115,6 +124,7 @@ struct Viewer::Data {
     void take_message(ConnectionNumber from, std::string_view text);
     void take_hello(ConnectionNumber from, const HelloMessage& message);
     void answer(ConnectionNumber from, PageMessage message);
+    void save(ConnectionNumber from, const SaveRequest& request);
     void page_closed(ConnectionNumber which);
     bool tick();
     std::size_t admitted() const;
@@ -132,7 +142,7 @@ void Viewer::Data::set_grid(const ViewerInput& input) {
         fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
     Json grid = {{"say", "grid"},          {"file", options.file},        {"points", view->points()},
                  {"cells", view->cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
-                 {"notes", input.notes}};
+                 {"notes", input.notes},   {"times", input.times}};
     const Box& box = view->bounds();
     if (!box.empty()) {
         grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
@@ -160,15 +170,22 @@ void Viewer::Data::read_and_pack() {
     tell_progress("read", 0);
     Result<ViewerInput> input = options.read(run);
     if (!input) return set_failure(input.error());
-    Result<std::unique_ptr<GridView>> made =
-        GridView::create(std::move(input->grid), GridViewOptions{.threads = options.threads});
+    GridViewOptions view_options;
+    view_options.threads = options.threads;
+    view_options.step = input->state.step.value_or(0);
+    view_options.steps = std::max<std::size_t>(1, input->times.size());
+    if (view_options.steps > 1) view_options.read_step = options.read_step;
+    Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());
     view = *std::move(made);
     set_grid(*input);
     worker->start(std::make_shared<GridFrames>(*view, options.threads));
     tell_progress("pack", 0);
     const Result<void> packed = view->pack(input->state.field, run);
-    tell_progress(packed ? "ready" : "not packed: " + packed.error().message, 1);
+    tell_progress("boundary", 0);
+    const Result<void> found = view->find_boundary(run);
+    if (!packed) return tell_progress("not packed: " + packed.error().message, 1);
+    tell_progress(found ? "ready" : "no boundary: " + found.error().message, 1);
 }
 
 void Viewer::Data::start() {
@@ -176,6 +193,7 @@ void Viewer::Data::start() {
         WorkerOutput{[this](PageNumber page, std::string bytes) { server->send_bytes(page, std::move(bytes)); },
                      [this](PageNumber page, std::string text) { server->send_text(page, std::move(text)); }},
         now_seconds);
+    if (!options.out.empty()) saver = std::make_unique<Saver>(options.program, options.out);
     reader = std::thread([this] { read_and_pack(); });
 }
 
@@ -197,18 +215,35 @@ void Viewer::Data::take_hello(ConnectionNumber from, const HelloMessage& message
     pages[from].admitted = true;
     alone_since.reset();
     worker->add_page(from);
-    server->send_text(
-        from,
-        text_of({{"say", "welcome"}, {"version", options.version}, {"file", options.file}, {"maps", maps_json()}}));
+    server->send_text(from, text_of({{"say", "welcome"},
+                                     {"version", options.version},
+                                     {"file", options.file},
+                                     {"maps", maps_json()},
+                                     {"out", options.out}}));
     const std::lock_guard lock(news_mutex);
     if (!grid_text.empty()) server->send_text(from, grid_text);
     if (!progress.empty()) server->send_text(from, progress);
+}
+
+void Viewer::Data::save(ConnectionNumber from, const SaveRequest& request) {
+    const auto refuse = [&](std::string_view sentence) { server->send_text(from, error_text("save", sentence)); };
+    if (!saver) return refuse("Nothing can be saved: isotet view --out FOLDER lets the page write there.");
+    Result<std::vector<std::string>> words = save_words(request, saver->folder(), options.file, options.reading);
+    if (!words) return refuse(words.error().message);
+    const std::string name = request.name;
+    Result<void> started = saver->start(*std::move(words), name, [this, from, name](const Result<std::string>& path) {
+        server->send_text(from, path ? text_of({{"say", "saved"}, {"name", name}, {"path", *path}})
+                                     : error_text("save", path.error().message));
+    });
+    if (!started) refuse(started.error().message);
 }
 
 void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     if (auto* show = std::get_if<ShowMessage>(&message)) worker->wish(from, std::move(*show));
     else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
     else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
+    else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
+    else if (const auto* wanted = std::get_if<SaveMessage>(&message)) save(from, wanted->request);
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {
         server->send_text(
             from, text_of({{"say", "command"},
@@ -281,6 +316,7 @@ Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
     ServerOptions server_options;
     server_options.port = data->options.port;
     server_options.hosts = data->options.hosts;
+    server_options.listen = data->options.listen;
     server_options.files = page_files();
     Data* all = data.get();
     ServerEvents events;
@@ -296,7 +332,15 @@ Result<std::unique_ptr<Viewer>> Viewer::open(ViewerOptions options) {
 
 std::uint16_t Viewer::port() const noexcept { return data_->server->port(); }
 
-std::string Viewer::address() const { return fmt::format("http://127.0.0.1:{}/#{}", port(), data_->options.token); }
+std::string Viewer::address() const {
+    const std::string& listen = data_->options.listen;
+    const std::string& token = data_->options.token;
+    if (listen.starts_with("unix:")) return fmt::format("http://localhost:{}/#{}", forwarded_port, token);
+    const bool anywhere = listen.empty() || listen == "0.0.0.0" || listen == "::";
+    const bool brackets = !anywhere && listen.find(':') != std::string::npos;
+    return fmt::format("http://{}{}{}:{}/#{}", brackets ? "[" : "", anywhere ? "127.0.0.1" : listen,
+                       brackets ? "]" : "", port(), token);
+}
 
 Result<void> Viewer::run(const std::atomic<bool>& stop) {
     data_->asked_to_stop = &stop;
@@ -305,6 +349,7 @@ Result<void> Viewer::run(const std::atomic<bool>& stop) {
     data_->stop = true; // of reading and packing
     data_->reader.join();
     data_->worker.reset();
+    data_->saver.reset();
     const std::lock_guard lock(data_->news_mutex);
     if (data_->failure && data_->failure->code != ErrorCode::cancelled) return *data_->failure;
     return {};

@@ -14,6 +14,7 @@
 #include <isotet/result.hpp>
 
 #include "view/state.hpp"
+#include "view/steps.hpp"
 
 namespace isotet::view {
 
@@ -22,6 +23,7 @@ struct ViewerInput {
     Grid grid;
     ViewState state; ///< to begin with; no isovalues: Chart::first
     std::vector<std::string> notes;
+    std::vector<double> times; ///< of the file's steps; fewer than two: it has one
 };
 
 struct ViewerOptions {
@@ -29,6 +31,7 @@ struct ViewerOptions {
     std::vector<std::string> reading;                    ///< options of the command line that say how it is read
     std::uint16_t port = 0;                              ///< 0: a free one
     std::vector<std::string> hosts;                      ///< as ServerOptions::hosts
+    std::string listen;                                  ///< as ServerOptions::listen
     std::string version;                                 ///< shown by the page
     std::string token;                                   ///< empty: 128 bits of the system's random numbers
     bool keep = false;                                   ///< goes on when the last page was closed
@@ -36,6 +39,9 @@ struct ViewerOptions {
     std::size_t max_pages = 4;                           ///< at once
     int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
+    ReadStep read_step;                                  ///< of another step; nothing where there is one
+    std::string out;                                     ///< a folder where pages may save files; empty: they may not
+    std::string program;                                 ///< that writes these files, by command lines of isotet
 };
 
 /// 128 random bits as 32 hexadecimal digits. Errors   system
@@ -47,7 +53,7 @@ public:
     static Result<std::unique_ptr<Viewer>> open(ViewerOptions options);
     ~Viewer();
 
-    /// "http://127.0.0.1:PORT/#TOKEN"
+    /// "http://127.0.0.1:PORT/#TOKEN"; with a Unix socket "http://localhost:PORT/#TOKEN" where it is forwarded to
     std::string address() const;
     std::uint16_t port() const noexcept;
 

@@ -28,7 +28,7 @@ void Worker::start(std::shared_ptr<FrameMaker> maker) {
 
 void Worker::add_page(PageNumber page) {
     const std::lock_guard lock(mutex_);
-    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}});
+    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}});
 }
 
 void Worker::remove_page(PageNumber page) {
@@ -58,6 +58,16 @@ void Worker::ask_chart(PageNumber page, std::string field) {
     changed_.notify_all();
 }
 
+void Worker::ask_pick(PageNumber page, PickMessage message) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) return;
+        found->second.pick = std::move(message);
+    }
+    changed_.notify_all();
+}
+
 void Worker::acknowledge(PageNumber page) {
     {
         const std::lock_guard lock(mutex_);
@@ -82,7 +92,7 @@ void Worker::cancel_if_stale() {
 /// The next page behind the one that was served last that wants something.
 std::optional<PageNumber> Worker::next_page() const {
     if (!maker_) return std::nullopt;
-    const auto wants = [](const Page& page) { return page.chart || page.slot.ready(); };
+    const auto wants = [](const Page& page) { return page.chart || page.pick || page.slot.ready(); };
     for (auto at = pages_.upper_bound(last_); at != pages_.end(); ++at)
         if (wants(at->second)) return at->first;
     for (const auto& [number, page] : pages_)
@@ -100,6 +110,7 @@ void Worker::work() {
         }
         last_ = *number;
         if (pages_.at(*number).chart) make_chart(lock, *number);
+        else if (pages_.at(*number).pick) make_pick(lock, *number);
         else make_frame(lock, *number);
     }
 }
@@ -109,11 +120,27 @@ void Worker::make_chart(std::unique_lock<std::mutex>& lock, PageNumber number) {
     const std::shared_ptr<FrameMaker> maker = maker_;
     cancel_ = stop_;
     lock.unlock();
-    Result<std::string> chart = maker->chart(field, {0, {{}, &cancel_}});
-    if (chart) output_.text(number, *std::move(chart));
-    else if (chart.error().code != ErrorCode::cancelled)
-        output_.text(number, error_text("chart", chart.error().message));
+    tell(number, "chart", maker->chart(field, {0, {{}, &cancel_}}));
     lock.lock();
+}
+
+void Worker::make_pick(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    const PickMessage message = *std::exchange(pages_.at(number).pick, std::nullopt);
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    cancel_ = stop_;
+    lock.unlock();
+    tell(number, "pick", maker->pick(message, {0, {{}, &cancel_}}));
+    lock.lock();
+}
+
+void Worker::tell(PageNumber number, std::string_view about, Result<std::string> answer) {
+    if (answer) output_.text(number, *std::move(answer));
+    else if (answer.error().code != ErrorCode::cancelled)
+        output_.text(number, error_text(about, answer.error().message));
+}
+
+Result<std::string> FrameMaker::pick(const PickMessage&, const Run&) {
+    return Error{ErrorCode::invalid_argument, "nothing can be picked here"};
 }
 
 void Worker::make_frame(std::unique_lock<std::mutex>& lock, PageNumber number) {

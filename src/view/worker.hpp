@@ -30,6 +30,7 @@ public:
                                       const Run& run) = 0;
     /// Text of the answer.
     virtual Result<std::string> chart(const std::string& field, const Run& run) = 0;
+    virtual Result<std::string> pick(const PickMessage& message, const Run& run);
 };
 
 /// How the worker answers. Called by the worker's thread.
@@ -52,7 +53,8 @@ public:
     void add_page(PageNumber page);
     void remove_page(PageNumber page);
     void wish(PageNumber page, ShowMessage message);
-    void ask_chart(PageNumber page, std::string field); ///< the newest counts
+    void ask_chart(PageNumber page, std::string field);  ///< the newest counts
+    void ask_pick(PageNumber page, PickMessage message); ///< the newest counts
     void acknowledge(PageNumber page);
 
     /// To be called now and then: cancels work that became stale in the meantime.
@@ -66,12 +68,15 @@ private:
     struct Page {
         Slot<Wish> slot;
         std::optional<std::string> chart;
+        std::optional<PickMessage> pick;
         std::vector<std::string> known;
     };
 
     void work();
     std::optional<PageNumber> next_page() const;
     void make_chart(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void make_pick(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void tell(PageNumber number, std::string_view about, Result<std::string> answer);
     void make_frame(std::unique_lock<std::mutex>& lock, PageNumber number);
     void cancel_if_stale();
 

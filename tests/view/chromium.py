@@ -132,6 +132,7 @@ class Browser:
         self.mouse('mouseReleased', *end, buttons=0, modifiers=modifiers, button=button)
 
     def click(self, selector):
+        self.value(f'document.querySelector({json.dumps(selector)}).scrollIntoView({{block: "nearest"}})')
         x, y, width, height = self.box(selector)
         at = (x + width / 2, y + height / 2)
         self.mouse('mouseMoved', *at, button='none', buttons=0)

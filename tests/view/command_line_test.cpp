@@ -31,7 +31,7 @@ TEST(RenderWords, GiveTheStateBack) {
     for (unsigned seed = 1; seed <= 500; ++seed) {
         SCOPED_TRACE(seed);
         const ViewState state = random_state(seed);
-        const std::string text = shell_text(render_words(state, "some grid.vtu", {"--step", "3"}));
+        const std::string text = shell_text(render_words(state, "some grid.vtu", {"--keep-pieces"}));
         const auto back = state_of_command(text);
         ASSERT_TRUE(back) << back.error().message << "\n" << text;
         EXPECT_TRUE(*back == state) << text;

@@ -2,6 +2,8 @@
 // Frames of a grid: what is sent, what is not sent again, directly and from the packed grid.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include <isotet/make.hpp>
 
 #include "view/frame_reader.hpp"
@@ -35,9 +37,15 @@ ShowMessage show(std::uint64_t number, std::vector<double> isovalues, bool movin
     return message;
 }
 
+GridViewOptions small_previews() {
+    GridViewOptions options;
+    options.preview_triangles = 500;
+    return options;
+}
+
 class GridViewTest : public testing::Test {
 protected:
-    std::unique_ptr<GridView> view_ = GridView::create(made_grid(12), {.preview_triangles = 500}).value();
+    std::unique_ptr<GridView> view_ = GridView::create(made_grid(12), small_previews()).value();
     std::vector<std::string> known_;
 
     Json frame(const ShowMessage& message) {
@@ -153,6 +161,136 @@ TEST_F(GridViewTest, TheChartCountsAllPointsAndBeginsWhereASurfaceIs) {
     const Chart constant = view_->chart("v:x", {}).value();
     EXPECT_EQ(constant.first, 2);
     EXPECT_FALSE(view_->chart("nothing", {}));
+}
+
+TEST_F(GridViewTest, ASliceHasThePlanesPointsAndTheValuesOfItsField) {
+    ShowMessage message = show(1, {0.7});
+    message.state.slices = {{{0, 0, 1}, 0.25}};
+    message.state.color_by = "sphere";
+    const Json head = frame(message);
+    ASSERT_EQ(head["surfaces"].size(), 2U);
+    EXPECT_EQ(head["surfaces"][1]["kind"], "slice");
+    const Json& mesh = head["surfaces"][1]["mesh"];
+    EXPECT_NEAR(mesh["lower"][2].get<double>(), 0.25, 1e-6);
+    EXPECT_NEAR(mesh["upper"][2].get<double>(), 0.25, 1e-6);
+    EXPECT_TRUE(mesh.contains("colors_at"));
+}
+
+TEST_F(GridViewTest, TheBoundaryComesOnceItIsFoundAndOnlyWhereItIsSeen) {
+    EXPECT_EQ(frame(show(1, {0.7}))["surfaces"].size(), 1U);
+    ASSERT_TRUE(view_->find_boundary({}));
+    const Json head = frame(show(2, {0.7}));
+    ASSERT_EQ(head["surfaces"].size(), 2U);
+    EXPECT_EQ(head["surfaces"][1]["kind"], "boundary");
+    EXPECT_EQ(head["surfaces"][1]["triangles"], 12 * 12 * 12);
+    EXPECT_EQ(head["surfaces"][1]["opacity"], default_boundary_opacity);
+    ShowMessage without = show(3, {0.7});
+    without.state.boundary = 0;
+    EXPECT_EQ(frame(without)["surfaces"].size(), 1U);
+}
+
+TEST_F(GridViewTest, APickHasTheIsovalueAllFieldsAndTheCell) {
+    PickMessage message;
+    message.state = show(1, {0.7}).state;
+    const Grid grid = made_grid(12);
+    message.point = {0.1, 0.2, 0.95};
+    const auto picked = view_->pick(message, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    ASSERT_EQ(picked->values.size(), 4U);
+    EXPECT_EQ(picked->values[0].name, "sphere");
+    EXPECT_NEAR(picked->values[0].values.at(0), 0.7, 1e-5);
+    EXPECT_EQ(picked->values[2].values, (std::vector<double>{2, 2, 2}));
+    EXPECT_EQ(picked->values[3].name, "seventh");
+    ASSERT_TRUE(picked->cell);
+    EXPECT_EQ(picked->values[3].values.at(0), static_cast<double>(*picked->cell % 7));
+    ASSERT_GE(*picked->cell, 0);
+    ASSERT_LT(*picked->cell, static_cast<std::int64_t>(grid.cells.count()));
+}
+
+TEST_F(GridViewTest, APickOnASliceLiesInItsPlane) {
+    PickMessage message;
+    message.state = show(1, {0.7}).state;
+    message.state.slices = {{{1, 1, 0}, 0.5}};
+    message.slice = 0;
+    message.point = {0.3, 0.3, 0.4};
+    const auto picked = view_->pick(message, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    EXPECT_NEAR(picked->point[0] + picked->point[1], 0.5, 1e-5);
+    EXPECT_NEAR(picked->point[2], 0.4, 1e-5);
+}
+
+TEST_F(GridViewTest, AMissedSurfaceIsAnError) {
+    PickMessage message;
+    message.state = show(1, {99}).state;
+    const auto picked = view_->pick(message, {});
+    ASSERT_FALSE(picked);
+    EXPECT_EQ(picked.error().code, ErrorCode::invalid_data);
+}
+
+/// Steps of one grid: the field of step n is n times that of step 1. Counts what is read.
+class StepsTest : public testing::Test {
+protected:
+    static Grid grid_of(std::size_t step) {
+        Grid grid = made_grid(12);
+        const auto values = grid.point_fields[0].values.as<float>();
+        std::vector<float> scaled(values.begin(), values.end());
+        for (float& value : scaled) value *= static_cast<float>(step);
+        grid.point_fields[0].values = Array::own(std::move(scaled));
+        return grid;
+    }
+    GridViewOptions options() {
+        GridViewOptions options;
+        options.step = 1;
+        options.steps = 4;
+        options.read_step = [this](std::size_t step, const isotet::Run&) {
+            ++reads_;
+            return Result<Grid>(grid_of(step));
+        };
+        return options;
+    }
+    ShowMessage at_step(std::uint64_t step, double isovalue) {
+        ShowMessage message = show(++number_, {isovalue});
+        message.state.step = step;
+        return message;
+    }
+    Json frame(const ShowMessage& message) { return head_of(view_->frame(message, 0, known_, {}).value().bytes); }
+
+    std::atomic<int> reads_{0};
+    std::uint64_t number_ = 0;
+    std::vector<std::string> known_;
+    std::unique_ptr<GridView> view_ = GridView::create(grid_of(1), options()).value();
+};
+
+TEST_F(StepsTest, AnotherStepHasItsOwnSurfaceDirectAndPacked) {
+    const Json first = frame(at_step(1, 0.7));
+    EXPECT_EQ(reads_, 0);
+    for (const bool packed : {false, true}) {
+        if (packed) {
+            ASSERT_TRUE(view_->pack("sphere", {}));
+        }
+        const Json second = frame(at_step(2, 1.4));
+        EXPECT_EQ(second["step"], 2);
+        EXPECT_EQ(second["surfaces"][0]["triangles"], first["surfaces"][0]["triangles"]);
+        EXPECT_NE(second["surfaces"][0]["key"], first["surfaces"][0]["key"]);
+        EXPECT_EQ(frame(at_step(1, 0.7))["surfaces"][0]["triangles"], first["surfaces"][0]["triangles"]);
+    }
+}
+
+TEST_F(StepsTest, AStepThatWasReadAheadIsNotReadAgain) {
+    ShowMessage message = at_step(2, 0.7);
+    message.next = 3;
+    frame(message);
+    frame(at_step(3, 0.7));
+    EXPECT_EQ(reads_, 2);
+    frame(at_step(3, 0.8));
+    EXPECT_EQ(reads_, 2) << "the grid is there";
+}
+
+TEST_F(StepsTest, AStepThatIsNotThereIsRefusedAndTheLastOneStays) {
+    const auto refused = view_->frame(at_step(4, 0.7), 0, known_, {});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("steps 0 to 3"), std::string::npos) << refused.error().message;
+    EXPECT_EQ(frame(at_step(1, 0.7))["step"], 1);
 }
 
 } // namespace

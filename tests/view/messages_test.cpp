@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "view/command_line.hpp"
 #include "view/messages.hpp"
 #include "view/random_state.hpp"
 
@@ -66,6 +67,73 @@ TEST(ParsePageMessage, SurvivesEveryTruncationAndManyChanges) {
 TEST(Texts, ReplaceBytesThatAreNotUtf8) {
     EXPECT_TRUE(parse_json(error_text("file", "caf\xe9 \xff")));
     EXPECT_TRUE(parse_json(refusal_text(1, std::string("\0\x01\"\\", 4))));
+}
+
+TEST(ParsePageMessage, RefusesPicksPicturesAndFilesThatMakeNoSense) {
+    for (
+        const char* text : {
+            R"({"do":"pick","state":{"isovalues":[1]},"point":[1,2]})",
+            R"({"do":"pick","state":{"isovalues":[1]},"point":[1,2,"3"]})",
+            R"({"do":"pick","state":{},"point":[1,2,3]})",
+            R"({"do":"pick","state":{"isovalues":[1]},"slice":0,"point":[1,2,3]})",
+            R"({"do":"show","number":1,"state":{},"picture":[0,10]})",
+            R"({"do":"show","number":1,"state":{},"picture":[10,8193]})",
+            R"({"do":"show","number":1,"state":{},"picture":[10]})",
+            R"({"do":"show","number":1,"state":{"boundary":1.5}})",
+            R"({"do":"show","number":1,"state":{"clips":[[0,0,0,1]]}})",
+            R"({"do":"show","number":1,"state":{"slices":[[1,0,0]]}})",
+            R"({"do":"show","number":1,"state":{"slices":[[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0],[1,0,0,0]]}})",
+            R"({"do":"show","number":1,"state":{"step":-1}})",
+            R"({"do":"save","kind":"program","name":"a.png","state":{}})",
+            R"({"do":"save","kind":"picture","state":{}})",
+            R"({"do":"save","kind":"picture","name":"a.png","width":-1,"state":{}})",
+            R"({"do":"save","kind":"sweep","name":"a.webp","from":"1","state":{}})",
+        })
+        EXPECT_FALSE(parse_page_message(text)) << text;
+    EXPECT_TRUE(parse_page_message(R"({"do":"pick","state":{"slices":[[1,0,0,0]]},"slice":0,"point":[1,2,3]})"));
+    EXPECT_TRUE(parse_page_message(R"({"do":"save","kind":"turn","name":"a.webp","pictures":8,"state":{}})"));
+}
+
+SaveRequest picture_request(std::string name) {
+    SaveRequest request;
+    request.name = std::move(name);
+    request.state.isovalues = {0.5};
+    return request;
+}
+
+TEST(SaveWords, NameOneFileOfTheFolderAndNothingElse) {
+    const std::string folder = "/out";
+    for (const char* name : {"", "../a.png", "a/b.png", "/etc/a.png", ".a.png", "a.png\n", "a\0.png", "a;b.png",
+                             "-.vtp", "a", "a.exe", "a.PNG"})
+        EXPECT_FALSE(save_words(picture_request(name), folder, "grid.vtu", {})) << name;
+    EXPECT_FALSE(is_file_name(std::string(101, 'a')));
+    const auto words = save_words(picture_request("-a b.png"), folder, "grid.vtu", {});
+    ASSERT_TRUE(words) << words.error().message;
+    EXPECT_EQ(words->back(), "/out/-a b.png");
+    EXPECT_EQ((*words)[1], "render");
+}
+
+TEST(SaveWords, SweepsReplaceTheIsovaluesAndTurnsKeepThem) {
+    SaveRequest request = picture_request("a.webp");
+    request.kind = SaveKind::sweep;
+    request.from = -1;
+    request.to = 2;
+    request.pictures = 5;
+    const std::string sweep = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(sweep.find("--sweep=-1,2,5"), std::string::npos) << sweep;
+    EXPECT_EQ(sweep.find("--isovalue"), std::string::npos) << sweep;
+    request.kind = SaveKind::turn;
+    const std::string turn = shell_text(save_words(request, "out", "grid.vtu", {}).value());
+    EXPECT_NE(turn.find("--orbit=5"), std::string::npos) << turn;
+    EXPECT_NE(turn.find("--isovalue 0.5"), std::string::npos) << turn;
+}
+
+TEST(SaveWords, PicturesHaveASize) {
+    SaveRequest request = picture_request("a.png");
+    request.width = 0;
+    EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
+    request.width = 100'000;
+    EXPECT_FALSE(save_words(request, "out", "grid.vtu", {}));
 }
 
 } // namespace

@@ -12,18 +12,31 @@ namespace {
 
 using view::ViewState;
 
+void expect_same_planes(const std::vector<Plane>& a, const std::vector<Plane>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].normal, b[i].normal);
+        EXPECT_EQ(a[i].offset, b[i].offset);
+    }
+}
+
 TEST(RenderWords, AreOptionsOfTheProgramWithTheSameMeaning) {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         SCOPED_TRACE(seed);
         const ViewState state = random_state(seed);
         cli::CommandLine line;
         cli::OptionTree tree(line);
-        const auto parsed = tree.parse(view::render_words(state, "grid.vtu", {"--step", "2"}));
+        const auto parsed = tree.parse(view::render_words(state, "grid.vtu", {"--keep-pieces"}));
         ASSERT_TRUE(parsed) << parsed.error().message;
         const cli::RenderCommand& render = line.render;
         EXPECT_EQ(line.command, "render");
         EXPECT_EQ(render.grid.file, "grid.vtu");
-        EXPECT_EQ(render.grid.step, 2U);
+        EXPECT_TRUE(render.grid.keep_pieces);
+        EXPECT_EQ(render.grid.step, state.step);
+        EXPECT_EQ(render.boundary.value_or(view::default_boundary_opacity), state.boundary);
+        EXPECT_EQ(render.edges, state.edges);
+        expect_same_planes(render.clips, state.clips);
+        expect_same_planes(render.slices, state.slices);
         EXPECT_EQ(render.field.name, state.field);
         EXPECT_EQ(render.isovalues, state.isovalues);
         EXPECT_EQ(render.color_by, state.color_by);

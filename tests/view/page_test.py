@@ -1,8 +1,14 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """The page of `isotet view` in Chromium: real mouse and keys, values read back from the page."""
+import json
 import os
+import shlex
+import socket
 import struct
+import subprocess
 import sys
+import tempfile
+import threading
 import traceback
 import zlib
 
@@ -10,6 +16,7 @@ from chromium import Browser, Viewer
 
 GRID = 'make:kuhn:16:sphere,gyroid'
 SHIFT = 8
+STEPS = os.path.join(os.path.dirname(__file__), '../../data/exodus/tension_tets_stress_3steps.e')
 pictures = os.environ.get('ISOTET_TEST_PICTURES')  # a folder for the screenshots; without it they are not kept
 
 
@@ -274,6 +281,278 @@ def test_reconnect(browser, viewer):
     browser.value('document.getElementById("slider").focus()')
     browser.key('PageDown')
     browser.wait(f'Number(document.body.dataset.shown) < {before}')
+
+
+def choose(browser, selector, value):
+    browser.value(f'(() => {{ const e = document.querySelector("{selector}"); e.value = "{value}"; '
+                  'for (const kind of ["input", "change"]) e.dispatchEvent(new Event(kind)); })()')
+
+
+def test_slices_and_clip_planes(browser, viewer):
+    start(browser, viewer)
+    browser.click('#add-slice')
+    browser.wait('document.body.dataset.kinds.includes("slice")')
+    check(browser.value('document.getElementById("color-by").value') == 'sphere', 'a slice is coloured')
+    choose(browser, '#cuts .axis', 'z')
+    choose(browser, '#cuts .place', '0.25')
+    browser.wait('location.hash.includes("slice=0%2C0%2C1%2C0.25")')
+    choose(browser, '#cuts .axis', 'free')
+    check(browser.value('!document.querySelector("#cuts .normal").hidden'), 'a normal can be typed')
+    choose(browser, '#cuts .normal', '1, 1, 0')
+    browser.wait('location.hash.includes("slice=1%2C1%2C0%2C0")')
+    at_rest(browser)
+    before = share_of_surface(browser)
+    choose(browser, '#boundary', '0')
+    browser.wait('!document.body.dataset.kinds.includes("boundary")')
+    choose(browser, '#cuts .axis', 'y')
+    browser.click('#add-clip')
+    choose(browser, '#cuts li:nth-child(2) .axis', 'x')
+    browser.wait('location.hash.includes("clip=1%2C0%2C0%2C0")')
+    at_rest(browser)
+    browser.value('new Promise(done => setTimeout(done, 300))')
+    check(share_of_surface(browser) < before, 'less is left')
+    browser.picture(pictures and f'{pictures}/cuts.png')
+    browser.click('#cuts li:nth-child(2) .flip')
+    browser.wait('location.hash.includes("clip=-1%2C0%2C0%2C0")')
+    browser.click('#copy-render')
+    browser.wait('document.getElementById("copied").textContent.includes("--clip=-x=0")')
+    check('--boundary 0 ' in browser.value('document.getElementById("copied").textContent'), 'the boundary is off there, too')
+    browser.click('#cuts .remove')
+    browser.wait('document.querySelectorAll("#cuts li").length === 1')
+    check(overlaps(browser) == [], f'{overlaps(browser)}')
+
+
+def test_pick(browser, viewer):
+    start(browser, viewer)
+    x, y, w, h = browser.box('#scene')
+    at = (x + w / 2, y + h / 2)
+    browser.mouse('mouseMoved', *at, button='none', buttons=0)
+    browser.mouse('mousePressed', *at)
+    browser.mouse('mouseReleased', *at, buttons=0)
+    browser.wait('document.body.dataset.picked')
+    picked = json.loads(browser.value('document.body.dataset.picked'))
+    values = {one['name']: one['values'][0] for one in picked['values']}
+    check(abs(values['sphere'] - shown(browser)) < 1e-4, f'the field has the isovalue there: {values}')
+    check('gyroid' in values and picked['cell'] >= 0, f'the other fields, and the cell: {picked}')
+    browser.picture(pictures and f'{pictures}/pick.png')
+    check(browser.value('document.getElementById("picked-rows").textContent.includes("Cell")'), 'the page shows it')
+    browser.key('Escape')
+    browser.wait('document.getElementById("picked").hidden')
+    browser.key('v')
+    browser.wait('!document.getElementById("picked").hidden')
+    browser.click('#picked-close')
+
+
+def test_time_steps(browser, viewer):
+    """A file with steps: the slider goes to one, and playing shows one after another."""
+    with Viewer(STEPS) as other:
+        start(browser, other)
+        check(browser.value('!document.getElementById("time").hidden'), 'there are steps')
+        last = int(browser.value('document.getElementById("step").max'))
+        choose(browser, '#step', str(last))
+        browser.wait(f'document.body.dataset.step_shown === "{last}"')
+        browser.wait(f'location.hash.includes("step={last}")')
+        browser.value('window.seen = new Set(); new MutationObserver(() => seen.add(document.body.dataset.step_shown))'
+                      '.observe(document.body, {attributes: true})')
+        browser.click('#play')
+        browser.wait(f'seen.size === {last + 1}')
+        browser.picture(pictures and f'{pictures}/time.png')
+        browser.click('#play')
+        check(browser.value('document.getElementById("play").textContent') == 'Play', 'it stops')
+        browser.click('#copy-extract')
+        browser.wait('document.getElementById("copied").textContent.includes("--step ")')
+        browser.call('Page.navigate', url='about:blank')
+
+
+def rendered(browser, folder):
+    """Pixels of `isotet render` for the command that the page copies, at the size of its picture."""
+    browser.value('document.getElementById("copied").textContent = ""')
+    browser.click('#copy-render')
+    browser.wait('document.getElementById("copied").textContent.includes("--camera")')
+    words = shlex.split(browser.value('document.getElementById("copied").textContent'))
+    w, h = browser.value('["width", "height"].map(side => document.getElementById("picture")[side])')
+    path = f'{folder}/picture.png'
+    subprocess.run([os.environ['ISOTET_PROGRAM'], *words[1:-1], path, '--plain', '--size', f'{w}x{h}', '-q'], check=True)
+    with open(path, 'rb') as file:
+        return pixels(file.read())
+
+
+def test_pictures_of_the_server(browser, viewer):
+    """JPEG while the hand moves; at rest exactly the pixels of `isotet render`."""
+    start(browser, viewer)
+    browser.click('#pin')
+    choose(browser, '#color-by', 'gyroid')
+    choose(browser, '#drawn-by', 'server')
+    browser.wait('document.body.dataset.picture === "image/png"')
+    browser.value('window.kinds = new Set(); new MutationObserver(() => kinds.add(document.body.dataset.picture))'
+                  '.observe(document.body, {attributes: true})')
+    before = browser.value('document.body.dataset.camera')
+    x, y, w, h = (int(v) for v in browser.box('#scene'))
+    browser.drag((x + w / 2, y + h / 2), (x + w / 2 + 90, y + h / 2 + 30), steps=20)
+    x0, y0, w0, h0 = browser.box('#slider')
+    browser.drag((x0 + 0.4 * w0, y0 + h0 / 2), (x0 + 0.5 * w0, y0 + h0 / 2), steps=10)
+    browser.wait('kinds.has("image/jpeg")')
+    check(browser.value('document.body.dataset.camera') != before, 'the camera moves')
+    browser.wait('document.body.dataset.picture === "image/png" && document.body.dataset.preview === "false"')
+    at_rest(browser)
+    check('chosen' in browser.value('document.getElementById("facts").textContent'), 'why the server draws is told')
+    browser.value('new Promise(done => setTimeout(done, 400))')
+    _, _, page = pixels(browser.picture(pictures and f'{pictures}/server.png'))
+    with tempfile.TemporaryDirectory() as folder:
+        _, _, drawn = rendered(browser, folder)
+    rows = range(0, h - 100)  # above the axes
+    differ = sum(page[y + j][3 * x:3 * (x + w)] != drawn[j] for j in rows)
+    check(len(set(drawn[h // 2][i:i + 3] for i in range(0, 3 * w, 3))) > 20, 'there is something to see')
+    check(differ == 0, f'{differ} of {len(rows)} rows differ')
+    choose(browser, '#drawn-by', '')
+    browser.wait('document.body.dataset.picture === "" && document.getElementById("picture").hidden')
+
+
+def test_without_webgl_the_server_draws(browser, viewer):
+    script = browser.call('Page.addScriptToEvaluateOnNewDocument', source='HTMLCanvasElement.prototype.getContext = (get => function(kind, '
+                          '...more) { return kind === "webgl2" ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype'
+                          '.getContext)')['identifier']
+    start(browser, viewer)
+    browser.call('Page.removeScriptToEvaluateOnNewDocument', identifier=script)
+    browser.wait('document.body.dataset.picture === "image/png"')
+    check('no WebGL2' in browser.value('document.getElementById("facts").textContent'), 'the reason is told')
+    check(0.1 < share_of_surface(browser) < 0.7, 'the surface is in the picture')
+    browser.key('1')
+    browser.wait('document.body.dataset.camera.split(":")[2] === "0,-1,0"')
+    at_rest(browser)
+
+
+def test_save(browser, viewer):
+    """By name into the folder of --out; without it not at all."""
+    start(browser, viewer)
+    browser.click('#save-open')
+    check(browser.value('document.getElementById("save-go").disabled'), 'without --out nothing can be saved')
+    browser.key('Escape')
+    with tempfile.TemporaryDirectory() as folder, Viewer(GRID, '--out', folder) as other:
+        start(browser, other)
+        browser.value('document.activeElement.blur()')
+        browser.key('s')
+        browser.wait('document.getElementById("save").open')
+        for kind, name in (('picture', 'a picture.png'), ('surface', 'a.ply'), ('turn', 'turn.webp')):
+            choose(browser, '#save-kind', kind)
+            for field, value in (('name', name), ('width', '200'), ('height', '150'), ('pictures', '3')):
+                choose(browser, '#save-' + field, value)
+            browser.picture(pictures and f'{pictures}/save-{kind}.png')
+            browser.click('#save-go')
+            browser.wait('document.getElementById("save-told").textContent.startsWith("Saved")')
+            check(os.path.getsize(f'{folder}/{name}') > 1000, f'{name} is there')
+        browser.click('#save-go')
+        browser.wait('document.getElementById("save-told").textContent.includes("there already")')
+        choose(browser, '#save-name', '../turn2.webp')
+        browser.click('#save-go')
+        browser.wait('document.getElementById("save-told").textContent.includes("no name of a file")')
+        check(len(os.listdir(folder)) == 3, 'nothing else was written')
+        browser.call('Page.navigate', url='about:blank')
+
+
+def test_the_picture_is_that_of_the_renderer(browser, viewer):
+    """WebGL beside `isotet render` of the copied command: at rest nearly all pixels agree, edges aside."""
+    start(browser, viewer)
+    browser.click('#value')
+    browser.value('document.getElementById("value").select()')
+    browser.type('0.7')
+    browser.key('Enter')
+    at_rest(browser, 0.7)
+    choose(browser, '#boundary', '0')
+    choose(browser, '#color-by', 'gyroid')
+    browser.value('document.activeElement.blur()')
+    browser.wait('document.getElementById("range-upper").value !== "" && !document.body.dataset.kinds.includes("boundary")')
+    at_rest(browser)
+    browser.click('#copy-render')
+    browser.wait('document.getElementById("copied").textContent.includes("--camera")')
+    browser.value('new Promise(done => setTimeout(done, 400))')
+    x, y, w, h = (int(v) for v in browser.box('#scene'))
+    _, _, page = pixels(browser.picture())
+    words = shlex.split(browser.value('document.getElementById("copied").textContent'))
+    with tempfile.TemporaryDirectory() as folder:
+        path = f'{folder}/picture.png'
+        subprocess.run([os.environ['ISOTET_PROGRAM'], *words[1:-1], path, '--plain', '--size', f'{w}x{h}', '-q'], check=True)
+        with open(path, 'rb') as file:
+            width, height, drawn = pixels(file.read())
+    check((width, height) == (w, h), 'the sizes are the same')
+    differ = count = 0
+    for j in range(0, int(0.85 * h), 3):
+        for i in range(0, w, 3):
+            a, b = page[y + j][3 * (x + i):3 * (x + i) + 3], drawn[j][3 * i:3 * i + 3]
+            count += b != b'\xff\xff\xff'
+            differ += max(abs(p - q) for p, q in zip(a, b)) > 12
+    check(count > 3000, f'the renderer shows the surface: {count}')
+    check(differ < 0.03 * count, f'{differ} of {count} pixels differ')
+
+
+class Proxy:
+    """Answers below /node/host/ with what the viewer says, as JupyterHub and Open OnDemand do, and at / with a frame."""
+
+    def __init__(self, port, token):
+        self.to, self.token = port, token
+        self.listener = socket.create_server(('127.0.0.1', 0))
+        self.port = self.listener.getsockname()[1]
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self):
+        while True:
+            try:
+                connection, _ = self.listener.accept()
+            except OSError:
+                return
+            threading.Thread(target=self.pass_on, args=(connection,), daemon=True).start()
+
+    def pass_on(self, connection):
+        head = b''
+        while b'\r\n\r\n' not in head:
+            part = connection.recv(65536)
+            if not part:
+                return
+            head += part
+        if not head.startswith(b'GET /node/host/'):
+            body = f'<iframe src="/node/host/#{self.token}" width="900" height="600"></iframe>'.encode()
+            connection.sendall(b'HTTP/1.1 200 OK\r\nContent-Type: text/html\r\nConnection: close\r\nContent-Length: %d\r\n\r\n' % len(body) + body)
+            return connection.close()
+        other = socket.create_connection(('127.0.0.1', self.to))
+        other.sendall(head.replace(b'GET /node/host/', b'GET /', 1))
+
+        def copy(a, b):
+            try:
+                while part := a.recv(65536):
+                    b.sendall(part)
+            except OSError:
+                pass
+            for one in (a, b):
+                try:
+                    one.shutdown(socket.SHUT_RDWR)
+                except OSError:
+                    pass
+        threading.Thread(target=copy, args=(connection, other), daemon=True).start()
+        copy(other, connection)
+
+
+def test_in_a_frame_below_a_proxy_path(browser, viewer):
+    proxy = Proxy(viewer.port, viewer.address.split('#')[1])
+    browser.call('Page.navigate', url='about:blank')
+    browser.open(f'http://127.0.0.1:{proxy.port}/')
+    inside = 'document.querySelector("iframe").contentDocument'
+    browser.wait(f'{inside}?.body?.dataset.shown !== undefined && {inside}.body.dataset.preview === "false"')
+    check(browser.value(f'{inside}.defaultView.location.pathname') == '/node/host/', 'it stays below the path')
+    browser.picture(pictures and f'{pictures}/frame.png')
+    browser.call('Page.navigate', url='about:blank')
+    proxy.listener.close()
+
+
+def test_unix_socket(browser, viewer):
+    with tempfile.TemporaryDirectory() as folder:
+        path = f'{folder}/socket'
+        with Viewer('make:kuhn:4:sphere', '--listen', f'unix:{path}'):
+            check(os.stat(path).st_mode & 0o777 == 0o600, 'only its owner may open it')
+            with socket.socket(socket.AF_UNIX) as to:
+                to.connect(path)
+                to.sendall(b'GET / HTTP/1.1\r\nHost: localhost:8123\r\n\r\n')
+                check(to.recv(65536).startswith(b'HTTP/1.1 200'), 'it gives the page')
+        check(not os.path.exists(path), 'the socket goes with the program')
 
 
 def test_wrong_token(browser, viewer):

@@ -44,6 +44,15 @@ inline view::ViewState random_state(unsigned seed) {
         camera.height = std::abs(number()) + 1e-6;
         state.camera = *parse_camera(to_text(camera)); // as text has it: without what the projection does not use
     }
+    if (chance(0.3)) state.boundary = std::uniform_real_distribution(0.0, 1.0)(random);
+    state.edges = chance(0.3);
+    for (std::vector<Plane>* planes : {&state.clips, &state.slices})
+        for (int i = std::uniform_int_distribution(0, 3)(random); i > 0; --i) {
+            Plane plane{{number(), number(), number()}, number()};
+            if (chance(0.5)) plane.normal = {0, chance(0.5) ? 1.0 : -1.0, 0};
+            planes->push_back(plane);
+        }
+    if (chance(0.3)) state.step = std::uniform_int_distribution<std::uint64_t>(0, 99)(random);
     return state;
 }
 

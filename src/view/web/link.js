@@ -67,6 +67,7 @@ export function readFrame(buffer) {
       mesh.corners = new Type(buffer, blocks + mesh.corners_at, 3 * mesh.triangles);
     }
   }
+  if (head.picture) head.picture.coded = new Uint8Array(buffer, blocks + head.picture.at, head.picture.bytes);
   head.bytes = buffer.byteLength;
   return head;
 }

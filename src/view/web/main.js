@@ -2,11 +2,14 @@
 // Ties the parts together: state -> wishes -> frames -> picture.
 import {Camera} from './camera.js';
 import {ChartSlider} from './chart.js';
+import {Cuts} from './cuts.js';
 import * as format from './format.js';
 import {Link, readFrame} from './link.js';
 import {Pointer} from './pointer.js';
+import {Save} from './save.js';
 import {Scene} from './scene.js';
-import {fromAddress, fromMessage, toAddress, toMessage} from './state.js';
+import {fromAddress, fromMessage, planesOf, toAddress, toMessage} from './state.js';
+import {TimeSteps} from './time.js';
 
 const id = (name) => document.getElementById(name);
 const [token, ...rest] = location.hash.slice(1).split('&');
@@ -24,27 +27,20 @@ function say(sentence) {
   id('message').hidden = !sentence;
 }
 
-/** The rule of isotet render: of several surfaces those are translucent that may hide others. */
-function renderOpacity(which, boxes) {
-  if (boxes.length < 2) return 1;
-  const [lower, upper] = boxes[which] || [];
-  const hides = lower && boxes.some((box, other) => other !== which && box && box[0].every((v, i) => lower[i] <= v && box[1][i] <= upper[i]));
-  return hides ? 0.35 : 1;
-}
-
-/** Colour and opacity of each surface of the frame: the first is the slider's. */
+/** Colour and opacity of what the frame has: the slider's surface, pinned ones, slices, the boundary. */
 function dressed() {
   if (!frame) return [];
   // A surface that was pinned just now lies where the slider's still is: it is drawn once.
-  const twice = frame.surfaces.slice(1).some((one) => one.isovalue === frame.surfaces[0].isovalue);
-  const boxes = frame.surfaces.map(({key}) => { const mesh = scene.meshes.get(key); return mesh?.lower ? [mesh.lower, mesh.upper] : null; });
-  if (twice) boxes.shift();
+  const twice = isosurfaces().slice(1).some((one) => one.isovalue === frame.surfaces[0].isovalue);
   return frame.surfaces.map((surface, i) => {
+    const {key, kind} = surface;
+    if (kind === 'slice') return {key, kind, color: surface.color, opacity: 1};
+    if (kind === 'boundary') return {key, kind, color: surface.color, opacity: state.boundary};
     const own = i === 0 ? state : state.pins[i - 1] || {};
-    const opacity = own.opacity ?? renderOpacity(Math.max(0, i - (twice ? 1 : 0)), boxes);
-    return {key: surface.key, color: own.color || surface.color, opacity, hidden: twice && i === 0};
+    return {key, kind, isovalue: surface.isovalue, color: own.color || surface.color, opacity: own.opacity ?? surface.opacity, hidden: twice && i === 0};
   });
 }
+const isosurfaces = () => (frame?.surfaces || []).filter(({kind}) => kind === 'surface');
 
 /** While something moves, a picture that takes long has half the pixels each way; in full when all rests. */
 let slow = false, sharpTimer = 0;
@@ -58,15 +54,30 @@ function chooseScale() {
 }
 let resting = false;
 
+/** Why the server draws, or nothing where the browser does. */
+const serverDraws = () => (!scene ? 'no WebGL2 here' : state.drawn === 'server' ? 'chosen' : '');
+const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);
+const pictureSize = () => ['clientWidth', 'clientHeight'].map((side) => Math.max(1, Math.min(4096, Math.round(id('scene')[side] * (window.devicePixelRatio || 1)))));
+
 function draw() {
   drawPlanned = false;
-  if (!scene || !grid?.lower) return;
+  if (!grid?.lower) return;
+  if (serverDraws()) {
+    drawAxes();
+    placeMark();
+    document.body.dataset.camera = camera.text();
+    if (frame && !frame.picture) wishSoon();
+    return;
+  }
+  if (frame?.picture) return wishSoon();
   chooseScale();
   const pad = grid.upper.map((u, i) => (u - grid.lower[i]) * 0.001);
   const start = performance.now();
   scene.draw(camera, dressed().filter((one) => !one.hidden), {background: css('scene'), lower: grid.lower.map((v, i) => v - pad[i]),
     upper: grid.upper.map((v, i) => v + pad[i]), boxLower: grid.lower, boxUpper: grid.upper, outline: state.outline,
-    edges: state.edges, mapped: !!state.colorBy, noData: frame?.scale?.no_data, line: css('soft')});
+    edges: state.edges, mapped: !!state.colorBy, noData: frame?.scale?.no_data, line: css('soft'),
+    cuts: planesOf(state, 'clip')});
+  placeMark();
   drawAxes();
   scene.finish();
   const took = performance.now() - start;
@@ -79,6 +90,7 @@ function draw() {
     for (const old of sentAt.keys()) if (old <= frame.number) sentAt.delete(old);
     link.send({do: 'shown', number: frame.number});
     tellFacts();
+    time.shown(frame.step);
   }
   document.body.dataset.camera = camera.text();
 }
@@ -107,25 +119,58 @@ function drawAxes() {
 }
 
 function tellFacts() {
-  const first = frame.surfaces[0];
-  const triangles = frame.surfaces.reduce((sum, one) => sum + one.triangles, 0);
-  const drawn = frame.surfaces.reduce((sum, one) => sum + (scene.meshes.get(one.key)?.count || 0) / 3, 0);
+  const [first] = isosurfaces();
+  const triangles = [...new Map(isosurfaces().map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
+  const drawn = isosurfaces().reduce((sum, one) => sum + (scene?.meshes.get(one.key)?.count || 0) / 3, 0);
   id('shown').textContent = first ? `${format.short(first.isovalue)} shown` : 'No surface';
-  const parts = [`${format.grouped(triangles)} triangles` + (frame.preview ? `, preview of ${format.rough(drawn)}` : '')];
+  const parts = [`${format.grouped(triangles)} triangles` + (frame.preview && !frame.picture ? `, preview of ${format.rough(drawn)}` : '')];
   if (triangles === 0 && first) parts[0] = 'no triangles at this value';
-  parts.push(`extract ${format.duration(frame.extract_ms)}`, `code ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
-    `draw ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
-  if (frame.method === 'direct') parts.push('direct, while the grid is packed');
+  const {picture} = frame;
+  if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
+  parts.push(`extract ${format.duration(frame.extract_ms)}`, `${picture ? 'draw and code' : 'code'} ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
+    `${picture ? 'show' : 'draw'} ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
+  if (frame.method === 'direct' && !picture) parts.push('direct, while the grid is packed');
   id('facts').textContent = parts.join(' · ');
   id('facts').title = parts.join('\n');
   Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: frame.preview, method: frame.method,
-    frame: frame.number, field: frame.field});
+    frame: frame.number, field: frame.field, step_shown: frame.step,
+    picture: frame.picture?.type ?? '', kinds: frame.surfaces.map(({kind}) => kind).join(' ')});
   id('scene').setAttribute('aria-label', `Isosurface of ${state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
     `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
 }
 
+/** A picture of the server: newer ones only. */
+async function takePicture(next) {
+  const start = performance.now(), canvas = id('picture');
+  const bitmap = await createImageBitmap(new Blob([next.picture.coded], {type: next.picture.type}));
+  if (frame?.picture && frame.number > next.number) return link.send({do: 'shown', number: next.number});
+  [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+  canvas.getContext('2d').drawImage(bitmap, 0, 0);
+  // A pixel of the picture is one of the screen, also where the stage has a part of a pixel more.
+  ['width', 'height'].forEach((side, i) => { canvas.style[side] = `${pictureSize()[i] / (window.devicePixelRatio || 1)}px`; });
+  canvas.hidden = !serverDraws();
+  next.field = state.field;
+  next.acknowledged = true;
+  next.draw_ms = performance.now() - start;
+  next.age_ms = performance.now() - (sentAt.get(next.number) ?? start);
+  for (const old of sentAt.keys()) if (old <= next.number) sentAt.delete(old);
+  frame = next;
+  link.send({do: 'shown', number: next.number});
+  if (next.number >= number) stopWaiting();
+  say(next.notes.join(' '));
+  showSurfaces();
+  showRange();
+  tellFacts();
+  drawSoon();
+  if (next.preview && next.number >= number) restSoon();
+  time.shown(next.step);
+}
+
 function takeFrame(buffer) {
   const next = readFrame(buffer);
+  if (next.picture) return takePicture(next);
+  if (!scene) return;
+  id('picture').hidden = true;
   const keep = new Set(next.surfaces.map(({key}) => key));
   for (const key of [...scene.meshes.keys()]) if (!keep.has(key)) scene.remove(key);
   for (const {key, mesh} of next.surfaces) if (mesh) scene.add(key, mesh);
@@ -149,13 +194,15 @@ function stopWaiting() {
 // --- wishes --------------------------------------------------------------------------------------------------------
 
 /** What a frame depends on. */
-const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic]);
+const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic,
+  planesOf(state, 'slice'), state.boundary > 0, state.step, document.body.dataset.step === 'ready', serverDraws() && [camera.text(), pictureSize(), toMessage(state)]]);
 
 /** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 0.6 s for one that rests. In few steps. */
 let speed = null, lastMost = 0; // triangles a ms
 function mostTriangles(moving) {
   const [ms, least, limit] = moving ? [40, 30000, 600000] : [600, 150000, 8e6];
-  const most = speed === null ? 100000 : Math.max(least, Math.min(limit, speed * ms));
+  const parts = Math.max(1, frame?.surfaces.length || 1); // share the time
+  const most = speed === null ? 100000 : Math.max(least, Math.min(limit, speed * ms / parts));
   return Math.round(10000 * 2 ** Math.floor(Math.log2(most / 10000)));
 }
 
@@ -165,7 +212,9 @@ function wish(moving) {
   const what = wanted() + (moving ? '' : '|rest');
   if (what === sent || (moving && sent === wanted() + '|rest')) return;
   const message = {do: 'show', number: number + 1, state: toMessage(state), moving, most: mostTriangles(moving)};
-  delete message.state.camera;
+  if (serverDraws()) Object.assign(message, {picture: pictureSize()}).state.camera = camera.text();
+  else delete message.state.camera;
+  if (time.playing) message.next = time.next(state.step);
   if (!link.send(message)) return;
   sent = what;
   lastMost = message.most;
@@ -215,7 +264,7 @@ addEventListener('popstate', () => {
 
 /** The controls and the picture follow a new state. */
 function showState() {
-  if (!state.camera || !camera.set(state.camera)) camera.fit(grid.lower, grid.upper, scene?.aspect() || 1);
+  if (!state.camera || !camera.set(state.camera)) camera.fit(grid.lower, grid.upper, aspect());
   id('field').value = state.field;
   id('color-by').value = state.colorBy;
   id('map').value = state.map;
@@ -224,6 +273,12 @@ function showState() {
   id('edges').checked = state.edges;
   id('parallel').checked = camera.projection === 'parallel';
   id('color-details').hidden = !state.colorBy;
+  id('drawn-by').value = serverDraws() ? 'server' : '';
+  id('drawn-by').disabled = !scene;
+  id('picture').hidden = !serverDraws();
+  showBoundary();
+  cuts.show();
+  time.show(state.step ?? 0);
   showMap();
   showRange();
   if (slider.chart?.field !== state.field) askChart();
@@ -329,8 +384,8 @@ function surfaceRow(i) {
     (i === 0 ? '<span class="spacer"></span>' : '<button type="button">×</button>');
   const own = () => (i === 0 ? state : state.pins[i - 1]);
   const [color, , opacity] = row.children;
-  color.addEventListener('input', () => { own().color = color.value; showValue(); drawSoon(); commitSoon(); });
-  opacity.addEventListener('input', () => { own().opacity = Number(opacity.value); drawSoon(); commitSoon(); });
+  color.addEventListener('input', () => { own().color = color.value; showValue(); if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
+  opacity.addEventListener('input', () => { own().opacity = Number(opacity.value); if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
   row.querySelector('button')?.addEventListener('click', () => {
     state.pins.splice(i - 1, 1);
     pinsChanged();
@@ -405,11 +460,12 @@ function takeRange() {
 function lookFrom(name) {
   if (!grid?.lower) return;
   if (name !== 'fit') camera.look(name);
-  camera.fit(grid.lower, grid.upper, scene.aspect());
+  camera.fit(grid.lower, grid.upper, aspect());
   moved();
 }
 
 function moved() {
+  if (serverDraws()) wishSoon();
   id('parallel').checked = camera.projection === 'parallel';
   drawSoon();
   commitSoon();
@@ -418,9 +474,108 @@ function moved() {
 for (const button of document.querySelectorAll('[data-view]')) button.addEventListener('click', () => lookFrom(button.dataset.view));
 id('parallel').addEventListener('change', () => { camera.setProjection(id('parallel').checked ? 'parallel' : 'perspective'); moved(); });
 for (const flag of ['edges', 'outline'])
-  id(flag).addEventListener('change', () => { state[flag] = id(flag).checked; drawSoon(); commitSoon(); });
+  id(flag).addEventListener('change', () => { state[flag] = id(flag).checked; if (serverDraws()) wishSoon(); drawSoon(); commitSoon(); });
+id('drawn-by').addEventListener('change', () => {
+  state.drawn = id('drawn-by').value;
+  sent = null;
+  closePicked();
+  wishSoon();
+  drawSoon();
+  commit();
+});
+
+function showBoundary() {
+  id('boundary').value = state.boundary;
+  id('boundary-text').textContent = state.boundary > 0 ? state.boundary.toFixed(2) : 'off';
+  id('boundary').setAttribute('aria-valuetext', id('boundary-text').textContent);
+}
+id('boundary').addEventListener('input', () => {
+  state.boundary = Number(id('boundary').value);
+  showBoundary();
+  wishSoon();
+  drawSoon();
+  commitSoon();
+});
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { showValue(); drawSoon(); });
-new ResizeObserver(drawSoon).observe(id('stage'));
+new ResizeObserver(() => { if (grid && serverDraws()) wishSoon(); drawSoon(); }).observe(id('stage'));
+
+// --- cuts, time, values -----------------------------------------------------------------------------------------------
+
+const cuts = new Cuts(id('cuts'), {slice: id('add-slice'), clip: id('add-clip')}, {
+  state: () => state, box: () => [grid?.lower || [0, 0, 0], grid?.upper || [1, 1, 1]], direction: () => camera.direction, say,
+  changed(moving, added) {
+    // A slice of one colour says little.
+    if (added === 'slice' && !state.colorBy) {
+      state.colorBy = id('color-by').value = state.field;
+      colorsChanged();
+    }
+    cuts.show();
+    wishSoon();
+    drawSoon();
+    if (moving) commitSoon(); else commit();
+  },
+});
+
+const time = new TimeSteps({section: id('time'), slider: id('step'), label: id('step-text'), play: id('play')}, {
+  step: () => state.step ?? 0, commit,
+  go(step) {
+    if (step < 0 || step >= time.times.length) return;
+    state.step = step;
+    time.show(step);
+    wishSoon();
+    commitSoon();
+  },
+});
+
+let picked = null;
+function pickAt(x, y) {
+  if (serverDraws()) return say('Values are shown where the browser draws.');
+  const found = scene?.pickSurface(x, y);
+  if (!found) return closePicked();
+  const {surface, point} = found, message = {do: 'pick', state: toMessage(state), point};
+  delete message.state.camera;
+  if (surface.kind === 'slice') message.slice = frame.surfaces.filter(({kind}) => kind === 'slice').findIndex(({key}) => key === surface.key);
+  else message.state.isovalues = [surface.isovalue];
+  if (message.slice >= message.state.slices.length) return;
+  picked = {point, isovalue: surface.kind === 'slice' ? null : surface.isovalue};
+  link.send(message);
+}
+
+function takePicked(message) {
+  if (!picked) return;
+  picked.point = message.point;
+  const numbers = (values) => values.map(format.short).join(', ');
+  const rows = [['x, y, z', numbers(message.point)], ...message.values.map(({name, cell, values}) => [name + (cell ? ' (cell)' : ''), numbers(values.map((v) => v ?? NaN))])];
+  if (message.cell !== undefined) rows.push(['Cell', String(message.cell)]);
+  id('picked-title').textContent = picked.isovalue === null ? 'On the slice' : `${state.field} = ${format.short(picked.isovalue)}`;
+  id('picked-rows').replaceChildren(...rows.map(([name, value]) => {
+    const row = document.createElement('tr'), head = document.createElement('th'), cell = document.createElement('td');
+    head.scope = 'row';
+    head.textContent = name;
+    cell.textContent = value;
+    row.append(head, cell);
+    return row;
+  }));
+  id('picked').hidden = false;
+  document.body.dataset.picked = JSON.stringify(message);
+  placeMark();
+}
+
+function closePicked() {
+  picked = null;
+  id('picked').hidden = true;
+  delete document.body.dataset.picked;
+  placeMark();
+}
+id('picked-close').addEventListener('click', () => { closePicked(); id('scene').focus(); });
+
+function placeMark() {
+  const at = picked && !id('picked').hidden && !serverDraws() && scene?.project(picked.point);
+  id('mark').toggleAttribute('hidden', !at);
+  if (!at) return;
+  id('mark').style.left = `${50 + 50 * at[0]}%`;
+  id('mark').style.top = `${50 - 50 * at[1]}%`;
+}
 
 // --- commands --------------------------------------------------------------------------------------------------------
 
@@ -428,10 +583,7 @@ let copying = null;
 for (const kind of ['render', 'extract'])
   id('copy-' + kind).addEventListener('click', () => {
     copying = kind;
-    state.camera = camera.text();
-    const message = toMessage(state);
-    message.isovalues = [...new Set(message.isovalues)];
-    link.send({do: 'command', state: message});
+    link.send({do: 'command', state: wholeState()});
   });
 
 async function takeCommand(message) {
@@ -455,13 +607,26 @@ function takeState(message) {
   const next = fromMessage(message);
   if (!next.field) next.field = state.field;
   if (next.value === null && next.field === state.field) next.value = state.value;
-  state = {...next, edges: state.edges};
+  if (next.step === null) next.step = state.step;
+  state = {...next, drawn: state.drawn};
   if (!state.camera) state.camera = camera.text();
   id('command').value = '';
   say('');
   commit();
   showState();
 }
+
+/** As a command line has it: each isovalue once. */
+function wholeState() {
+  state.camera = camera.text();
+  const message = toMessage(state);
+  message.isovalues = [...new Set(message.isovalues)];
+  return message;
+}
+
+const save = new Save({state: wholeState, send: (message) => link.send(message),
+  size: () => [id('scene').clientWidth, id('scene').clientHeight].map((side) => Math.round(side * Math.max(1, window.devicePixelRatio))),
+  range: () => (slider.chart ? [slider.chart.lower, slider.chart.upper] : [0, 1])});
 
 // --- keys ------------------------------------------------------------------------------------------------------------
 
@@ -470,11 +635,12 @@ id('help-close').addEventListener('click', () => id('help').close());
 
 const keys = {
   f: () => lookFrom('fit'), Home: () => lookFrom('fit'), 1: () => lookFrom('front'), 3: () => lookFrom('right'), 7: () => lookFrom('top'),
-  9: () => lookFrom('oblique'), 5: () => id('parallel').click(), e: () => id('edges').click(), b: () => id('outline').click(), p: pin,
+  s: () => save.open(), v: () => pickAt(0, 0), ' ': () => time.toggle(), ',': () => { time.stop(); time.on.go((state.step ?? 0) - 1); }, '.': () => { time.stop(); time.on.go((state.step ?? 0) + 1); },
+  Escape: closePicked, 9: () => lookFrom('oblique'), 5: () => id('parallel').click(), e: () => id('edges').click(), b: () => id('outline').click(), p: pin,
   '[': () => slider.step(-1), ']': () => slider.step(1), '{': () => slider.step(-0.1), '}': () => slider.step(0.1), '?': () => id('help').showModal(),
 };
 addEventListener('keydown', (event) => {
-  const typing = event.target.matches('input[type=text], select') || id('help').open;
+  const typing = event.target.matches('input[type=text], select') || id('help').open || id('save').open || (event.key === ' ' && event.target.matches('button, input'));
   const action = keys[event.key] || keys[event.key.toLowerCase()];
   if (typing || event.ctrlKey || event.altKey || event.metaKey || !action) return;
   event.preventDefault();
@@ -492,9 +658,12 @@ function takeGrid(message) {
   if (grid) { askChart(); sent = null; return wishSoon(); }
   grid = message;
   if (!grid.lower) [grid.lower, grid.upper] = [[0, 0, 0], [1, 1, 1]];
+  time.set(grid.times);
   const names = grid.fields.map(({name}) => name), start = fromMessage(grid.state);
   const fresh = !state.field || !names.includes(state.field);
-  if (fresh) state = {...start, camera: state.camera, edges: state.edges};
+  if (fresh) state = {...start, camera: state.camera};
+  if (grid.times.length < 2) state.step = null;
+  else if (state.step === null || state.step >= grid.times.length) state.step = start.step;
   if (!names.includes(state.field)) names.unshift(state.field);
   const label = (name) => [name, name + (grid.fields.find((one) => one.name === name)?.cell ? ' (cells)' : '')];
   fill(id('field'), names.map(label), state.field);
@@ -506,19 +675,21 @@ function takeGrid(message) {
 }
 
 function takeProgress({step, fraction}) {
-  const running = fraction < 1 && step !== 'ready';
-  const words = {read: 'Reading', pack: 'Packing', make: 'Making', split: 'Packing'};
-  id('progress').hidden = !running && !step.startsWith('not packed');
-  id('progress-text').textContent = step.startsWith('not packed') ? step : `${words[step] || step}${grid ? ', the surface can be moved already' : ''}`;
+  const running = fraction < 1 && step !== 'ready', failed = /^n(ot packed|o boundary)/.test(step);
+  const words = {read: 'Reading', pack: 'Packing', make: 'Making', split: 'Packing', boundary: 'Finding the boundary'};
+  id('progress').hidden = !running && !failed;
+  id('progress-text').textContent = failed ? step : `${words[step] || step}${grid ? ', the surface can be moved already' : ''}`;
   id('progress-bar').hidden = !running;
   if (fraction > 0) id('progress-bar').value = fraction;
   else id('progress-bar').removeAttribute('value');
   document.body.dataset.step = step;
+  if (step === 'ready' && grid) wishSoon(); // the boundary is there
 }
 
 const messages = {
   welcome(message) {
     maps = message.maps;
+    save.out = message.out;
     fill(id('map'), Object.keys(maps).map((name) => [name, name]), state.map in maps ? state.map : (state.map = 'viridis'));
     const name = message.file.split('/').pop();
     id('file').textContent = name;
@@ -531,20 +702,22 @@ const messages = {
   progress: takeProgress,
   chart: takeChart,
   command: takeCommand,
+  picked: takePicked,
   state: (message) => takeState(message.state),
   refused(message) {
     if (message.number >= number) stopWaiting();
     sent = null;
     say(message.sentence);
   },
-  error: (message) => say(message.sentence),
+  saved: (message) => save.tell(`Saved: ${message.path}`),
+  error: (message) => (message.about === 'save' ? save.tell(message.sentence) : say(message.sentence)),
 };
 
 try {
   scene = new Scene(id('scene'));
   scene.onRestored = () => { frame = null; sent = null; link.socket.close(); };
-} catch (error) {
-  say(error.message);
+} catch {
+  scene = null; // the server draws
 }
 
 const link = new Link(token, {
@@ -557,9 +730,9 @@ const link = new Link(token, {
     document.body.dataset.link = 'lost';
   },
   text: (message) => messages[message.say]?.(message),
-  frame: (buffer) => { if (scene) takeFrame(buffer); },
+  frame: takeFrame,
 });
 
-new Pointer(id('scene'), camera, () => scene, {
-  moved, middle: () => grid && grid.lower.map((v, i) => (v + grid.upper[i]) / 2), level: (steps) => slider.step(steps),
+new Pointer(id('scene'), camera, () => (serverDraws() ? null : scene), {
+  moved, middle: () => grid && grid.lower.map((v, i) => (v + grid.upper[i]) / 2), level: (steps) => slider.step(steps), click: pickAt,
 });

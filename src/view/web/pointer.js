@@ -2,14 +2,14 @@
 // Mouse, touch and keys on the picture move the camera, about the point under the pointer.
 
 export class Pointer {
-  /** @param on  {moved(), middle(): of the grid, level(steps): moves the isovalue} */
+  /** @param on  {moved(), middle(): of the grid, level(steps): moves the isovalue, click(x, y)} */
   constructor(canvas, camera, scene, on) {
     Object.assign(this, {canvas, camera, scene, on});
     this.down = new Map();
     this.wheelPoint = null;
     canvas.addEventListener('pointerdown', (event) => this.press(event));
     canvas.addEventListener('pointermove', (event) => this.move(event));
-    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (event) => this.down.delete(event.pointerId));
+    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (event) => this.release(event));
     canvas.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     canvas.addEventListener('dblclick', (event) => this.center(event));
     canvas.addEventListener('auxclick', (event) => event.preventDefault());
@@ -26,7 +26,7 @@ export class Pointer {
   /** The point of a surface there; else at the depth of the middle of the grid. */
   pointAt(event) {
     const [x, y] = this.place(event);
-    return this.scene()?.pick(x, y) || this.camera.under(x, y, this.scene()?.aspect() || 1, this.on.middle() || this.camera.target);
+    return this.scene()?.pick(x, y) || this.camera.under(x, y, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), this.on.middle() || this.camera.target);
   }
 
   press(event) {
@@ -37,9 +37,17 @@ export class Pointer {
     // Where nothing is, the middle is what one turns about.
     this.point = found || this.pointAt(event);
     this.pivot = found || this.on.middle() || this.camera.target;
+    this.travelled = 0;
     this.panning = event.shiftKey || event.button !== 0;
     this.down.set(event.pointerId, [event.clientX, event.clientY]);
     if (this.down.size === 2) this.pinchPoint = this.point;
+  }
+
+  release(event) {
+    if (!this.down.delete(event.pointerId) || event.type !== 'pointerup' || this.travelled > 4 || event.button !== 0) return;
+    clearTimeout(this.clickTimer);
+    const place = this.place(event);
+    this.clickTimer = setTimeout(() => this.on.click(...place), 250); // unless it becomes a double click
   }
 
   move(event) {
@@ -47,6 +55,8 @@ export class Pointer {
     if (!before) return;
     const height = this.canvas.clientHeight, dx = event.clientX - before[0], dy = event.clientY - before[1];
     if (dx === 0 && dy === 0) return;
+    this.travelled += Math.abs(dx) + Math.abs(dy);
+    if (this.travelled <= 4 && this.down.size < 2) return; // a click, so far
     if (this.down.size === 2) this.pinch(event, before);
     else if (this.panning) this.camera.pan(this.point, dx / height, -dy / height);
     else this.camera.orbit(this.pivot, -dx / height * Math.PI, dy / height * Math.PI);
@@ -75,6 +85,7 @@ export class Pointer {
   }
 
   center(event) {
+    clearTimeout(this.clickTimer);
     const point = this.pointAt(event), start = performance.now(), from = this.camera.target.slice();
     const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
     const go = () => {

@@ -5,13 +5,15 @@ const meshVertex = `#version 300 es
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec2 octahedron;
 layout(location = 2) in float colorPlace;
-uniform mat4 clip;
+uniform mat4 clip, toEye;
 uniform mat3 toView;
-out vec3 normal;
+out vec3 normal, position, inBox;
 out float colorAt;
 flat out float noData;
 void main() {
   gl_Position = clip * vec4(place, 1.0);
+  inBox = place;
+  position = (toEye * vec4(place, 1.0)).xyz;
   vec3 n = vec3(octahedron, 1.0 - abs(octahedron.x) - abs(octahedron.y));
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
   normal = toView * n;
@@ -19,31 +21,53 @@ void main() {
   colorAt = colorPlace / 65534.0;
 }`;
 
+// Beyond a plane nothing is drawn.
+const cut = `
+in vec3 inBox;
+uniform vec4 cuts[6];
+uniform int cutCount;
+void leaveOut() {
+  for (int i = 0; i < cutCount; ++i) if (dot(cuts[i].xyz, inBox) > cuts[i].w) discard;
+}`;
+
+// Light as in src/render/kernels/mesh.glsl.
 const meshFragment = `#version 300 es
 precision highp float;
-in vec3 normal;
+in vec3 normal, position;
 in float colorAt;
 flat in float noData;
 uniform vec4 color;
 uniform vec3 noDataColor;
 uniform sampler2D map;
-uniform bool mapped;
+uniform bool mapped, faces, parallel;
 out vec4 pixel;
+${cut}
+vec3 linear(vec3 c) { return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }
+vec3 coded(vec3 c) { return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)); }
 void main() {
-  vec3 n = normalize(normal + vec3(0.0, 0.0, 1e-6));
-  if (n.z < 0.0) n = -n;
-  float light = 0.38 + 0.62 * max(0.0, dot(n, normalize(vec3(-0.35, 0.45, 0.85))));
-  float shine = 0.10 * pow(max(0.0, dot(n, normalize(vec3(-0.18, 0.23, 1.0)))), 40.0);
+  vec3 toEye = parallel ? vec3(0.0, 0.0, 1.0) : normalize(-position);
+  vec3 face = cross(dFdx(position), dFdy(position));
+  leaveOut();
+  face = dot(face, face) > 0.0 ? normalize(face) : toEye;
+  if (dot(face, toEye) < 0.0) face = -face;
+  vec3 towards = face;
+  if (!faces && dot(normal, normal) > 0.25) towards = normalize(normal);
+  if (dot(towards, face) < 0.0) towards = -towards;
+  float facing = clamp(dot(towards, toEye), 0.0, 1.0);
+  float light = 0.16 + 0.84 * facing + 0.22 * (0.5 + 0.5 * towards.y) * (1.0 - facing);
   vec3 base = color.rgb;
   if (mapped) base = noData > 0.5 ? noDataColor : texture(map, vec2((clamp(colorAt, 0.0, 1.0) * 63.0 + 0.5) / 64.0, 0.5)).rgb;
-  pixel = vec4(min(vec3(1.0), base * light + shine), color.a);
+  float opacity = color.a < 1.0 ? 1.0 - pow(1.0 - min(color.a, 0.999), 1.0 / max(facing, 0.2)) : 1.0;
+  pixel = vec4(coded(min(vec3(1.0), linear(base) * light)), opacity);
 }`;
 
 // Depth in 24 bits: what is under the pointer.
 const depthFragment = `#version 300 es
 precision highp float;
 out vec4 pixel;
+${cut}
 void main() {
+  leaveOut();
   float d = floor(gl_FragCoord.z * 16777215.0);
   pixel = vec4(mod(d, 256.0), mod(floor(d / 256.0), 256.0), floor(d / 65536.0), 255.0) / 255.0;
 }`;
@@ -51,12 +75,14 @@ void main() {
 const lineVertex = `#version 300 es
 layout(location = 0) in vec3 place;
 uniform mat4 clip;
-void main() { gl_Position = clip * vec4(place, 1.0); }`;
+out vec3 inBox;
+void main() { inBox = place; gl_Position = clip * vec4(place, 1.0); }`;
 const lineFragment = `#version 300 es
 precision highp float;
 uniform vec4 color;
 out vec4 pixel;
-void main() { pixel = color; }`;
+${cut}
+void main() { leaveOut(); pixel = color; }`;
 
 const boxLines = new Float32Array([0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7]
   .flatMap((corner) => [corner & 1, corner >> 1 & 1, corner >> 2]));
@@ -116,7 +142,7 @@ export class Scene {
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error('WebGL2: ' + gl.getProgramInfoLog(program));
     const at = {program};
-    for (const name of ['clip', 'toView', 'color', 'noDataColor', 'map', 'mapped']) at[name] = gl.getUniformLocation(program, name);
+    for (const name of ['clip', 'toEye', 'toView', 'color', 'noDataColor', 'map', 'mapped', 'faces', 'parallel', 'cuts', 'cutCount']) at[name] = gl.getUniformLocation(program, name);
     return at;
   }
 
@@ -191,9 +217,20 @@ export class Scene {
     return out;
   }
 
+  /** Planes in the coordinates of the mesh's box; slices are not cut. */
+  setCuts(program, {mesh, kind}, look) {
+    const gl = this.gl, cuts = kind === 'slice' ? [] : look.cuts;
+    gl.uniform1i(program.cutCount, cuts.length);
+    if (cuts.length === 0) return;
+    gl.uniform4fv(program.cuts, cuts.flatMap(({normal, offset}) => {
+      const size = Math.hypot(...normal), scaled = normal.map((n, i) => n * (mesh.upper[i] - mesh.lower[i]) / size);
+      return [...scaled, (offset - normal.reduce((sum, n, i) => sum + n * mesh.lower[i], 0)) / size];
+    }));
+  }
+
   /**
-   * @param surfaces  [{key, color, opacity}]; keys without a mesh are passed over
-   * @param look      {background, lower, upper, outline, edges, mapped, noData, line}
+   * @param surfaces  [{key, kind, color, opacity}]; keys without a mesh are passed over
+   * @param look      {background, lower, upper, outline, edges, mapped, noData, line, cuts: [{normal, offset}]}
    */
   draw(camera, surfaces, look) {
     const gl = this.gl;
@@ -210,6 +247,10 @@ export class Scene {
     if (look.outline) this.drawBox(view.rows, look);
     gl.useProgram(this.mesh.program);
     const right = camera.right();
+    // From the eye, in the directions of the picture.
+    const eye = camera.projection === 'parallel' ? camera.target : camera.target.map((t, i) => t + camera.distance * camera.direction[i]);
+    this.eyeRows = [right, camera.up, camera.direction].map((axis) => [...axis, -axis.reduce((sum, v, i) => sum + v * eye[i], 0)]).concat([[0, 0, 0, 1]]);
+    gl.uniform1i(this.mesh.parallel, camera.projection === 'parallel' ? 1 : 0);
     gl.uniformMatrix3fv(this.mesh.toView, false, [0, 1, 2].flatMap((i) => [right[i], camera.up[i], camera.direction[i]]));
     gl.uniform3fv(this.mesh.noDataColor, rgb(look.noData || '#b8b8b8'));
     gl.bindTexture(gl.TEXTURE_2D, this.map);
@@ -218,7 +259,9 @@ export class Scene {
     if (look.edges) { gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1); }
     for (const one of there) if (one.opacity >= 1) this.drawMesh(one, view.rows, look);
     gl.disable(gl.POLYGON_OFFSET_FILL);
-    if (look.edges) this.drawEdges(there, view.rows, look);
+    // As isotet render: edges of boundary and slices, or of the surfaces where neither is there.
+    const fixed = there.filter(({kind}) => kind !== 'surface');
+    if (look.edges) this.drawEdges(fixed.length > 0 ? fixed : there, view.rows, look);
     this.drawTranslucent(there.filter(({opacity}) => opacity < 1), view.rows, look);
   }
 
@@ -243,9 +286,12 @@ export class Scene {
     gl.disable(gl.BLEND);
   }
 
-  drawMesh({mesh, color, opacity}, rows, look) {
-    const gl = this.gl;
+  drawMesh(one, rows, look) {
+    const gl = this.gl, {mesh, color, opacity, kind} = one;
     gl.uniformMatrix4fv(this.mesh.clip, false, this.clip(rows, mesh.lower, mesh.upper));
+    gl.uniformMatrix4fv(this.mesh.toEye, false, this.clip(this.eyeRows, mesh.lower, mesh.upper));
+    gl.uniform1i(this.mesh.faces, kind !== 'surface' ? 1 : 0);
+    this.setCuts(this.mesh, one, look);
     gl.uniform4f(this.mesh.color, ...rgb(color), opacity);
     gl.uniform1i(this.mesh.mapped, look.mapped && mesh.colored ? 1 : 0);
     gl.bindVertexArray(mesh.array);
@@ -258,7 +304,9 @@ export class Scene {
     gl.useProgram(this.line.program);
     gl.uniform4f(this.line.color, ...rgb(look.line), 1);
     gl.enable(gl.BLEND);
-    for (const {mesh} of surfaces) {
+    for (const one of surfaces) {
+      const {mesh} = one;
+      this.setCuts(this.line, one, look);
       if (!mesh.lines) this.makeEdges(mesh);
       gl.uniformMatrix4fv(this.line.clip, false, this.clip(rows, mesh.lower, mesh.upper));
       gl.bindVertexArray(mesh.lines.array);
@@ -292,13 +340,30 @@ export class Scene {
     const gl = this.gl;
     gl.useProgram(this.line.program);
     gl.uniformMatrix4fv(this.line.clip, false, this.clip(rows, look.boxLower, look.boxUpper));
+    gl.uniform1i(this.line.cutCount, 0);
     gl.uniform4f(this.line.color, ...rgb(look.line), 1);
     gl.bindVertexArray(this.box);
     gl.drawArrays(gl.LINES, 0, 24);
   }
 
-  /** The point of a surface under a place of the picture (-1 to 1 each), or null. */
-  pick(x, y) {
+  /** Where a point is in the picture, -1 to 1 each; null behind the eye. */
+  project(point) {
+    if (!this.view) return null;
+    const [x, y, , w] = this.view.rows.map((row) => row[3] + point.reduce((sum, v, i) => sum + v * row[i], 0));
+    return w > 0 ? [x / w, y / w] : null;
+  }
+
+  /** The surface under a place of the picture, and its point there; or null. */
+  pickSurface(x, y) {
+    const point = this.pick(x, y);
+    if (!point) return null;
+    const far = ({key}) => { const other = this.pick(x, y, key); return other ? Math.hypot(...other.map((v, i) => v - point[i])) : Infinity; };
+    const [surface] = this.surfaces.filter(({kind}) => kind !== 'boundary').map((one) => [one, far(one)]).reduce((a, b) => (b[1] < a[1] ? b : a));
+    return {point, surface};
+  }
+
+  /** The point of a surface or slice under a place of the picture (-1 to 1 each), or null; of the one called `only`. */
+  pick(x, y, only = null) {
     if (!this.view) return null;
     const gl = this.gl, {rows, near, far} = this.view;
     const width = this.canvas.width, height = this.canvas.height;
@@ -311,9 +376,10 @@ export class Scene {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.useProgram(this.depth.program);
-    for (const {key, opacity} of this.surfaces) {
+    for (const {key, opacity, kind} of this.surfaces) {
       const mesh = this.meshes.get(key);
-      if (!mesh || !mesh.lower || opacity <= 0) continue;
+      if (!mesh || !mesh.lower || opacity <= 0 || kind === 'boundary' || (only && key !== only)) continue;
+      this.setCuts(this.depth, {mesh, kind}, this.look);
       gl.uniformMatrix4fv(this.depth.clip, false, this.clip([zoomed[0], zoomed[1], rows[2], rows[3]], mesh.lower, mesh.upper));
       gl.bindVertexArray(mesh.array);
       if (mesh.indexed) gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);

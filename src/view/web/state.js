@@ -5,10 +5,15 @@ export const firstState = () => ({
   field: '', value: null, pins: [], // [{value, color, opacity}], color null: the one that isotet render gives
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
+  boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures
+  // planes: [{kind: 'clip' or 'slice', normal, offset}]
 });
 
 const isColor = (text) => /^#[0-9a-f]{6}$/.test(text);
 const isPart = (number) => Number.isFinite(number) && number >= 0 && number <= 1;
+
+export const maxPlanes = 6; // of a kind
+export const planesOf = (state, kind) => state.planes.filter((plane) => plane.kind === kind);
 
 export function toAddress(state) {
   const parts = new URLSearchParams();
@@ -21,6 +26,10 @@ export function toAddress(state) {
   if (state.map !== 'viridis') parts.set('map', state.map);
   if (state.range) parts.set('range', state.range.join(','));
   for (const flag of ['logarithmic', 'outline', 'edges']) if (state[flag]) parts.set(flag, 1);
+  if (state.boundary !== 0.1) parts.set('boundary', state.boundary);
+  for (const {kind, normal, offset} of state.planes) parts.append(kind, [...normal, offset].join(','));
+  if (state.step !== null) parts.set('step', state.step);
+  if (state.drawn) parts.set('drawn', state.drawn);
   if (state.camera) parts.set('camera', state.camera);
   return parts.toString();
 }
@@ -45,6 +54,17 @@ export function fromAddress(text) {
   const range = (parts.get('range') || '').split(',').map(Number);
   if (range.length === 2 && range.every(Number.isFinite) && range[0] < range[1]) state.range = range;
   for (const flag of ['logarithmic', 'outline', 'edges']) state[flag] = parts.get(flag) === '1';
+  const boundary = number(parts.get('boundary'));
+  if (boundary !== null && isPart(boundary)) state.boundary = boundary;
+  for (const [kind, text] of parts) {
+    if (!['clip', 'slice'].includes(kind) || planesOf(state, kind).length >= maxPlanes) continue;
+    const numbers = text.split(',').map(Number);
+    if (numbers.length === 4 && numbers.every(Number.isFinite) && Math.hypot(...numbers.slice(0, 3)) > 0)
+      state.planes.push({kind, normal: numbers.slice(0, 3), offset: numbers[3]});
+  }
+  const step = number(parts.get('step'));
+  if (step !== null && Number.isInteger(step) && step >= 0) state.step = step;
+  if (parts.get('drawn') === 'server') state.drawn = 'server';
   state.camera = parts.get('camera');
   return state;
 }
@@ -52,7 +72,10 @@ export function fromAddress(text) {
 /** As messages have it (src/view/state.hpp). */
 export function toMessage(state) {
   const message = {field: state.field, isovalues: [state.value, ...state.pins.map((pin) => pin.value)], color_by: state.colorBy,
-    map: state.map, logarithmic: state.logarithmic, outline: state.outline};
+    map: state.map, logarithmic: state.logarithmic, outline: state.outline,
+    edges: state.edges, boundary: state.boundary};
+  for (const kind of ['clip', 'slice']) message[kind + 's'] = planesOf(state, kind).map(({normal, offset}) => [...normal, offset]);
+  if (state.step !== null) message.step = state.step;
   if (state.value === null) message.isovalues.shift();
   if (state.range) message.range = state.range;
   if (state.camera) message.camera = state.camera;
@@ -66,5 +89,7 @@ export function fromMessage(message) {
   const opacity = message.opacity ?? null;
   return {...state, field: message.field, value, pins: pins.map((one) => ({value: one, color: null, opacity})), opacity,
     colorBy: message.color_by, map: message.map, logarithmic: message.logarithmic, outline: message.outline,
+    edges: message.edges, boundary: message.boundary, step: message.step ?? null,
+    planes: ['clip', 'slice'].flatMap((kind) => message[kind + 's'].map((plane) => ({kind, normal: plane.slice(0, 3), offset: plane[3]}))),
     range: message.range ?? null, camera: message.camera ?? null};
 }

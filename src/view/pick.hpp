@@ -1,0 +1,36 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a surface says at a point.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet::view {
+
+struct PickedValue {
+    std::string name;
+    bool cell = false;
+    std::vector<double> values; ///< one a component
+};
+
+/// The point of a surface that is nearest to another one.
+///
+/// `values`   point fields between those of the triangle's corners; cell fields of its cell
+/// `cell`     the user's, where the surface has source_cells
+struct Picked {
+    std::array<double, 3> point{};
+    std::vector<PickedValue> values;
+    std::optional<std::int64_t> cell;
+};
+
+/// Nothing for a surface without triangles. Cost   O(F)
+std::optional<Picked> nearest_on(const Surface& surface, const std::array<double, 3>& point);
+
+} // namespace isotet::view

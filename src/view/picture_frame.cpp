@@ -1,0 +1,119 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Frames that are pictures: drawn here, by the scene and the renderer of `isotet render`.
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <isotet/draw.hpp>
+
+#include "view/grid_view.hpp"
+
+namespace isotet::view {
+
+namespace {
+
+double picture_seconds(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Of what a scene is made of, the isovalues aside.
+std::string scene_key(const ShowMessage& message, std::size_t step) {
+    ViewState state = message.state;
+    state.isovalues.clear();
+    state.camera.reset();
+    return fmt::format("{}|{}|{}", text_of(to_json(state)), step, (*message.picture)[1]);
+}
+
+SceneLook look_of(const ShowMessage& message, std::optional<ColorField> colors) {
+    const ViewState& state = message.state;
+    SceneLook look;
+    look.colors = std::move(colors);
+    look.map = state.map;
+    look.opacity = state.opacity;
+    look.boundary_opacity = state.boundary;
+    look.outline = state.outline;
+    look.edges = state.edges;
+    look.clips = state.clips;
+    look.slices = state.slices;
+    look.line_width = std::max(1.0, (*message.picture)[1] / 600.0);
+    return look;
+}
+
+} // namespace
+
+Result<void> GridView::make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run) {
+    const ViewState& state = message.state;
+    std::vector<double> isovalues; // each once
+    for (const double one : state.isovalues)
+        if (std::ranges::find(isovalues, one) == isovalues.end()) isovalues.push_back(one);
+    const std::string key = scene_key(message, step_);
+    if (!scene_ || scene_key_ != key) {
+        scene_.reset();
+        Result<PointField> field = field_of(state.field, run);
+        if (!field) return field.error();
+        IsosurfaceOptions options;
+        options.grid = grid_;
+        options.field = *std::move(field);
+        options.surfaces = isovalues.size();
+        options.where = ExtractOn::cpu;
+        auto scene = IsosurfaceScene::create(
+            {}, std::move(options), look_of(message, scale ? color_field(state, *scale, run) : std::nullopt), run);
+        if (!scene) return scene.error();
+        scene_ = *std::move(scene);
+        scene_key_ = key;
+        scene_isovalues_.clear();
+    }
+    if (scene_isovalues_ == isovalues) return {};
+    scene_isovalues_.clear();
+    if (Result<void> shown = scene_->show(isovalues, run); !shown) return shown;
+    scene_isovalues_ = std::move(isovalues);
+    return {};
+}
+
+Result<Frame> GridView::picture_frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
+                                      const Run& run) {
+    if (!message.state.camera) return Error{ErrorCode::invalid_argument, "a picture takes a camera"};
+    Result<std::optional<ColorScale>> scale = scale_of(message.state, run);
+    if (!scale) return scale.error();
+    const auto start = std::chrono::steady_clock::now();
+    if (Result<void> made = make_scene(message, *scale, run); !made) return made.error();
+    FrameFacts facts;
+    facts.number = message.number;
+    facts.preview = message.moving;
+    facts.wait_seconds = wait_seconds;
+    facts.scale = *scale;
+    facts.step = step_;
+    facts.method = name_of(scene_->report().method);
+    facts.notes = scene_->take_notes();
+    facts.extract_seconds = picture_seconds(start);
+    const auto drawing = std::chrono::steady_clock::now();
+    PictureOptions options;
+    const std::uint32_t part = message.moving ? 2 : 1;
+    options.width = std::max(1U, (*message.picture)[0] / part);
+    options.height = std::max(1U, (*message.picture)[1] / part);
+    if (message.moving) options.samples = 1;
+    options.camera = *message.state.camera;
+    const Result<Picture> picture = draw(scene_->scene(), options, run);
+    if (!picture) return picture.error();
+    Result<EncodedPicture> encoded = message.moving ? encode_jpeg(*picture) : encode_png(*picture);
+    if (!encoded) return encoded.error();
+    facts.picture = *std::move(encoded);
+    facts.mesh_seconds = picture_seconds(drawing);
+    std::vector<FrameSurface> surfaces;
+    for (const double isovalue : message.state.isovalues) {
+        const auto which =
+            static_cast<std::size_t>(std::ranges::find(scene_isovalues_, isovalue) - scene_isovalues_.begin());
+        FrameSurface& surface = surfaces.emplace_back();
+        surface.key = "picture";
+        surface.isovalue = isovalue;
+        surface.color = scene_->scene().surfaces[which].color;
+        surface.opacity = scene_->scene().surfaces[which].opacity;
+        surface.triangles = scene_->surfaces()[which].triangles;
+    }
+    known.clear();
+    return Frame{frame_bytes(facts, surfaces), facts.preview};
+}
+
+} // namespace isotet::view

@@ -1,0 +1,187 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "view/save.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "view/command_line.hpp"
+
+extern char** environ;
+
+namespace isotet::view {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> surface_endings{".vtp", ".vtk", ".ply", ".stl", ".obj", ".ts"};
+
+Error wrong_file(std::string sentence) { return {ErrorCode::invalid_argument, std::move(sentence)}; }
+
+Result<void> check_ending(const SaveRequest& request) {
+    const std::string ending = std::filesystem::path(request.name).extension().string();
+    if (request.kind == SaveKind::surface) {
+        if (std::ranges::find(surface_endings, ending) != surface_endings.end()) return {};
+        return wrong_file(fmt::format("'{}' is no name of a surface, which ends in {}", request.name,
+                                      fmt::join(surface_endings, ", ")));
+    }
+    const std::string_view needed = request.kind == SaveKind::picture ? ".png" : ".webp";
+    if (ending == needed) return {};
+    return wrong_file(fmt::format("'{}' is no name of {}, which ends in {}", request.name,
+                                  needed == ".png" ? "a picture" : "an animation", needed));
+}
+
+Result<void> check_request(const SaveRequest& request) {
+    constexpr std::uint32_t max_side = 8192;
+    if (!is_file_name(request.name))
+        return wrong_file(
+            fmt::format("'{}' is no name of a file: it has letters, digits, blanks, . _ - + and =, at most "
+                        "100, and no dot first",
+                        request.name));
+    if (Result<void> fits = check_ending(request); !fits) return fits;
+    if (request.kind == SaveKind::surface) return {};
+    if (request.width < 1 || request.height < 1 || request.width > max_side || request.height > max_side)
+        return wrong_file(fmt::format("a picture of {} x {} is asked for, but sides have 1 to {} pixels", request.width,
+                                      request.height, max_side));
+    if (request.pictures < 2 || request.pictures > 1000)
+        return wrong_file(fmt::format("{} pictures are asked for, but an animation has 2 to 1000", request.pictures));
+    return {};
+}
+
+/// Without an option and its value.
+void drop_option(std::vector<std::string>& words, const std::string& name) {
+    const auto found = std::ranges::find_if(
+        words, [&](const std::string& word) { return word == name || word.starts_with(name + "="); });
+    if (found == words.end()) return;
+    words.erase(found, found + (*found == name ? 2 : 1));
+}
+
+/// A pipe whose ends a child does not inherit.
+struct ErrorPipe {
+    std::array<int, 2> ends{-1, -1};
+    bool open() { return ::pipe2(ends.data(), O_CLOEXEC) == 0; }
+    void close(std::size_t which) {
+        if (ends[which] >= 0) ::close(std::exchange(ends[which], -1));
+    }
+    ~ErrorPipe() {
+        close(0);
+        close(1);
+    }
+};
+
+pid_t spawn_words(const std::string& program, const std::vector<std::string>& words, int standard_error) {
+    std::vector<std::string> copies = words;
+    std::vector<char*> arguments;
+    for (std::string& word : copies) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+    ::posix_spawn_file_actions_adddup2(&actions, standard_error, 2);
+    pid_t child = -1;
+    if (::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ) != 0) child = -1;
+    ::posix_spawn_file_actions_destroy(&actions);
+    return child;
+}
+
+/// What the child says on its standard error, its last 4096 bytes.
+std::string read_errors(int from, pid_t child, const std::atomic<bool>& stop) {
+    std::string said;
+    while (true) {
+        pollfd waiting{from, POLLIN, 0};
+        const int ready = ::poll(&waiting, 1, 50);
+        if (stop) ::kill(child, SIGTERM);
+        if (ready <= 0) continue;
+        std::array<char, 1024> part{};
+        const ssize_t count = ::read(from, part.data(), part.size());
+        if (count <= 0) return said;
+        said.append(part.data(), static_cast<std::size_t>(count));
+        if (said.size() > 4096) said.erase(0, said.size() - 4096);
+    }
+}
+
+Result<void> run_words(const std::string& program, const std::vector<std::string>& words,
+                       const std::atomic<bool>& stop) {
+    ErrorPipe pipe;
+    if (!pipe.open()) return Error{ErrorCode::system, "the system gives no pipe to a program that writes a file"};
+    const pid_t child = spawn_words(program, words, pipe.ends[1]);
+    if (child < 0) return Error{ErrorCode::system, fmt::format("{} cannot be started to write a file", program)};
+    pipe.close(1);
+    std::string said = read_errors(pipe.ends[0], child, stop);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+    while (!said.empty() && (said.back() == '\n' || said.back() == ' ')) said.pop_back();
+    return Error{ErrorCode::cannot_write, said.empty() ? "the file was not written" : said};
+}
+
+} // namespace
+
+std::optional<SaveKind> parse_save_kind(std::string_view name) {
+    constexpr std::array<std::string_view, 4> names{"picture", "surface", "sweep", "turn"};
+    const auto* const found = std::ranges::find(names, name);
+    if (found == names.end()) return std::nullopt;
+    return static_cast<SaveKind>(found - names.begin());
+}
+
+bool is_file_name(std::string_view name) {
+    const auto fits = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               std::string_view(" ._-+=").find(c) != std::string_view::npos;
+    };
+    return !name.empty() && name.size() <= 100 && name.front() != '.' && std::ranges::all_of(name, fits);
+}
+
+Result<std::vector<std::string>> save_words(const SaveRequest& request, const std::string& folder,
+                                            const std::string& file, const std::vector<std::string>& reading) {
+    if (Result<void> fits = check_request(request); !fits) return fits.error();
+    const bool surface = request.kind == SaveKind::surface;
+    std::vector<std::string> words =
+        surface ? extract_words(request.state, file, reading) : render_words(request.state, file, reading);
+    words.resize(words.size() - 2); // -o, and what it names
+    if (!surface) {
+        words.push_back("--size");
+        words.push_back(fmt::format("{}x{}", request.width, request.height));
+    }
+    if (request.kind == SaveKind::sweep) {
+        drop_option(words, "--isovalue");
+        words.push_back(fmt::format("--sweep={},{},{}", request.from, request.to, request.pictures));
+    }
+    if (request.kind == SaveKind::turn) words.push_back(fmt::format("--orbit={}", request.pictures));
+    words.emplace_back("-q");
+    words.emplace_back("-o");
+    words.push_back((std::filesystem::path(folder) / request.name).string());
+    return words;
+}
+
+Saver::~Saver() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+}
+
+Result<void> Saver::start(std::vector<std::string> words, const std::string& name,
+                          std::function<void(Result<std::string>)> done) {
+    std::error_code ignored;
+    const std::filesystem::path path = std::filesystem::path(folder_) / name;
+    if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored)))
+        return wrong_file(fmt::format("'{}' is there already: another name is needed", name));
+    if (busy_) return wrong_file("another file is being written: one at a time");
+    if (thread_.joinable()) thread_.join();
+    busy_ = true;
+    thread_ = std::thread([this, words = std::move(words), path = path.string(), done = std::move(done)] {
+        const Result<void> run = run_words(program_, words, stop_);
+        busy_ = false;
+        done(run ? Result<std::string>(path) : Result<std::string>(run.error()));
+    });
+    return {};
+}
+
+} // namespace isotet::view
