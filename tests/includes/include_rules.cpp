@@ -32,7 +32,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/search/", {"search/", "ops/", "core/"}},
         {"src/api/", {"api/", "reference/", "cpu/", "ops/", "core/"}},
         {"src/device/", {"device/", "api/", "vulkan/", "ops/", "core/"}},
-        {"src/session/", {"session/", "core/"}},
+        {"src/session/", {"session/", "core/", "linear/"}},
         {"src/scene/", {"scene/", "core/"}},
         {"src/view/", {"view/"}},
         {"src/io/own/", {"io/own/", "io/reader.hpp", "core/"}},

@@ -311,7 +311,7 @@ function showValue() {
 const pinColor = (i) => state.pins[i].color || frame?.surfaces[i + 1]?.color || '#888888';
 
 function askChart() {
-  slider.chart = null;
+  if (slider.chart?.field !== state.field) slider.chart = null; // the same field's serves until the new one is there
   link.send({do: 'chart', field: state.field});
 }
 
