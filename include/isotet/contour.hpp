@@ -103,8 +103,8 @@ public:
     ///          the arrays of the grid do not fit together
     static Result<Contour> create(ContourInput input, const ContourOptions& options = {});
 
-    /// Whether cells of this type, a number of VTK's, are contoured (polyhedra where they have their faces). Others are
-    /// left out, and counted in ContourResult::cells_left_out.
+    /// Whether cells of this type, a number of VTK's, are contoured as they are (polyhedra with their faces). Others are split
+    /// first (quadratic ones, linear_cells.hpp), or left out, and counted in ContourResult::cells_left_out.
     static bool contours(std::uint8_t vtk_type) noexcept;
 
     Contour(Contour&&) noexcept;

@@ -105,8 +105,8 @@ class GridAccessor:
             fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields)  # fmt: skip
         left_out = surface._how["cells_left_out"]
         if left_out:
-            warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours tetrahedra, hexahedra, voxels, "
-                          "wedges and pyramids", stacklevel=2)  # fmt: skip
+            warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours three-dimensional cells of degree "
+                          "1 and 2, and polyhedra", stacklevel=2)  # fmt: skip
         _finish(surface, values, array, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
         out.GetFieldData().PassData(grid.GetFieldData())
         return out

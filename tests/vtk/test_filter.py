@@ -320,6 +320,22 @@ class HandedToVtk(unittest.TestCase):
         self.assertEqual(out.GetNumberOfLines(), run(faces, kind=vtkContourFilter).GetOutput().GetNumberOfLines())
         self.assertIn("c", names(out.GetCellData()))
 
+    def test_quadratic_cells_are_contoured_once(self):
+        corners = np.array([[5, 0, 0], [6, 0, 0], [5, 1, 0], [5, 0, 1]], np.float32)
+        edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+        points = np.concatenate([corners, [(corners[a] + corners[b]) / 2 for a, b in edges]]).astype(np.float32)
+        quadratic = grid_of(points, np.arange(10)[None], {"r": points[:, 0] - 5}, kind=24)
+        both = vtkAppendFilter()
+        for part in (sphere(), quadratic):
+            both.AddInputData(part)
+        both.Update()
+        contour = run(both.GetOutput(), value=0.3)
+        self.assertIn("quadratic", contour.said[0].lower())
+        found = [run(part, kind=kind, value=0.3).GetOutput().GetNumberOfPolys()
+                 for part, kind in ((sphere(), vtkIsotetContour), (quadratic, vtkContourFilter))]
+        self.assertGreater(found[1], 0)
+        self.assertEqual(contour.GetOutput().GetNumberOfPolys(), sum(found))
+
     def test_vectors(self):
         grid = sphere()
         add(grid.GetPointData(), "w", np.random.default_rng(1).random((grid.GetNumberOfPoints(), 3), np.float32))

@@ -2,6 +2,8 @@
 #include "cells.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include <isotet/contour.hpp>
 #include <isotet/pieces.hpp>
@@ -44,6 +46,15 @@ bool has_ghost(const isotet::Array& marks) {
     return std::ranges::any_of(marks.as<std::uint8_t>(), [](std::uint8_t mark) { return (mark & ghost_bits) != 0; });
 }
 
+/// Without the types that VTK contours here: of some of them (quadratic cells) isotet would make surfaces, too.
+isotet::Array contoured_types(const isotet::Array& types) {
+    std::vector<std::uint8_t> out;
+    out.reserve(types.tuples());
+    for (const std::uint8_t type : types.as<std::uint8_t>())
+        out.push_back(isotet::Contour::contours(type) ? type : empty_cell);
+    return isotet::Array::own(std::move(out));
+}
+
 #if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 4)
 /// The faces as isotet and older versions of VTK have them, one polyhedron after another.
 void write_faces(vtkUnstructuredGrid* grid, std::vector<std::int64_t>& faces, std::vector<std::int64_t>& first) {
@@ -75,6 +86,10 @@ isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid, const isotet::
     has_ghosts_ = has_ghost(marks_);
     if (has_ghosts_)
         if (auto ok = leave_out_ghosts(points); !ok) return ok;
+    if (has_others()) {
+        all_.types = contoured_types(all_.types);
+        own_.types = contoured_types(own_.types);
+    }
     if (types.tuples() > 0 && kinds_of(types) == tetrahedra()) {
         all_.offsets = {}; // four corners a cell
         all_.types = {};
