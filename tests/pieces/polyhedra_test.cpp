@@ -146,7 +146,7 @@ TEST(PiecesWithPolyhedra, RefuseNumbersThatLeaveNoneForDerivedPoints) {
     Grid grid = octree_grid({.seed = 2});
     std::vector<std::int64_t> numbers(grid.points.tuples());
     std::iota(numbers.rbegin(), numbers.rend(),
-              std::numeric_limits<std::int64_t>::max() - static_cast<std::int64_t>(numbers.size()) + 1);
+              std::numeric_limits<std::int64_t>::max() - static_cast<std::int64_t>(numbers.size()));
     grid.point_numbers = Array::own(std::move(numbers));
     const auto made = linearize(grid);
     ASSERT_FALSE(made);

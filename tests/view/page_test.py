@@ -283,6 +283,23 @@ def test_reconnect(browser, viewer):
     browser.wait(f'Number(document.body.dataset.shown) < {before}')
 
 
+def test_frames_that_are_never_drawn_do_not_stop_the_server(browser, viewer):
+    """A page in the background draws nothing; what it gets meanwhile it acknowledges, or no frame would follow."""
+    script = browser.call('Page.addScriptToEvaluateOnNewDocument', source="""
+        window.sockets = []; window.frames_got = 0; const Socket = WebSocket;
+        window.WebSocket = class extends Socket { constructor(...of) { super(...of); sockets.push(this);
+            this.addEventListener('message', (event) => { if (typeof event.data !== 'string') ++frames_got; }); } };""")['identifier']
+    start(browser, viewer)
+    browser.call('Page.removeScriptToEvaluateOnNewDocument', identifier=script)
+    browser.value('frames_got = 0; window.late = []; window.soon = requestAnimationFrame;'
+                  'window.requestAnimationFrame = (then) => late.push(then); document.getElementById("slider").focus()')
+    for got in range(1, 5):
+        browser.key('ArrowRight')
+        browser.wait(f'frames_got >= {got}')
+    browser.value('window.requestAnimationFrame = soon; late.forEach(soon)')
+    at_rest(browser)
+
+
 def choose(browser, selector, value):
     browser.value(f'(() => {{ const e = document.querySelector("{selector}"); e.value = "{value}"; '
                   'for (const kind of ["input", "change"]) e.dispatchEvent(new Event(kind)); })()')

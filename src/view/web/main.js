@@ -66,7 +66,10 @@ function draw() {
     drawAxes();
     placeMark();
     document.body.dataset.camera = camera.text();
-    if (frame && !frame.picture) wishSoon();
+    if (frame && !frame.picture) {
+      acknowledge(frame);
+      wishSoon();
+    }
     return;
   }
   if (frame?.picture) return wishSoon();
@@ -84,11 +87,10 @@ function draw() {
   if (scene.scale === 1) slow = took > 50;
   measureSpeed(took);
   if (frame && !frame.acknowledged) {
-    frame.acknowledged = true;
     frame.draw_ms = took;
     frame.age_ms = performance.now() - (sentAt.get(frame.number) ?? start);
     for (const old of sentAt.keys()) if (old <= frame.number) sentAt.delete(old);
-    link.send({do: 'shown', number: frame.number});
+    acknowledge(frame);
     tellFacts();
     time.shown(frame.step);
   }
@@ -143,19 +145,19 @@ function tellFacts() {
 async function takePicture(next) {
   const start = performance.now(), canvas = id('picture');
   const bitmap = await createImageBitmap(new Blob([next.picture.coded], {type: next.picture.type}));
-  if (frame?.picture && frame.number > next.number) return link.send({do: 'shown', number: next.number});
+  if (frame?.picture && frame.number > next.number) return acknowledge(next);
   [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
   canvas.getContext('2d').drawImage(bitmap, 0, 0);
   // A pixel of the picture is one of the screen, also where the stage has a part of a pixel more.
   ['width', 'height'].forEach((side, i) => { canvas.style[side] = `${pictureSize()[i] / (window.devicePixelRatio || 1)}px`; });
   canvas.hidden = !serverDraws();
   next.field = state.field;
-  next.acknowledged = true;
   next.draw_ms = performance.now() - start;
   next.age_ms = performance.now() - (sentAt.get(next.number) ?? start);
   for (const old of sentAt.keys()) if (old <= next.number) sentAt.delete(old);
+  acknowledge(frame);
   frame = next;
-  link.send({do: 'shown', number: next.number});
+  acknowledge(frame);
   if (next.number >= number) stopWaiting();
   say(next.notes.join(' '));
   showSurfaces();
@@ -166,10 +168,18 @@ async function takePicture(next) {
   time.shown(next.step);
 }
 
+/** The server sends no more than two frames ahead: each is acknowledged once, also one that is replaced before it is drawn. */
+function acknowledge(one) {
+  if (!one || one.acknowledged) return;
+  one.acknowledged = true;
+  link.send({do: 'shown', number: one.number});
+}
+
 function takeFrame(buffer) {
   const next = readFrame(buffer);
   if (next.picture) return takePicture(next);
-  if (!scene) return;
+  acknowledge(frame);
+  if (!scene) return acknowledge(next);
   id('picture').hidden = true;
   const keep = new Set(next.surfaces.map(({key}) => key));
   for (const key of [...scene.meshes.keys()]) if (!keep.has(key)) scene.remove(key);
