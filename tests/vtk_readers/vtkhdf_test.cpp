@@ -71,15 +71,15 @@ TEST(ReadVtkhdf, GivesTheSameHoweverArraysAreStored) {
     const Strip strip(997);
     const TemporaryFolder folder;
     const Storage storages[] = {{},
-                            {.chunk = {64}},
-                            {.chunk = {1000}},
-                            {.chunk = {5000}},
-                            {.chunk = {100}, .deflated = true},
-                            {.chunk = {100}, .shuffled = true},
-                            {.chunk = {333}, .shuffled = true, .deflated = true},
-                            {.chunk = {64}, .deflated = true, .checksums = true},
-                            {.chunk = {64}, .big_endian = true},
-                            {.big_endian = true}};
+                                {.chunk = {64}},
+                                {.chunk = {1000}},
+                                {.chunk = {5000}},
+                                {.chunk = {100}, .deflated = true},
+                                {.chunk = {100}, .shuffled = true},
+                                {.chunk = {333}, .shuffled = true, .deflated = true},
+                                {.chunk = {64}, .deflated = true, .checksums = true},
+                                {.chunk = {64}, .big_endian = true},
+                                {.big_endian = true}};
     for (const Storage& way : storages) {
         SCOPED_TRACE(testing::Message() << "chunks of " << (way.chunk.empty() ? 0 : way.chunk[0]) << ", shuffled "
                                         << way.shuffled << ", deflated " << way.deflated << ", big-endian "
@@ -111,6 +111,29 @@ TEST(ReadVtkhdf, GivesTheSameHoweverArraysAreStored) {
         EXPECT_EQ(numbers_of(result->grid.point_fields[1].values),
                   std::vector<double>(strip.vectors.begin(), strip.vectors.end()));
         EXPECT_EQ(result->grid.point_fields[1].values.components(), 3u);
+    }
+}
+
+TEST(ReadVtkhdf, ReadsMoreIndicesThanAreReadAtOnce) {
+    constexpr std::size_t tets = 300'000;
+    const Strip strip(tets);
+    const TemporaryFolder folder;
+    for (const std::size_t chunk : {std::size_t{0}, std::size_t{70'001}, std::size_t{2'000'000}}) {
+        const Storage way = chunk == 0 ? Storage{} : Storage{.chunk = {std::min(chunk, 4 * tets)}};
+        {
+            Hdf5Writer file(folder.file("a.vtkhdf"));
+            write_groups(file, 1);
+            write_counts(file, {tets + 3}, {tets});
+            file.data<double>("/VTKHDF/Points", strip.points, {tets + 3, 3});
+            file.stored("/VTKHDF/Connectivity", strip.connectivity, {4 * tets}, way);
+            file.data<std::int64_t>("/VTKHDF/Offsets", strip.offsets, {tets + 1});
+            file.data<std::uint8_t>("/VTKHDF/Types", strip.types, {tets});
+        }
+        const auto result = read(folder.file("a.vtkhdf"));
+        ASSERT_TRUE(result) << result.error().message;
+        const Array& connectivity = result->grid.cells.connectivity;
+        ASSERT_EQ(connectivity.type(), ScalarType::int32);
+        EXPECT_TRUE(std::ranges::equal(connectivity.as<std::int32_t>(), strip.connectivity)) << "chunks of " << chunk;
     }
 }
 

@@ -14,6 +14,7 @@
 #include "core/parallel.hpp"
 #include "io/own/first_error.hpp"
 #include "io/own/loaded.hpp"
+#include "io/own/narrow_indices.hpp"
 #include "io/own/number_text.hpp"
 #include "io/own/pace.hpp"
 #include "io/own/source_scanner.hpp"
@@ -25,7 +26,7 @@ namespace isotet::io {
 namespace {
 
 constexpr std::uint64_t max_components = 1U << 20U;
-constexpr std::size_t piece_values = std::size_t{1} << 18;
+constexpr std::size_t piece_values = std::size_t{1} << 16; ///< of 8 bytes they stay in a processor's own cache
 
 /// A type of values, and how they are stored.
 struct LegacyType {
@@ -229,19 +230,52 @@ private:
         if (type.bits) return read_bits(begin, static_cast<std::size_t>(bytes), tuples, components);
         return vtk_xml::filled_array(
             type.type, static_cast<std::size_t>(tuples), static_cast<std::size_t>(components), [&](std::byte* to) {
-                FirstError failed;
-                core::parallel_pieces(static_cast<std::size_t>(count), piece_values, progress_,
-                                      [&](std::size_t first, std::size_t end) {
-                                          std::byte* const values = to + first * size;
-                                          const std::size_t piece = (end - first) * size;
-                                          auto read = source_.read(begin + first * size, {values, piece});
-                                          if (!read) failed.add(first, read.error());
-                                          else if (std::endian::native != std::endian::big)
-                                              swap_bytes(values, end - first, size);
-                                      });
-                if (progress_.cancelled()) failed.add(0, Pace::cancelled());
-                return failed.result();
+                return each_piece(
+                    begin, count, size, [&](std::size_t first, std::size_t) { return to + first * size; },
+                    [](std::size_t, std::span<const std::byte>) {});
             });
+    }
+
+    /// Reads `count` values of `size` bytes from `begin` on, in parallel, into room(first, count), in the byte order of this
+    /// machine; then calls take(first, bytes).
+    template <class Room, class Take>
+    Result<void> each_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
+                            const Take& take) {
+        FirstError failed;
+        core::parallel_pieces(static_cast<std::size_t>(count), piece_values, progress_,
+                              [&](std::size_t first, std::size_t end) {
+                                  const std::span<std::byte> piece(room(first, end - first), (end - first) * size);
+                                  if (auto read = source_.read(begin + first * size, piece); !read)
+                                      return failed.add(first, read.error());
+                                  if (std::endian::native != std::endian::big)
+                                      swap_bytes(piece.data(), end - first, size);
+                                  take(first, std::span<const std::byte>(piece));
+                              });
+        if (progress_.cancelled()) failed.add(0, Pace::cancelled());
+        return failed.result();
+    }
+
+    /// Indices of 64 bits in a binary file as int32; nothing, and the place as before, where one does not fit.
+    Result<std::optional<Array>> read_narrow(const LegacyType& type, std::uint64_t count, std::string_view what) {
+        const std::size_t before = scanner_.position();
+        if (auto sized = check_size(count, 1, what); !sized) return sized.error();
+        if (auto skipped = read_binary(type, count, 1, what, false); !skipped) return skipped.error();
+        const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(std::int64_t);
+        NarrowIndices narrow(static_cast<std::size_t>(count));
+        auto done = each_piece(
+            scanner_.position() - bytes, count, sizeof(std::int64_t),
+            [](std::size_t, std::size_t values) {
+                thread_local Scratch scratch;
+                return scratch.take(values * sizeof(std::int64_t)).data();
+            },
+            [&](std::size_t first, std::span<const std::byte> piece) {
+                narrow.add(first, std::span(reinterpret_cast<const std::uint64_t*>(piece.data()),
+                                            piece.size() / sizeof(std::uint64_t)));
+            });
+        if (!done) return done.error();
+        auto array = std::move(narrow).to_array();
+        if (!array) scanner_.seek(before);
+        return array;
     }
 
     Result<Array> read_bits(std::size_t begin, std::size_t bytes, std::uint64_t tuples, std::uint64_t components) {
@@ -369,7 +403,7 @@ private:
         const auto corners = static_cast<std::size_t>(numbers[0]);
         std::atomic<bool> regular = true;
         core::Buffer<std::int32_t> connectivity(count * corners);
-        core::parallel_ranges(count, piece_values / 4, [&](std::size_t begin, std::size_t end) {
+        core::parallel_ranges(count, piece_values, [&](std::size_t begin, std::size_t end) {
             bool same = true;
             for (std::size_t cell = begin; cell < end; ++cell) {
                 const std::int32_t* const from = numbers.data() + cell * (corners + 1);
@@ -396,24 +430,37 @@ private:
             if (!type) return type.error();
             if (is_floating(type->type) || size_of(type->type) < 4)
                 return invalid_data(fmt::format("{}: offsets or connectivity of type {}", keyword, type->name));
-            auto values = read_values(*type, first ? count : size, 1, keyword, wants_.geometry);
+            const std::uint64_t needed = first ? count : size;
+            if (binary_ && wants_.geometry && NarrowIndices::narrows(type->type)) {
+                auto narrow = read_narrow(*type, needed, keyword);
+                if (!narrow) return narrow.error();
+                if (*narrow) {
+                    *numbers = **std::move(narrow);
+                    continue;
+                }
+            }
+            auto values = read_values(*type, needed, 1, keyword, wants_.geometry);
             if (!values) return values.error();
             *numbers = std::move(*values);
         }
         if (!wants_.geometry) return {};
         cells.count = count == 0 ? 0 : count - 1;
         if (cells.count == 0) return {};
-        return cells.offsets.visit([&](auto offsets) -> Result<void> {
-            std::uint64_t last = 0;
-            for (std::size_t i = 0; i < offsets.size(); ++i) {
-                const auto offset = static_cast<std::uint64_t>(offsets[i]);
-                if (offset > size || offset < last || (i == 0 && offset != 0))
-                    return invalid_data(fmt::format("{}: offsets[{}] is {}, outside 0 to {} or lower than before",
-                                                    keyword, i, offsets[i], size));
-                last = offset;
-            }
-            return {};
+        FirstError failed;
+        cells.offsets.visit([&](auto offsets) {
+            core::parallel_ranges(offsets.size(), piece_values, [&](std::size_t begin, std::size_t end) {
+                auto last = begin == 0 ? 0 : static_cast<std::uint64_t>(offsets[begin - 1]);
+                for (std::size_t i = begin; i < end && !failed; ++i) {
+                    const auto offset = static_cast<std::uint64_t>(offsets[i]);
+                    if (offset > size || offset < last || (i == 0 && offset != 0))
+                        failed.add(
+                            i, invalid_data(fmt::format("{}: offsets[{}] is {}, outside 0 to {} or lower than before",
+                                                        keyword, i, offsets[i], size)));
+                    last = offset;
+                }
+            });
         });
+        return failed.result();
     }
 
     /// Lines up to an empty one.

@@ -17,6 +17,7 @@
 #include "io/own/escape.hpp"
 #include "io/own/first_error.hpp"
 #include "io/own/loaded.hpp"
+#include "io/own/narrow_indices.hpp"
 #include "io/own/vtk_xml/codec.hpp"
 #include "io/vtk/hdf5_handle.hpp"
 
@@ -25,6 +26,7 @@ namespace {
 
 constexpr std::uint64_t max_chunk_bytes = std::uint64_t{1} << 28; ///< of larger ones HDF5 reads parts
 constexpr std::size_t plain_bytes = std::size_t{4} << 20;         ///< read at once of rows that are stored as they are
+constexpr std::uint64_t window_rows = std::uint64_t{1} << 20;     ///< of indices, read before they become narrow
 constexpr std::uint64_t many_bytes = std::uint64_t{64} << 20; ///< asking what is free takes longer than reading fewer
 
 /// Which rows of a data set, and where they go.
@@ -85,18 +87,31 @@ void unshuffle(std::span<const std::byte> from, std::byte* to, std::size_t scala
     }
 }
 
+/// Memory of one thread, for one chunk after another.
+struct ChunkScratch {
+    Scratch packed, shuffled, whole;
+
+    void trim() noexcept {
+        for (Scratch* one : {&packed, &shuffled, &whole}) one->trim();
+    }
+};
+
 /// Brings chunks to their places, each on its own.
 class ChunkReader {
 public:
-    ChunkReader(const ByteSource& source, const ChunkShape& shape, const RowRange& range)
-        : source_(source), shape_(shape), range_(range), bytes_(shape.rows * shape.columns * range.scalar) {}
+    ChunkReader(const ByteSource& source, const ChunkShape& shape, const RowRange& range, ChunkScratch& scratch)
+        : source_(source),
+          shape_(shape),
+          range_(range),
+          bytes_(shape.rows * shape.columns * range.scalar),
+          scratch_(scratch) {}
 
     Result<void> read(const StoredChunk& chunk) {
         const std::uint64_t begin = std::max(chunk.row, range_.first);
         const std::uint64_t end = std::min(chunk.row + shape_.rows, range_.first + range_.rows);
         const std::uint64_t columns = std::min<std::uint64_t>(shape_.columns, range_.columns - chunk.column);
         const bool straight = begin == chunk.row && end == chunk.row + shape_.rows && shape_.columns == range_.columns;
-        std::byte* const whole = straight ? place(begin, 0) : whole_.take(bytes_).data();
+        std::byte* const whole = straight ? place(begin, 0) : scratch_.whole.take(bytes_).data();
         if (auto decoded = decode(chunk, {whole, bytes_}); !decoded) return decoded;
         if (straight) return {};
         for (std::uint64_t row = begin; row < end; ++row)
@@ -119,11 +134,11 @@ private:
         if (shape_.filters.deflated && !vtk_xml::is_plausible(vtk_xml::Codec::zlib, chunk.bytes, to.size()))
             return wrong(fmt::format("of {} bytes cannot become {}", chunk.bytes, to.size()));
         const bool shuffled = shape_.filters.shuffled && range_.scalar > 1;
-        const std::span<std::byte> inflated = shuffled ? shuffled_.take(to.size()) : to;
+        const std::span<std::byte> inflated = shuffled ? scratch_.shuffled.take(to.size()) : to;
         if (!shape_.filters.deflated) {
             if (auto read = source_.read(chunk.address, inflated); !read) return read;
         } else {
-            const auto packed = source_.view(chunk.address, chunk.bytes, packed_);
+            const auto packed = source_.view(chunk.address, chunk.bytes, scratch_.packed);
             if (!packed) return packed.error();
             if (!vtk_xml::inflate(vtk_xml::Codec::zlib, *packed, inflated)) return wrong("cannot be inflated");
         }
@@ -135,7 +150,7 @@ private:
     const ChunkShape& shape_;
     const RowRange& range_;
     const std::size_t bytes_;
-    Scratch packed_, shuffled_, whole_;
+    ChunkScratch& scratch_;
 };
 
 /// Where the chunks of some rows lie. Nothing where HDF5 has to read them: filled in, or with another filter.
@@ -168,11 +183,13 @@ Result<bool> read_chunks(hid_t data, hid_t creation, int rank, const ByteSource&
     if (!chunks) return false;
     FirstError error;
     const auto threads = static_cast<std::size_t>(core::threads_here());
-    const std::size_t grain = std::max<std::size_t>(1, chunks->size() / (8 * threads)); // each has memory of its own
+    const std::size_t grain = std::max<std::size_t>(1, chunks->size() / (8 * threads));
     core::parallel_ranges(chunks->size(), grain, [&](std::size_t begin, std::size_t end) {
-        ChunkReader reader(source, shape, range);
+        thread_local ChunkScratch scratch;
+        ChunkReader reader(source, shape, range, scratch);
         for (std::size_t i = begin; i < end && !error; ++i)
             if (auto read = reader.read((*chunks)[i]); !read) error.add(i, read.error());
+        scratch.trim();
     });
     if (auto done = error.result(); !done) return done.error();
     return true;
@@ -203,6 +220,12 @@ std::string name_of_file(hid_t object) {
     std::string name(length < 0 ? 0 : static_cast<std::size_t>(length) + 1, '\0');
     if (length > 0) H5Fget_name(object, name.data(), name.size());
     return name;
+}
+
+std::uint64_t chunk_rows_of(hid_t creation, int rank) {
+    std::array<hsize_t, 2> lengths{1, 1};
+    if (H5Pget_layout(creation) != H5D_CHUNKED || H5Pget_chunk(creation, rank, lengths.data()) != rank) return 1;
+    return std::max<std::uint64_t>(lengths[0], 1);
 }
 
 /// An open data set with its shape.
@@ -241,7 +264,7 @@ std::unique_ptr<DataSet> Hdf5Rows::File::data_set(const std::string& name) const
     std::array<hsize_t, 2> extent{0, 1};
     H5Sget_simple_extent_dims(set->space, extent.data(), nullptr);
     if (extent[1] == 0 || extent[1] > 1'000'000) return nullptr;
-    set->shape = {extent[0], static_cast<std::size_t>(extent[1]), *type};
+    set->shape = {extent[0], static_cast<std::size_t>(extent[1]), *type, chunk_rows_of(set->creation, set->rank)};
     return set;
 }
 
@@ -304,6 +327,29 @@ Result<Array> Hdf5Rows::read(const std::string& name, std::uint64_t first, std::
             return failed("cannot be read");
         return std::move(values).to_array(shape.columns);
     });
+}
+
+Result<Array> Hdf5Rows::read_indices(const std::string& name, std::uint64_t first, std::uint64_t rows) const {
+    const auto found = shape(name);
+    if (!found || found->columns != 1 || !NarrowIndices::narrows(found->type) || first > found->rows ||
+        rows > found->rows - first)
+        return read(name, first, rows);
+    NarrowIndices narrow(rows);
+    const std::uint64_t chunks = std::max<std::uint64_t>(1, window_rows / found->chunk_rows);
+    for (std::uint64_t row = first; row < first + rows;) { // a window ends where chunks end
+        const std::uint64_t end = std::min((row / found->chunk_rows + chunks) * found->chunk_rows, first + rows);
+        const auto window = read(name, row, end - row);
+        if (!window) return window;
+        window->visit([&]<class T>(std::span<const T> values) {
+            if constexpr (std::is_integral_v<T>)
+                core::parallel_ranges(values.size(), window_rows / 64, [&](std::size_t from, std::size_t to) {
+                    narrow.add(row - first + from, values.subspan(from, to - from));
+                });
+        });
+        row = end;
+    }
+    auto array = std::move(narrow).to_array();
+    return array ? *std::move(array) : read(name, first, rows);
 }
 
 Result<Array> Hdf5Rows::read(const std::string& name) const {

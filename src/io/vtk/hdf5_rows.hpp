@@ -17,6 +17,7 @@ struct RowsShape {
     std::uint64_t rows = 0;
     std::size_t columns = 1;
     ScalarType type = ScalarType::float32;
+    std::uint64_t chunk_rows = 1; ///< stored together
 };
 
 /// An open file. Links and outside storage are followed: check_hdf5_names() first.
@@ -39,6 +40,12 @@ public:
     /// Cost     chunks that are stored as they are, deflated or shuffled are read side by side; others by HDF5, one after
     ///          another
     Result<Array> read(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
+
+    /// Some values of a data set with one column, of integers of 64 bits as int32 where all fit.
+    ///
+    /// Errors   as read()
+    /// Cost     as read(), and no more memory than the int32 and a few MB a thread
+    Result<Array> read_indices(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
 
     /// The whole data set.
     Result<Array> read(const std::string& name) const;

@@ -143,9 +143,9 @@ Result<std::vector<Partition>> GridFile::find_partitions(const StepPlace& place)
 Result<void> GridFile::load_cells(const Partition& part, Grid& grid) const {
     auto points = rows_.read(root + "Points", part.first_point, part.points);
     if (!points) return points.error();
-    auto connectivity = rows_.read(root + "Connectivity", part.first_corner, part.corners);
+    auto connectivity = rows_.read_indices(root + "Connectivity", part.first_corner, part.corners);
     if (!connectivity) return connectivity.error();
-    auto offsets = rows_.read(root + "Offsets", part.first_offset, part.cells + 1);
+    auto offsets = rows_.read_indices(root + "Offsets", part.first_offset, part.cells + 1);
     if (!offsets) return offsets.error();
     auto types = rows_.read(root + "Types", part.first_cell, part.cells);
     if (!types) return types.error();

@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "io/own/face_streams.hpp"
+#include "io/own/narrow_indices.hpp"
 #include "io/own/surface_scalars.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/vtk_xml/load.hpp"
@@ -235,8 +236,28 @@ private:
         return regular.load();
     }
 
+    /// As int32 where all values fit; nothing where that gains nothing, or where one does not fit.
+    static Result<std::optional<Array>> narrowed(const StoredArray& stored, std::uint64_t size, std::size_t zeros) {
+        if (!NarrowIndices::narrows(stored.array().type) || !stored.has_blocks()) return std::optional<Array>();
+        NarrowIndices narrow(static_cast<std::size_t>(size) + zeros);
+        constexpr std::int64_t zero_in_front = 0;
+        for (std::size_t i = 0; i < zeros; ++i) narrow.add(i, std::span(&zero_in_front, 1));
+        auto done = stored.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
+            with_type(stored.array().type, [&](auto zero) {
+                using Scalar = decltype(zero);
+                const auto* const values = reinterpret_cast<const Scalar*>(bytes.data());
+                narrow.add(first + zeros, std::span(values, bytes.size() / sizeof(Scalar)));
+            });
+        });
+        if (!done) return done.error();
+        return std::move(narrow).to_array();
+    }
+
     /// With the 0 in front that files leave out.
     Result<Array> offsets_from_0(const StoredArray& stored) const {
+        auto narrow = narrowed(stored, count_, 1);
+        if (!narrow) return narrow.error();
+        if (*narrow) return **std::move(narrow);
         const ScalarType type = stored.array().type;
         auto offsets = filled_array(type, static_cast<std::size_t>(count_) + 1, 1, [&](std::byte* to) {
             std::memset(to, 0, size_of(type));
@@ -256,7 +277,13 @@ private:
     Result<Array> indices(const char* name, std::uint64_t size) const {
         const auto described = find(name);
         if (!described) return described.error();
-        auto values = load_array(document_, *described, size, progress_);
+        const auto stored = StoredArray::find(document_, *described, size, progress_);
+        if (!stored) return stored.error();
+        auto narrow = narrowed(*stored, size, 0);
+        if (!narrow) return narrow.error();
+        if (*narrow) return **std::move(narrow);
+        auto values = filled_array(described->type, static_cast<std::size_t>(size), 1,
+                                   [&](std::byte* to) { return stored->decode(to); });
         if (!values) return values;
         return as_indices_of_cells(std::move(*values));
     }
