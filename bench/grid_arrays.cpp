@@ -45,8 +45,35 @@ void write_reals(const std::string& folder, const std::string& name, const Array
     write_array(folder, name + ending, array.data(), array.bytes());
 }
 
-/// The cells that are contoured and whose corners all have a value.
-Arrays valid_cells(const Grid& grid, const Array& field) {
+/// The array with each value changed, as To.
+template <class To, class Change>
+Array changed(const Array& array, const Change& change) {
+    std::vector<To> out(array.size());
+    array.visit([&](auto values) {
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = static_cast<To>(change(static_cast<double>(values[i]), i));
+    });
+    return Array::own(std::move(out), array.components());
+}
+
+/// Changes points and values as `variant` says.
+void vary(const std::string& variant, Array& points, Array& values) {
+    if (variant.empty()) return;
+    if (variant == "double") {
+        const auto finer = [](double value, std::size_t) { return value * (1 + 1e-10); };
+        points = changed<double>(points, finer);
+        values = changed<double>(values, finer);
+    } else if (variant == "rounded") {
+        values = changed<float>(values, [](double value, std::size_t) { return std::round(value * 16) / 16; });
+    } else if (variant == "no_data") {
+        values = changed<float>(values, [](double value, std::size_t i) { return i % 97 == 0 ? NAN : value; });
+    } else {
+        throw std::invalid_argument("no such variant: '" + variant + "'");
+    }
+}
+
+/// The cells that are contoured; unless all are asked for, those whose corners all have a value.
+Arrays contoured_cells(const Grid& grid, const Array& field, bool all) {
     if (grid.points.tuples() > std::numeric_limits<std::int32_t>::max())
         throw std::runtime_error("the grid has " + std::to_string(grid.points.tuples()) +
                                  " points, but a race is for at most 2^31 - 1");
@@ -63,8 +90,9 @@ Arrays valid_cells(const Grid& grid, const Array& field) {
                                         : static_cast<std::size_t>(grid.cells.offsets.at(cell + 1));
         const std::span<const std::int64_t> of_cell(corners.data() + begin, end - begin);
         begin = end;
-        const bool has_values = std::ranges::none_of(
-            of_cell, [&](std::int64_t point) { return std::isnan(field.at(static_cast<std::size_t>(point))); });
+        const bool has_values = all || std::ranges::none_of(of_cell, [&](std::int64_t point) {
+                                    return std::isnan(field.at(static_cast<std::size_t>(point)));
+                                });
         if (type < CellType::tetrahedron || type > CellType::pyramid || !has_values) continue;
         for (const std::int64_t point : of_cell) out.corners.push_back(static_cast<std::int32_t>(point));
         out.offsets.push_back(static_cast<std::int64_t>(out.corners.size()));
@@ -85,14 +113,16 @@ void write_values(const std::string& folder, const std::string& name, const std:
 
 } // namespace
 
-Reply write_grid_arrays(const std::string& source, const std::string& field, const std::string& folder, int threads) {
-    const Grid grid = load(source, field, threads);
-    const Array values = as_reals(find_field(grid, field).value().values);
+Reply write_grid_arrays(const std::string& source, const std::string& field, const std::string& variant,
+                        const std::string& folder, int threads) {
+    Grid grid = load(source, field, threads);
+    Array values = as_reals(find_field(grid, field).value().values);
+    vary(variant, grid.points, values);
     std::filesystem::create_directories(folder);
     write_reals(folder, "points", grid.points);
     write_reals(folder, "field", values);
 
-    const Arrays cells = valid_cells(grid, values);
+    const Arrays cells = contoured_cells(grid, values, variant == "no_data");
     write_values(folder, "corners.i32", cells.corners);
     write_values(folder, "types.u8", cells.types);
     if (!cells.uniform()) write_values(folder, "offsets.i64", cells.offsets);

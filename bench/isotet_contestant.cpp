@@ -66,7 +66,8 @@ Reply IsotetContestant::answer(const Words& words) {
     if (command == "set_field") return set_field(word(words, 1));
     if (command == "copy") return Reply().number("bytes_per_second", copy_bandwidth(whole_number(words, 1)));
     if (command == "arrays")
-        return write_grid_arrays(word(words, 1), word(words, 2), word(words, 3), whole_number(words, 4));
+        return write_grid_arrays(word(words, 1), word(words, 2), word(words, 3), word(words, 4),
+                                 whole_number(words, 5));
     refuse("command", command);
 }
 

@@ -111,7 +111,11 @@ def by_method(lines: list[Line], case: str) -> dict[str, Line]:
 
 
 def three(line: Line | None) -> str:
-    return f"{short_time(line.best)} / {short_time(line.median)} / {short_time(line.worst)}" if line else ""
+    if line is None:
+        return ""
+    if line.runs == 1:
+        return f"{short_time(line.best)} (1 run)"
+    return f"{short_time(line.best)} / {short_time(line.median)} / {short_time(line.worst)}"
 
 
 def speed_table(results: list[CaseResult], lines: list[Line]) -> str:
@@ -204,7 +208,8 @@ def all_methods(result: CaseResult, lines: list[Line]) -> str:
     for line in lines:
         if line.case == result.case.name:
             triangles = f"{line.triangles:,.0f}" if line.triangles is not None else ""
-            rows.append([BY_KEY[line.method].label, short_time(line.best), short_time(line.median),
+            one = " (1 run)" if line.runs == 1 else ""
+            rows.append([BY_KEY[line.method].label + one, short_time(line.best), short_time(line.median),
                          short_time(line.worst), triangles, f"{line.must_move / 1e6:,.1f}",
                          f"{line.bandwidth / 1e9:.2f}", f"{100 * line.share:.0f} %"])
     return f"#### {result.case.name}\n\n" + table(

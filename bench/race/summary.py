@@ -28,6 +28,7 @@ class Line:
     share: float  # of the copy bandwidth of the same case
     speedup_best: float | None  # against the faster merged rival, best against best
     speedup_median: float | None
+    runs: int  # rounds in which it was measured
 
     @property
     def cells_per_second(self) -> float:
@@ -55,7 +56,7 @@ def lines_of(result: CaseResult) -> list[Line]:
             mean(triangles) if triangles else None, min(times), median(times), max(times), must_move,
             bandwidth, bandwidth / copy,
             min(min(rival) for rival in rivals) / min(times) if comparable else None,
-            min(median(rival) for rival in rivals) / median(times) if comparable else None))
+            min(median(rival) for rival in rivals) / median(times) if comparable else None, len(times)))
     order = list(BY_KEY)
     return sorted(lines, key=lambda line: order.index(line.method))
 
