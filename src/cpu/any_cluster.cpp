@@ -2,10 +2,14 @@
 // Any cluster: with tied points, points without data, double precision. Which of its own tied points and seam edges
 // give vertices may depend on clusters that hold them too, so these are left to the masks.
 #include <algorithm>
-#include <bit>
+#include <cstring>
+#include <type_traits>
 
 #include "core/storage.hpp"
-#include "cpu/cutting.hpp"
+#include "cpu/active_cells.hpp"
+#include "cpu/level.hpp"
+#include "cpu/simd_avx2.hpp"
+#include "cpu/simd_avx512.hpp"
 
 namespace isotet::cpu {
 
@@ -13,8 +17,11 @@ namespace {
 
 constexpr std::uint8_t is_tied = 1, has_no_data = 2;
 
-template <class Real>
+template <class Real, class Simd>
 class AnyCluster {
+    /// What of Simd is there in single precision only.
+    using Cross = std::conditional_t<std::is_same_v<Real, float>, Simd, Portable>;
+
 public:
     AnyCluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& s)
         : cutting_(cutting),
@@ -35,11 +42,11 @@ public:
 
     const Record<Real>* cut(Start& count) {
         classify();
-        cut_tets();
+        cut_cells();
         s_.listed.clear();
         s_.shared.clear();
         s_.shared_keys.clear();
-        if (cutting_.wanted.ties == Ties::merge) share_tied_points();
+        if (ties_) share_tied_points();
         share_own_seams();
         share_ghost_seams();
         list_inner_edges();
@@ -58,89 +65,82 @@ private:
     }
 
     void classify() {
+        const Real level = isovalue_.value, tied = isovalue_.tied;
         const bool merge = cutting_.wanted.ties == Ties::merge;
+        std::uint8_t seen = 0;
         for (std::size_t k = 0; k < points_; ++k) {
             const Real value = s_.values[k];
-            s_.above[k] = value >= isovalue_.value;
-            s_.special[k] = static_cast<std::uint8_t>(merge && value == isovalue_.tied ? is_tied
-                                                      : core::is_nan(value)            ? has_no_data
-                                                                                       : 0);
+            s_.above[k] = value >= level;
+            s_.special[k] = static_cast<std::uint8_t>((merge && value == tied ? is_tied : 0) |
+                                                      (core::is_nan(value) ? has_no_data : 0));
+            seen |= s_.special[k];
         }
+        ties_ = seen & is_tied;
+        holes_ = seen & has_no_data;
     }
 
-    void cut_tets() {
-        s_.cut.count = 0;
+    bool is_special(unsigned corner, std::uint8_t what) const { return s_.special[corner] & what; }
+
+    /// Takes out cells with a corner without data: few of those that are found by sides alone.
+    struct TakeOutHoles {
+        const AnyCluster& self;
+
+        template <class Cells>
+        void operator()(Cells& cells, std::size_t corners = 4) const {
+            if (!self.holes_) return;
+            std::size_t kept = 0;
+            for (std::size_t i = 0; i < cells.count; ++i) {
+                std::array<std::uint8_t, sizeof cells.corners[0]> v;
+                std::memcpy(v.data(), &cells.corners[i], sizeof v);
+                bool hole = false;
+                for (std::size_t k = 0; k < corners; ++k) hole |= self.is_special(v[k], has_no_data);
+                cells.corners[kept] = cells.corners[i];
+                cells.cases[kept] = cells.cases[i];
+                cells.places[kept] = cells.places[i];
+                kept += !hole;
+            }
+            cells.count = kept;
+        }
+    };
+
+    void cut_cells() {
+        s_.cut.count = triangles_ = 0;
         const core::Range<Real> range = packed_.as<Real>().ranges[cluster_];
         if (!(range.lower < isovalue_.value)) return; // nothing below
-        const auto tets = packed_.cluster_tets(cluster_);
-        const core::GroupRange* const groups = packed_.group_ranges.data() + header_.first_group;
-        const std::uint8_t step = core::quantize(isovalue_.value, range);
-        const auto is_hit = [&](std::size_t group) {
-            return groups[group].lower <= step && step <= groups[group].upper;
-        };
-        for (std::size_t begin = 0; begin < tets.size(); begin += core::group_size) {
-            if (!is_hit(begin / core::group_size)) continue;
-            for (std::size_t i = begin; i < std::min(begin + core::group_size, tets.size()); ++i)
-                cut_tet(i, tets[i].corners);
-        }
-        if (header_.others())
-            packed_.for_other_cells(cluster_, [&](const core::StoredCell& cell) {
-                if (is_hit(cell.word / core::group_size)) cut_cell(cell);
-            });
+        cut_all<Simd>(packed_, cluster_, isovalue_.value, s_, TakeOutHoles{*this});
+        if (ties_) move_to_tied_points();
+        for (std::size_t i = 0; i < 4 * s_.cut.count; ++i) s_.used.use(s_.keys[i]);
+        for (std::size_t i = 0; i < s_.cut.count; ++i) triangles_ += s_.cut.triangles[i];
     }
 
-    void cut_tet(std::size_t tet, const std::array<std::uint8_t, 4>& v) {
-        unsigned index = 0, tied = 0;
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (s_.special[v[k]] == has_no_data) return;
-            index |= unsigned{s_.above[v[k]]} << k;
-            tied |= unsigned{s_.special[v[k]]} << k;
-        }
-        // With corners below, above, and tied: something below, and something above or three tied.
-        if (index == 0 || index == 15 || (index == tied && std::popcount(tied) < 3)) return;
-        const core::TetCase& c = core::case_table[index];
-        VertexKey* const keys = s_.keys.data() + 4 * s_.cut.count;
-        for (std::size_t k = 0; k < 4; ++k) keys[k] = key_of(v[c.polygon[k].above], v[c.polygon[k].below]);
-        for (std::size_t k = 0; k < 4; ++k) s_.used.use(keys[k]);
-        add_polygon(keys, c.triangles, tet);
+    /// 1 where all three do, else 0.
+    static unsigned differ(VertexKey a, VertexKey b, VertexKey c) {
+        return unsigned{a != b} & unsigned{b != c} & unsigned{c != a};
     }
 
-    void cut_cell(const core::StoredCell& cell) {
-        unsigned index = 0;
-        for (std::size_t k = 0; k < cell.corners.size(); ++k) {
-            if (s_.special[cell.corners[k]] == has_no_data) return;
-            index |= unsigned{s_.above[cell.corners[k]]} << k;
+    /// The vertex of an edge whose end above is tied is that end. What collapses is taken out of the polygons, and they
+    /// with it. Which corners are tied is as good as random: no branch.
+    void move_to_tied_points() {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < s_.cut.count; ++i) {
+            std::array<VertexKey, 4> v;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const VertexKey key = s_.keys[4 * i + k];
+                const unsigned lower = key / KeyTable::row_size, higher = key % KeyTable::row_size;
+                const unsigned above = higher + (lower - higher) * s_.above[lower];
+                v[k] = is_special(above, is_tied) ? point_key(above) : key;
+            }
+            const unsigned first = differ(v[0], v[1], v[2]), second = differ(v[0], v[2], v[3]);
+            VertexKey* const to = s_.keys.data() + 4 * kept;
+            to[0] = v[0];
+            to[1] = first ? v[1] : v[2];
+            to[2] = first ? v[2] : v[3];
+            to[3] = second ? v[3] : v[2];
+            s_.cut.triangles[kept] = static_cast<std::uint8_t>(first + second);
+            s_.cut.places[kept] = s_.cut.places[i];
+            kept += first | second;
         }
-        for (const core::CellPolygon& polygon : core::polygons_of(cell.kind, index)) {
-            VertexKey* const keys = s_.keys.data() + 4 * s_.cut.count;
-            for (std::size_t k = 0; k < 4; ++k)
-                keys[k] = key_of(cell.corners[polygon.edges[k].above], cell.corners[polygon.edges[k].below]);
-            for_triangles(keys, polygon.triangles, [&](std::size_t t) {
-                for (const std::uint8_t k : core::triangle_corners[t]) s_.used.use(keys[k]);
-            });
-            add_polygon(keys, polygon.triangles, cell.word);
-        }
-    }
-
-    VertexKey key_of(std::uint8_t above, std::uint8_t below) const {
-        return s_.special[above] == is_tied ? point_key(above)
-                                            : edge_key({std::min(above, below), std::max(above, below)});
-    }
-
-    void add_polygon(const VertexKey* keys, std::size_t triangles, std::size_t word) {
-        for_triangles(keys, triangles, [&](std::size_t) { ++triangles_; });
-        s_.cut.triangles[s_.cut.count] = static_cast<std::uint8_t>(triangles);
-        s_.cut.places[s_.cut.count++] = static_cast<std::uint16_t>(word);
-    }
-
-    /// Calls f(0) and f(1) for the triangles of a polygon whose corners are three different vertices.
-    template <class F>
-    static void for_triangles(const VertexKey* keys, std::size_t triangles, F&& f) {
-        for (std::size_t t = 0; t < triangles; ++t) {
-            const auto& corner = core::triangle_corners[t];
-            const VertexKey a = keys[corner[0]], b = keys[corner[1]], d = keys[corner[2]];
-            if (a != b && b != d && d != a) f(t);
-        }
+        s_.cut.count = kept;
     }
 
     std::size_t place_of(std::uint32_t cluster) const { return cutting_.selection.place(cluster, isovalue_number_); }
@@ -164,51 +164,52 @@ private:
     /// Where all points of its owner have data, every active edge of the owner is used, and the owner knows it.
     /// Elsewhere an edge may lie between tets without data only: whoever has a valid tet there tells the owner.
     void share_own_seams() {
-        for (std::size_t k = 0; k < links_.own_seams.size(); ++k) {
-            const VertexKey key = edge_key(links_.own_seams[k]);
-            if (!s_.used.has(key)) continue;
-            cutting_.masks.set_seam(place_, k);
-            s_.share(key, {static_cast<std::uint32_t>(place_), static_cast<std::uint32_t>(k)});
+        std::array<VertexKey, 64 + 32> crossed; // room for what is written behind them
+        for (std::size_t begin = 0; begin < links_.own_seams.size(); begin += 64) {
+            const auto seams =
+                links_.own_seams.subspan(begin, std::min<std::size_t>(64, links_.own_seams.size() - begin));
+            std::uint64_t bits = 0, used = 0;
+            Simd::cross_own_seams(s_.above.data(), seams, &bits, crossed.data());
+            const VertexKey* key = crossed.data();
+            core::for_bits(&bits, 1, [&](std::size_t k) {
+                if (s_.used.has(*key)) {
+                    used |= std::uint64_t{1} << k;
+                    s_.share(*key, {static_cast<std::uint32_t>(place_), static_cast<std::uint32_t>(begin + k)});
+                }
+                ++key;
+            });
+            cutting_.masks.set_seams(place_, begin / 64, used);
         }
     }
 
     void share_ghost_seams() {
-        std::size_t k = 0;
-        for (const core::Neighbour& neighbour : links_.neighbours) {
-            for (const std::size_t end = k + neighbour.ghost_seams; k < end; ++k) {
-                const core::GhostSeam seam = links_.ghost_seams[k];
-                if (!s_.used.has(edge_key(seam.edge))) continue;
-                const std::size_t owner = place_of(neighbour.cluster);
-                if (packed_.has_no_data[neighbour.cluster]) cutting_.masks.set_seam(owner, seam.index);
-                s_.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
-            }
+        const std::size_t crossed = Simd::cross_ghost_seams(s_.above.data(), links_.ghost_seams,
+                                                            s_.crossed_seams.data(), s_.crossed_places.data());
+        const core::Neighbour* neighbour = links_.neighbours.data();
+        std::size_t end = crossed ? neighbour->ghost_seams : 0;
+        for (std::size_t i = 0; i < crossed; ++i) {
+            while (s_.crossed_places[i] >= end) end += (++neighbour)->ghost_seams;
+            const core::GhostSeam seam = s_.crossed_seams[i];
+            if (!s_.used.has(edge_key(seam.edge))) continue;
+            const std::size_t owner = place_of(neighbour->cluster);
+            if (packed_.has_no_data[neighbour->cluster]) cutting_.masks.set_seam(owner, seam.index);
+            s_.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
         }
     }
 
-    void list_inner_edges() { s_.listed.grow(Portable::list_keys(s_.used, s_.listed.end())); }
+    void list_inner_edges() { s_.listed.grow(Simd::list_keys(s_.used, s_.listed.end())); }
 
     const Record<Real>* write_record() {
         Record<Real>& record = begin_record(cutting_.wanted, triangles_, s_);
         record.lists_seams = false;
-        Portable::cross(s_.listed.data(), record.listed, s_.above.data(), s_.values.data(), isovalue_, s_.ends.data(),
-                        s_.weights.data());
+        Cross::cross(s_.listed.data(), record.listed, s_.above.data(), s_.values.data(), isovalue_, s_.ends.data(),
+                     s_.weights.data());
         ask_for_positions(packed_, s_, record);
         with_numbers(s_, record, [&](const auto* numbers, auto* corners) {
-            write_triangles(numbers, corners, record.has_tets ? record.tets() : nullptr);
+            write_triangles(s_, numbers, corners, record.has_tets ? record.tets() : nullptr);
         });
-        write_vertices<Portable>(packed_, s_, record);
+        write_vertices<Cross>(packed_, s_, record);
         return &record;
-    }
-
-    template <class Number>
-    void write_triangles(const Number* numbers, Number* corner, std::uint16_t* tet) const {
-        for (std::size_t i = 0; i < s_.cut.count; ++i) {
-            const VertexKey* const keys = s_.keys.data() + 4 * i;
-            for_triangles(keys, s_.cut.triangles[i], [&](std::size_t t) {
-                for (const std::uint8_t k : core::triangle_corners[t]) *corner++ = numbers[keys[k]];
-                if (tet) *tet++ = s_.cut.places[i];
-            });
-        }
     }
 
     const Cutting<Real>& cutting_;
@@ -221,16 +222,45 @@ private:
     const std::size_t points_;
     CutScratch<Real>& s_;
     std::size_t triangles_ = 0;
+    bool ties_ = false, holes_ = false; ///< some points are tied, without data
 };
+
+template <class Simd, class Real>
+const Record<Real>* cut_any(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch, Start& count,
+                            std::uint64_t& tied_points) {
+    AnyCluster<Real, Simd> cluster(cutting, place, scratch);
+    tied_points += cluster.own_tied_points();
+    return cluster.cut(count);
+}
+
+#if defined(__x86_64__)
+// Everything is inlined into these, and so compiled for their instruction set.
+template <class Real>
+[[gnu::target("avx512f,avx512bw,avx512vl,avx512vbmi,avx512vbmi2,bmi,bmi2,popcnt"), gnu::flatten]] const Record<Real>*
+cut_any_avx512(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& s, Start& count,
+               std::uint64_t& tied_points) {
+    return cut_any<Avx512>(cutting, place, s, count, tied_points);
+}
+template <class Real>
+[[gnu::target("avx2,bmi,bmi2,popcnt"), gnu::flatten]] const Record<Real>*
+cut_any_avx2(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& s, Start& count,
+             std::uint64_t& tied_points) {
+    return cut_any<Avx2>(cutting, place, s, count, tied_points);
+}
+#endif
 
 } // namespace
 
 template <class Real>
 const Record<Real>* cut_any_cluster(const Cutting<Real>& cutting, std::size_t place, CutScratch<Real>& scratch,
                                     Start& count, std::uint64_t& tied_points) {
-    AnyCluster<Real> cluster(cutting, place, scratch);
-    tied_points += cluster.own_tied_points();
-    return cluster.cut(count);
+    switch (level()) {
+#if defined(__x86_64__)
+    case Level::avx512: return cut_any_avx512(cutting, place, scratch, count, tied_points);
+    case Level::avx2: return cut_any_avx2(cutting, place, scratch, count, tied_points);
+#endif
+    default: return cut_any<Portable>(cutting, place, scratch, count, tied_points);
+    }
 }
 
 template const Record<float>* cut_any_cluster<float>(const Cutting<float>&, std::size_t, CutScratch<float>&, Start&,

@@ -3,7 +3,7 @@
 // itself all of its vertices.
 #include <atomic>
 
-#include "cpu/cutting.hpp"
+#include "cpu/active_cells.hpp"
 #include "cpu/level.hpp"
 #include "cpu/simd_avx2.hpp"
 #include "cpu/simd_avx512.hpp"
@@ -13,50 +13,6 @@ namespace isotet::cpu {
 namespace {
 
 using Scratch = CutScratch<float>;
-
-/// The groups of a cluster, one after another.
-struct Groups {
-    const core::StoredTet* const words; ///< of the cluster
-    const core::GroupRange* const ranges;
-    const std::uint8_t step; ///< the isovalue in steps of the cluster's range
-    std::size_t next = 0;
-
-    /// Calls f(words, cells, first word) for those of the next `count` cells, `size` a group, that may be cut.
-    template <class F>
-    void for_hit(std::size_t count, std::size_t size, const F& f) {
-        for (std::size_t first = 0; first < count; first += size, ++next)
-            if (ranges[next].lower <= step && step <= ranges[next].upper)
-                f(words + core::group_size * next, std::min(size, count - first), core::group_size * next);
-    }
-};
-
-template <class Simd, core::CellKind kind>
-void cut_cells(std::size_t count, Groups& groups, Scratch& s) {
-    if (count == 0) return;
-    s.cells.count = 0;
-    groups.for_hit(count, core::cells_per_group(kind),
-                   [&](const core::StoredTet* words, std::size_t n, std::size_t first) {
-                       Simd::template cut_cells<kind>(s.above.data(), words, n, first, s.cells);
-                   });
-    Simd::template polygons<kind>(s.cells, s.cut, s.keys.data());
-}
-
-template <class Simd>
-void cut_all(const Packed& packed, std::size_t cluster, float isovalue, Scratch& s) {
-    using core::CellKind;
-    const core::ClusterHeader& h = packed.headers[cluster];
-    Groups groups{packed.cells.data() + packed.first_word(cluster), packed.group_ranges.data() + h.first_group,
-                  core::quantize(isovalue, packed.as<float>().ranges[cluster])};
-    s.cut.count = 0;
-    groups.for_hit(h.tets(), core::group_size, [&](const core::StoredTet* tets, std::size_t n, std::size_t first) {
-        Simd::cut(s.above.data(), tets, n, first, s.cut);
-    });
-    Simd::keys(s.cut, s.keys.data());
-    if (h.others() == 0) return;
-    cut_cells<Simd, CellKind::pyramid>(h.count(CellKind::pyramid), groups, s);
-    cut_cells<Simd, CellKind::wedge>(h.count(CellKind::wedge), groups, s);
-    cut_cells<Simd, CellKind::hexahedron>(h.count(CellKind::hexahedron), groups, s);
-}
 
 /// Own seams into `listed` and the mask, ghost ones into `shared`; what remains are inner edges.
 template <class Simd>
@@ -79,29 +35,6 @@ void sort_out_seams(const Cutting<float>& cutting, const core::ClusterLinks& lin
     }
 }
 
-template <class Number>
-void write_triangles(const Scratch& s, const Number* numbers, Number* out, std::uint16_t* tet) {
-    const VertexKey* key = s.keys.data();
-    for (std::size_t i = 0, n = s.cut.count; i < n; ++i, key += 4) {
-        const std::uint64_t a = numbers[key[0]], b = numbers[key[1]], c = numbers[key[2]], d = numbers[key[3]];
-        if constexpr (sizeof(Number) == 1) {
-            const std::uint64_t corners = a | b << 8 | c << 16 | a << 24 | c << 32 | d << 40;
-            std::memcpy(out, &corners, sizeof corners);
-        } else {
-            const std::uint64_t first = a | b << 16 | c << 32 | a << 48;
-            const auto rest = static_cast<std::uint32_t>(c | d << 16);
-            std::memcpy(out, &first, sizeof first);
-            std::memcpy(out + 4, &rest, sizeof rest);
-        }
-        const std::size_t triangles = s.cut.triangles[i];
-        out += 3 * triangles;
-        if (tet) {
-            tet[0] = tet[1] = s.cut.places[i];
-            tet += triangles;
-        }
-    }
-}
-
 template <class Simd>
 const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place, Scratch& s, Start& count) {
     static constexpr Record<float> nothing;
@@ -110,7 +43,7 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     const core::StoredIsovalue<float>& isovalue = cutting.wanted.isovalues[cutting.selection.isovalues[place]];
     if (Simd::classify(s.values.data(), std::size_t{h.ghost_points} + h.own_points, isovalue, s.above.data()))
         return nullptr;
-    cut_all<Simd>(cutting.packed, cluster, isovalue.value, s);
+    cut_all<Simd>(cutting.packed, cluster, isovalue.value, s, KeepAll());
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.used.use(s.keys[i]);
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < s.cut.count; ++i) triangles += s.cut.triangles[i];

@@ -62,6 +62,9 @@ public:
     /// Bits that other threads may be setting, too.
     void set_tied(std::size_t place, std::size_t own_point) { set(tied(place), own_point); }
     void set_seam(std::size_t place, std::size_t seam) { set(seams(place), seam); }
+    void set_seams(std::size_t place, std::size_t word, std::uint64_t bits) {
+        if (bits) std::atomic_ref<std::uint64_t>(seams(place)[word]).fetch_or(bits, std::memory_order_relaxed);
+    }
 
     /// How many vertices the masks know.
     std::size_t vertices(std::size_t place) const { return core::count_bits(tied(place), words(place)); }
