@@ -9,7 +9,8 @@ namespace {
 
 // Seconds on two threads (docs/performance); those per call come once a grid or a surface, besides tets and triangles.
 constexpr double pack_call = 1e-3, pack_per_tet = 120e-9, pack_gradient_per_tet = 30e-9;
-constexpr double direct_call = 4e-5, direct_per_tet = 2e-9, direct_per_triangle = 50e-9, direct_gradient_per_tet = 40e-9;
+constexpr double direct_call = 4e-5, direct_per_tet = 2e-9, direct_per_triangle = 50e-9,
+                 direct_gradient_per_tet = 40e-9;
 constexpr double clusters_call = 5e-6, clusters_per_tet = 0.2e-9, clusters_per_triangle = 25e-9;
 
 // Bytes, from the promises of pack(), extract() and extract_direct().
@@ -34,9 +35,9 @@ Estimate estimate(Method method, const Workload& work) noexcept {
         if (work.gradients) out.seconds += work.surfaces * tets * direct_gradient_per_tet;
         out.bytes = whole(points * direct_per_point + work.triangles_together * direct_bytes_per_triangle);
     } else {
-        out.seconds = pack_call + tets * (pack_per_tet + (work.gradients ? pack_gradient_per_tet : 0)) +
-                      work.surfaces *
-                          (clusters_call + tets * clusters_per_tet + work.triangles * clusters_per_triangle);
+        out.seconds =
+            pack_call + tets * (pack_per_tet + (work.gradients ? pack_gradient_per_tet : 0)) +
+            work.surfaces * (clusters_call + tets * clusters_per_tet + work.triangles * clusters_per_triangle);
         out.bytes = whole(std::max(tets * packing_per_tet + points * packing_per_point,
                                    tets * packed_per_tet + work.triangles_together * clusters_bytes_per_triangle));
     }

@@ -1,0 +1,69 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What a session holds between calls, and the steps by which it follows its input.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isotet/contour.hpp>
+
+#include "session/curved_input.hpp"
+#include "session/linear_input.hpp"
+#include "session/marks.hpp"
+
+namespace isotet {
+
+namespace session {
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+ExtractOptions extract_options(const ContourOptions& options, const ContourInput& input);
+
+} // namespace session
+
+struct Contour::Data {
+    std::mutex mutex; ///< of all that follows
+    session::LinearInput linear;
+    session::CurvedInput curved; ///< where cells are refined in extract(): `input` is then what was refined last
+    ContourInput input;          ///< with linear cells; without the grid when that is packed
+    ContourOptions options;
+    FieldSample sample;
+    std::uint64_t asked = 0; ///< surfaces so far
+    bool direct_for_memory = false;
+    std::optional<PackedGrid> packed; ///< of the input, but for what `behind` says
+    ContourUpdate behind = ContourUpdate::grid;
+    std::optional<session::CellsMark> cells;
+    std::optional<session::ArrayMark> points, field;
+    std::unique_ptr<EngineGrid> grid; ///< of an engine that keeps one
+    std::optional<FieldReport> range; ///< found by a look at the grid
+    double update_seconds = 0;
+    std::vector<std::string> notes;
+
+    void note_new_cells();
+    Result<void> take_curved(ContourInput next, const ContourOptions& next_options);
+    ContourUpdate what_changed(const ContourInput& next, const ContourOptions& next_options, const Run& run);
+    Result<void> refine_for(std::span<const double> isovalues, const Run& run);
+    const FieldReport& field_of_curved() {
+        if (!range) range = curved.field();
+        return *range;
+    }
+    std::shared_ptr<const LinearGrid> linear_grid() const { return curved ? curved.grid() : linear.grid(); }
+    Method method_of_next(std::size_t isovalues) const;
+    Result<void> prepare(std::size_t isovalues, const Run& run);
+    Result<void> bring_up_to_date(const Run& run);
+    Result<void> pack_grid(const Run& run);
+    Result<void> change_points(const Run& run);
+    Result<void> change_field(const Run& run);
+    Result<void> create_grid(const Run& run);
+    Result<void> without_engine(const Error& error);
+    Result<void> extract_from_grid(std::span<const double> isovalues, const Run& run, ContourResult& result);
+};
+
+} // namespace isotet
