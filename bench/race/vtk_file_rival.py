@@ -3,6 +3,7 @@
 import argparse
 import array
 import time
+import warnings
 
 import vtk
 
@@ -66,12 +67,33 @@ def convert(grid, path, kind):
     writer.Write()
 
 
+def contour_all(grid, options, with_tree):
+    """Seconds for one surface after another, and all their triangles."""
+    contour = vtk.vtkContour3DLinearGrid()
+    contour.SetInputData(grid)
+    contour.SetInputArrayToProcess(0, 0, 0, 0, options.field)
+    with warnings.catch_warnings():  # newer ones always merge, and say so
+        warnings.simplefilter("ignore", DeprecationWarning)
+        contour.SetMergePoints(True)
+    contour.SetInterpolateAttributes(False)
+    if with_tree:
+        contour.SetUseScalarTree(True)
+        contour.SetScalarTree(vtk.vtkSpanSpace())
+    triangles = 0
+    begin = time.perf_counter()
+    for isovalue in options.isovalues:
+        contour.SetValue(0, isovalue)
+        contour.Update()
+        triangles += contour.GetOutput().GetNumberOfCells()
+    return time.perf_counter() - begin, triangles
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file")
     parser.add_argument("--convert", nargs=2, action="append", metavar=("KIND", "PATH"), default=[])
     parser.add_argument("--field")
-    parser.add_argument("--isovalue", type=float)
+    parser.add_argument("--isovalues", type=lambda text: [float(part) for part in text.split(",")])
     parser.add_argument("--threads", type=int, default=2)
     options = parser.parse_args()
     vtk.vtkSMPTools.Initialize(options.threads)
@@ -82,15 +104,10 @@ def main():
     for kind, path in options.convert:
         convert(reader.GetOutput(), path, kind)
     if options.field:
-        contour = vtk.vtkContour3DLinearGrid()
-        contour.SetInputData(reader.GetOutput())
-        contour.SetInputArrayToProcess(0, 0, 0, 0, options.field)
-        contour.SetMergePoints(True)
-        contour.SetInterpolateAttributes(False)
-        contour.SetValue(0, options.isovalue)
-        begin = time.perf_counter()
-        contour.Update()
-        print(read, time.perf_counter() - begin, contour.GetOutput().GetNumberOfCells())
+        ways = [contour_all(reader.GetOutput(), options, with_tree=False)]
+        if len(options.isovalues) > 1:  # a span space may be worth its price: the faster way counts
+            ways.append(contour_all(reader.GetOutput(), options, with_tree=True))
+        print(read, *min(ways))
 
 
 main()
