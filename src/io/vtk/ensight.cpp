@@ -5,6 +5,7 @@
 
 #include "io/own/text_scanner.hpp"
 #include "io/own/index_file.hpp"
+#include "io/vtk/ensight_gold.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/mapped_file.hpp"
 #include "io/vtk/vtk_load.hpp"
@@ -23,8 +24,7 @@ Result<void> check_names(const std::string& path, bool allow_outside) {
         const bool names_file = line.starts_with("model:") || line.starts_with("measured:") ||
                                 line.starts_with("match:") || line.starts_with("boundary:") ||
                                 line.starts_with("rigid_body:") || line.find(" per ") != std::string_view::npos;
-        if (!names_file || line.starts_with("constant per case"))
-            continue;
+        if (!names_file || line.starts_with("constant per case")) continue;
         while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
         for (std::string_view last = line.substr(line.find(':') + 1);
              !last.empty();) { // every word of it, so none is missed
@@ -43,6 +43,7 @@ Result<void> check_names(const std::string& path, bool allow_outside) {
 
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto allowed = check_names(path, options.allow_outside); !allowed) return allowed.error();
+    if (auto complete = check_ensight_gold(path, options.step.value_or(0)); !complete) return complete.error();
     vtkNew<vtkGenericEnSightReader> reader;
     reader->SetCaseFileName(path.c_str());
     reader->ReadAllVariablesOff();
