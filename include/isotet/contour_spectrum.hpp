@@ -50,4 +50,11 @@ struct ContourSpectrum {
 ISOTET_API Result<ContourSpectrum> contour_spectrum(const Grid& grid, const PointField& field,
                                                     std::span<const double> isovalues, const Run& run = {});
 
+/// The same at `steps` + 1 isovalues that divide the range of the field's finite values equally, both ends among them;
+/// at one where all values are the same, at none where none is finite.
+///
+/// `steps`   1 to 65,535
+ISOTET_API Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field,
+                                                               std::uint64_t steps, const Run& run = {});
+
 } // namespace isotet

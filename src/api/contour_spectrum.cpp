@@ -2,12 +2,14 @@
 #include <isotet/contour_spectrum.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/core.h>
 
 #include <isotet/field_statistics.hpp>
+#include <isotet/levels.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/reference.hpp>
 
@@ -126,6 +128,24 @@ Result<ContourSpectrum> spectrum_by(const Grid& grid, const PointField& field, s
 Result<ContourSpectrum> contour_spectrum(const Grid& grid, const PointField& field, std::span<const double> isovalues,
                                          const Run& run) {
     return spectrum_by(grid, field, isovalues, SpectrumBy::cpu, run);
+}
+
+Result<ContourSpectrum> contour_spectrum_over_range(const Grid& grid, const PointField& field, std::uint64_t steps,
+                                                    const Run& run) {
+    if (steps < 1 || steps >= max_spectrum_isovalues)
+        return invalid_argument(fmt::format("{} steps, but there must be 1 to {}", steps, max_spectrum_isovalues - 1));
+    const auto statistics = statistics_of(field.values, run);
+    if (!statistics) return statistics.error();
+    if (statistics->size() != 1) return contour_spectrum(grid, field, std::array{0.0}, run); // which says what is wrong
+    const auto [lower, upper, no_data, infinite] = statistics->front();
+    if (!(lower <= upper)) return ContourSpectrum{};
+    std::vector<double> isovalues{lower};
+    if (lower < upper) {
+        const auto between = evenly_spaced_levels(lower, upper, steps - 1);
+        isovalues.insert(isovalues.end(), between.begin(), between.end());
+        isovalues.push_back(upper);
+    }
+    return contour_spectrum(grid, field, isovalues, run);
 }
 
 Result<ContourSpectrum> contour_spectrum_by_reference(const Grid& grid, const PointField& field,

@@ -28,6 +28,31 @@ TEST(MisusedSpectrum, SaysWhatIsWrong) {
         "component");
 }
 
+TEST(MisusedSpectrum, TakesAtLeastOneStep) {
+    const Grid grid = made_grid("kuhn", 2, {"sphere"});
+    const auto out = contour_spectrum_over_range(grid, point_field(grid), 0);
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().message, "0 steps, but there must be 1 to 65535");
+}
+
+TEST(SpectrumOverTheRange, HasBothEnds) {
+    const Grid grid = made_grid("kuhn", 2, {"plane"});
+    const PointField field = point_field(grid);
+    const auto out = contour_spectrum_over_range(grid, field, 4).value();
+    ASSERT_EQ(out.isovalues.size(), 5u);
+    EXPECT_EQ(out.isovalues.front(), field.values.at(0));
+    EXPECT_EQ(out.isovalues.back(), field.values.at(26));
+    EXPECT_EQ(out.volume_below.front(), 0);
+}
+
+TEST(SpectrumOverTheRange, IsOneValueOfAConstantFieldAndNoneWithoutData) {
+    const Grid grid = made_grid("kuhn", 1, {"plane"});
+    EXPECT_EQ(contour_spectrum_over_range(grid, field_of(std::vector<int>(8, 3)), 4).value().isovalues,
+              std::vector<double>{3});
+    const std::vector<float> none(8, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_TRUE(contour_spectrum_over_range(grid, field_of(none), 4).value().isovalues.empty());
+}
+
 TEST(MisusedSpectrum, StopsWhenCancelled) {
     const std::atomic<bool> cancel{true};
     const Grid grid = made_grid("kuhn", 8, {"sphere"});
