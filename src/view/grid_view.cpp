@@ -460,4 +460,17 @@ Result<Chart> GridView::chart(const std::string& field, const Run& run) {
     return chart_of(grid_, *found, run);
 }
 
+Result<ContourSpectrum> GridView::spectrum(const std::string& field, const Run& run) {
+    constexpr std::uint64_t steps = 256;
+    const std::string key = fmt::format("{}|{}", step_, field);
+    if (spectrum_ && spectrum_key_ == key) return *spectrum_;
+    const Result<PointField> found = field_of(field, run);
+    if (!found) return found.error();
+    Result<ContourSpectrum> spectrum = contour_spectrum_over_range(grid_, *found, steps, run);
+    if (!spectrum) return spectrum;
+    spectrum_ = *spectrum;
+    spectrum_key_ = key;
+    return spectrum;
+}
+
 } // namespace isotet::view

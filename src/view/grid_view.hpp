@@ -12,6 +12,7 @@
 
 #include <isotet/camera.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/contour_spectrum.hpp>
 #include <isotet/isosurface_scene.hpp>
 
 #include "view/messages.hpp"
@@ -70,6 +71,11 @@ public:
                         const Run& run);
 
     Result<Chart> chart(const std::string& field, const Run& run);
+
+    /// Area and volume over the range of a field at the step that was shown last. The last answer is kept.
+    /// Errors   as find_field() and contour_spectrum()
+    Result<ContourSpectrum> spectrum(const std::string& field, const Run& run);
+    std::size_t step() const noexcept { return step_; } ///< that was shown last
 
     /// All fields, and the cell, at the point of the isosurface or slice that is nearest.
     /// Errors   as Contour::extract(); invalid_data where there is no triangle
@@ -137,6 +143,8 @@ private:
     std::unique_ptr<StepReader> steps_;
     std::optional<IsosurfaceScene> scene_; ///< of pictures, while they are asked for
     std::string scene_key_;
+    std::optional<ContourSpectrum> spectrum_; ///< of spectrum_key_
+    std::string spectrum_key_;
     std::vector<double> scene_isovalues_;
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet

@@ -118,9 +118,10 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
         if (const auto number = message_number(json)) return PageMessage(ShownMessage{*number});
         return wrong_message("\"number\" takes a whole number");
     }
-    if (action == "chart") {
+    if (action == "chart" || action == "spectrum") {
         auto field = message_text(json, "field", max_name_bytes);
-        if (field) return PageMessage(ChartMessage{*std::move(field)});
+        if (field && action == "chart") return PageMessage(ChartMessage{*std::move(field)});
+        if (field) return PageMessage(SpectrumMessage{*std::move(field)});
         return wrong_message("\"field\" takes a name");
     }
     if (action == "command") {
@@ -135,7 +136,7 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     }
     if (action == "pick") return parse_pick(json);
     if (action == "save") return parse_save(json);
-    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste, pick, save");
+    return wrong_message("\"do\" is none of hello, show, shown, chart, spectrum, command, paste, pick, save");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
@@ -247,6 +248,16 @@ std::string chart_text(const std::string& field, const Chart& chart) {
                     {"triangles", chart.triangles},
                     {"first", chart.first},
                     {"no_data", chart.no_data}});
+}
+
+std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum) {
+    return text_of({{"say", "spectrum"},
+                    {"field", field},
+                    {"step", step},
+                    {"isovalues", spectrum.isovalues},
+                    {"area", spectrum.area},
+                    {"volume_below", spectrum.volume_below},
+                    {"volume", spectrum.volume}});
 }
 
 } // namespace isotet::view

@@ -158,6 +158,12 @@ TEST_F(GridViewTest, TheChartCountsAllPointsAndBeginsWhereASurfaceIs) {
     EXPECT_GT(chart.first, chart.lower);
     EXPECT_LT(chart.first, chart.upper);
     EXPECT_GT(frame(show(1, {chart.first}))["surfaces"][0]["triangles"], 0);
+    const ContourSpectrum spectrum = view_->spectrum("sphere", {}).value();
+    EXPECT_EQ(spectrum.isovalues.size(), 257u);
+    EXPECT_EQ(spectrum.isovalues.front(), chart.lower);
+    EXPECT_EQ(spectrum.isovalues.back(), chart.upper);
+    EXPECT_GT(spectrum.volume, 0);
+    EXPECT_FALSE(view_->spectrum("nothing", {}));
     const Chart constant = view_->chart("v:x", {}).value();
     EXPECT_EQ(constant.first, 2);
     EXPECT_FALSE(view_->chart("nothing", {}));

@@ -93,6 +93,8 @@ function draw() {
     acknowledge(frame);
     tellFacts();
     time.shown(frame.step);
+    measureServer(frame);
+    askSpectrum();
   }
   document.body.dataset.camera = camera.text();
 }
@@ -315,13 +317,38 @@ function showValue() {
   if (rows.length > 0 && state.value !== null) rows[0].querySelector('.value').textContent = format.short(state.value);
   slider.set(state.value ?? 0, state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})));
   const expected = state.value === null ? null : slider.expected(state.value);
-  id('prediction').textContent = expected === null ? '' : `About ${format.rough(expected)} triangles expected`;
+  const ms = expected === null || !msPerTriangle ? '' : `, ${format.duration(expected * msPerTriangle)}`;
+  id('prediction').textContent = expected === null ? '' : `About ${format.rough(expected)} triangles${ms} expected`;
+  showMeasures();
 }
+
+/** What the server took for a triangle, by the last frames that it made. */
+let msPerTriangle = null;
+function measureServer(made) {
+  const triangles = made.surfaces.filter(({kind, mesh}) => kind === 'surface' && mesh).reduce((sum, one) => sum + one.triangles, 0);
+  if (triangles < 1000 || made.picture) return;
+  const now = (made.extract_ms + made.mesh_ms) / triangles;
+  msPerTriangle = msPerTriangle === null ? now : 0.7 * msPerTriangle + 0.3 * now;
+}
+
+/** Area and volume at the slider's value. */
+function showMeasures() {
+  const {spectrum} = slider;
+  for (const option of id('curve').options) option.disabled = option.value !== 'triangles' && !spectrum;
+  id('curve').value = spectrum ? slider.curve : 'triangles';
+  document.body.dataset.spectrum = spectrum ? spectrum.field : '';
+  if (!spectrum || state.value === null) { id('measures').textContent = 'Area and volume come when nothing moves'; return; }
+  const [area, below] = ['area', 'volume_below'].map((name) => slider.measured(name, state.value));
+  id('measures').textContent = area === null ? '' :
+    `Area ${area.toPrecision(4)}, volume below ${below.toPrecision(4)} of ${spectrum.volume.toPrecision(4)}`;
+}
+
+id('curve').addEventListener('change', () => { slider.curve = id('curve').value; slider.draw(); });
 
 const pinColor = (i) => state.pins[i].color || frame?.surfaces[i + 1]?.color || '#888888';
 
 function askChart() {
-  if (slider.chart?.field !== state.field) slider.chart = null; // the same field's serves until the new one is there
+  if (slider.chart?.field !== state.field) slider.chart = slider.spectrum = null; // the same field's serves until the new one is there
   link.send({do: 'chart', field: state.field});
 }
 
@@ -335,7 +362,23 @@ function takeChart(chart) {
     history.replaceState(null, '', address());
   }
   showValue();
+  askSpectrum();
   wishSoon();
+}
+
+/** Of the step that is shown, unless they play. */
+let spectrumAsked = '';
+function askSpectrum() {
+  const step = frame?.step ?? 0, wanted = `${step}|${state.field}`;
+  if (!slider.chart || time.playing || spectrumAsked === wanted || (slider.spectrum?.field === state.field && slider.spectrum.step === step)) return;
+  if (link.send({do: 'spectrum', field: state.field})) spectrumAsked = wanted;
+}
+
+function takeSpectrum(spectrum) {
+  spectrumAsked = '';
+  if (spectrum.field !== state.field) return;
+  slider.spectrum = spectrum.isovalues.length > 0 ? spectrum : null;
+  showValue();
 }
 
 function typed() {
@@ -711,6 +754,7 @@ const messages = {
   grid: takeGrid,
   progress: takeProgress,
   chart: takeChart,
+  spectrum: takeSpectrum,
   command: takeCommand,
   picked: takePicked,
   state: (message) => takeState(message.state),
@@ -735,6 +779,7 @@ const link = new Link(token, {
   lost: () => {
     // Another connection begins without surfaces: all are sent again.
     sent = null;
+    spectrumAsked = '';
     stopWaiting();
     id('link').textContent = 'No connection: trying again';
     document.body.dataset.link = 'lost';
