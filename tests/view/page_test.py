@@ -204,6 +204,24 @@ def test_keyboard_only(browser, viewer):
     check(missing == [], f'controls without a name: {missing}')
 
 
+def test_area_and_volume(browser, viewer):
+    """They come when nothing moves, are curves of the chart, and those of the sphere that is shown."""
+    start(browser, viewer)
+    browser.wait('document.body.dataset.spectrum === "sphere"')
+    browser.value('(() => { const box = document.getElementById("value"); box.focus(); box.value = "0.6"; '
+                  'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); return 1; })()')
+    at_rest(browser, 0.6)
+    words = browser.value('document.getElementById("measures").textContent')
+    area, below, whole = [float(word.strip(',')) for word in words.split() if word[0].isdigit()]
+    check(abs(area - 4 * 3.14159 * 0.36) < 0.1, words)
+    check(abs(below - 4 / 3 * 3.14159 * 0.216) < 0.05 and whole == 8, words)
+    before = browser.value('document.getElementById("chart").toDataURL()')
+    choose(browser, '#curve', 'volume_below')
+    check(before != browser.value('document.getElementById("chart").toDataURL()'), 'the curve is the same')
+    choose(browser, '#field', 'gyroid')
+    browser.wait('document.body.dataset.spectrum === "gyroid"')
+
+
 def test_pins_undo_and_address(browser, viewer):
     start(browser, viewer)
     first = shown(browser)
@@ -604,6 +622,8 @@ def test_layout(browser, viewer):
         try:
             start(browser, viewer)
             browser.click('#pin')
+            browser.wait('document.body.dataset.spectrum !== ""')
+            choose(browser, '#curve', 'area')
             browser.wait(f'scene.width === {ratio} * scene.clientWidth')  # the pixels of the screen, at rest
             check(overlaps(browser) == [], f'{width} x {height}: {overlaps(browser)}')
             browser.picture(pictures and f'{pictures}/{width}x{height}@{ratio}.png')

@@ -168,6 +168,7 @@ async function takePicture(next) {
   drawSoon();
   if (next.preview && next.number >= number) restSoon();
   time.shown(next.step);
+  askSpectrum();
 }
 
 /** The server sends no more than two frames ahead: each is acknowledged once, also one that is replaced before it is drawn. */
@@ -376,7 +377,7 @@ function askSpectrum() {
 
 function takeSpectrum(spectrum) {
   spectrumAsked = '';
-  if (spectrum.field !== state.field) return;
+  if (spectrum.field !== state.field || (frame && spectrum.step !== frame.step)) return;
   slider.spectrum = spectrum.isovalues.length > 0 ? spectrum : null;
   showValue();
 }
