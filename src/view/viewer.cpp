@@ -59,6 +59,8 @@ public:
         return spectrum_text(field, view_.step(), *spectrum);
     }
 
+    void rest() override { view_.rest(); }
+
     Result<std::string> pick(const PickMessage& message, const Run& run) override {
         const Result<Picked> picked = view_.pick(message, {threads_, run.progress});
         if (!picked) return picked.error();
@@ -180,7 +182,7 @@ void Viewer::Data::read_and_pack() {
     view_options.threads = options.threads;
     view_options.step = input->state.step.value_or(0);
     view_options.steps = std::max<std::size_t>(1, input->times.size());
-    if (view_options.steps > 1) view_options.read_step = options.read_step;
+    view_options.read_step = options.read_step;
     Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());
     view = *std::move(made);

@@ -88,6 +88,7 @@ void Worker::start_background() {
     {
         const std::lock_guard lock(mutex_);
         has_background_ = true;
+        rested_ = false;
     }
     changed_.notify_all();
 }
@@ -135,9 +136,12 @@ void Worker::work() {
         const std::optional<PageNumber> number = next_page();
         if (!number) {
             const std::optional<PageNumber> later = next_in_background();
-            if (!later) changed_.wait(lock);
-            else if (clock_() - busy_ < pause) changed_.wait_for(lock, std::chrono::milliseconds(20));
-            else make_spectrum(lock, *later);
+            const double idle = clock_() - busy_;
+            const bool restless = maker_ && has_background_ && !rested_;
+            if (later && idle >= pause) make_spectrum(lock, *later);
+            else if (!later && restless && idle >= rest_pause) rest(lock);
+            else if (later || restless) changed_.wait_for(lock, std::chrono::milliseconds(20));
+            else changed_.wait(lock);
             continue;
         }
         last_ = *number;
@@ -145,7 +149,16 @@ void Worker::work() {
         else if (pages_.at(*number).pick) make_pick(lock, *number);
         else make_frame(lock, *number);
         busy_ = clock_();
+        rested_ = false;
     }
+}
+
+void Worker::rest(std::unique_lock<std::mutex>& lock) {
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    rested_ = true;
+    lock.unlock();
+    maker->rest();
+    lock.lock();
 }
 
 std::optional<PageNumber> Worker::next_in_background() const {
@@ -166,6 +179,8 @@ void Worker::make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number
     if (!cancelled) tell(number, "spectrum", std::move(answer));
     lock.lock();
     is_in_background_ = false;
+    rested_ = false;
+    busy_ = clock_();
     const auto page = pages_.find(number);
     if (cancelled && page != pages_.end() && !page->second.spectrum) page->second.spectrum = field;
 }

@@ -31,6 +31,8 @@ public:
     /// Text of the answer.
     virtual Result<std::string> chart(const std::string& field, const Run& run) = 0;
     virtual Result<std::string> pick(const PickMessage& message, const Run& run);
+    /// Nothing is to be done for a while: memory may be given back.
+    virtual void rest() {}
     virtual Result<std::string> spectrum(const std::string& field, const Run& run);
 };
 
@@ -43,7 +45,8 @@ struct WorkerOutput {
 /// Threads   safe from many threads
 class Worker {
 public:
-    static constexpr double pause = 0.25; ///< seconds before work in the background
+    static constexpr double pause = 0.25;   ///< seconds before work in the background
+    static constexpr double rest_pause = 2; ///< and before FrameMaker::rest(), once, after start_background()
     Worker(WorkerOutput output, std::function<double()> clock, SlotRules rules = {});
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -85,6 +88,7 @@ private:
     std::optional<PageNumber> next_in_background() const;
     void make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number);
     void interrupt_background();
+    void rest(std::unique_lock<std::mutex>& lock);
     void make_pick(std::unique_lock<std::mutex>& lock, PageNumber number);
     void tell(PageNumber number, std::string_view about, Result<std::string> answer);
     void make_frame(std::unique_lock<std::mutex>& lock, PageNumber number);
@@ -101,6 +105,7 @@ private:
     std::optional<PageNumber> working_for_;
     bool has_background_ = false;   ///< start_background() was called
     bool is_in_background_ = false; ///< what is done now can be done later
+    bool rested_ = true;            ///< rest() was called since
     double busy_ = 0;               ///< when something else was done last
     std::atomic<bool> cancel_{false};
     bool stop_ = false;

@@ -41,10 +41,17 @@ public:
         if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "cancelled"};
         return "spectrum of " + field;
     }
-    /// Waits until a spectrum was begun so many times.
-    void spectra(int count) {
+    /// Lets time pass until a spectrum was begun so many times.
+    void spectra(int count, std::atomic<double>& now) {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return spectra_ >= count; });
+        while (spectra_ < count) {
+            now = now + 1;
+            changed_.wait_for(lock, std::chrono::milliseconds(1));
+        }
+    }
+    int spectra() {
+        const std::lock_guard lock(mutex_);
+        return spectra_;
     }
 
     void let_go() {
@@ -230,11 +237,10 @@ TEST_F(WorkerTest, ASpectrumIsCancelledForAWishAndBegunAgain) {
     worker_.start(engine_);
     worker_.start_background();
     worker_.ask_spectrum(1, "p");
-    now_ = 1;
-    engine_->spectra(1);
+    engine_->spectra(1, now_);
     wish(1, 1);
     EXPECT_EQ(sent_.to(1, 1).back(), "frame 1");
-    now_ = 2;
+    engine_->spectra(2, now_);
     EXPECT_EQ(sent_.to(1, 2).back(), "spectrum of p");
 }
 
@@ -251,9 +257,8 @@ TEST_F(WorkerTest, ASpectrumWaitsForThePauseAfterAFrame) {
         worker_.acknowledge(1);
         now_ = now_ + Worker::pause / 2;
     }
-    EXPECT_EQ(sent_.to(1, 20).back(), "frame 20");
-    now_ = now_ + 1;
-    engine_->spectra(1);
+    EXPECT_EQ(engine_->spectra(), 0);
+    engine_->spectra(1, now_);
 }
 
 } // namespace
