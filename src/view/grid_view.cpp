@@ -535,7 +535,36 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     return std::move(extracted->surfaces.front().surface);
 }
 
+Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) {
+    std::optional<Picked> first;
+    double nearest = INFINITY;
+    const auto look = [&](const PickMessage& one, std::span<const Plane> clips) -> Result<void> {
+        const Result<Surface> surface = surface_of_pick(one, run);
+        if (!surface) return surface.error();
+        const auto along = first_on_ray(*surface, message.point, *message.ray, clips);
+        if (!along || *along >= nearest) return {};
+        nearest = *along;
+        std::array<double, 3> place = message.point;
+        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += nearest * (*message.ray)[axis];
+        first = nearest_on(*surface, place);
+        if (first && !one.slice) first->isovalue = one.state.isovalues.front();
+        return {};
+    };
+    PickMessage one = message;
+    for (const double isovalue : message.state.isovalues) {
+        one.state.isovalues = {isovalue};
+        if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
+    }
+    for (std::size_t i = 0; i < message.state.slices.size(); ++i) {
+        one.slice = i;
+        if (Result<void> ok = look(one, {}); !ok) return ok.error();
+    }
+    if (!first) return Error{ErrorCode::cancelled, "the ray meets nothing"}; // a page is told nothing
+    return *std::move(first);
+}
+
 Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
+    if (message.ray) return pick_along(message, run);
     const Result<Surface> surface = surface_of_pick(message, run);
     if (!surface) return surface.error();
     std::optional<Picked> picked = nearest_on(*surface, message.point);

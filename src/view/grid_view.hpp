@@ -115,6 +115,7 @@ private:
     Result<ExtractOptions> carried_fields(const std::string& color_by, const Run& run);
     Result<std::shared_ptr<const Mesh>> packed_mesh_at(const ViewState& state, double isovalue, const std::string& key,
                                                        Making& making, const Run& run);
+    Result<Picked> pick_along(const PickMessage& message, const Run& run);
     Result<Surface> surface_of_pick(const PickMessage& message, const Run& run);
     Result<PointField> field_of(const std::string& name, const Run& run);
     Result<ContourInput> input_of(const std::string& field, const std::string& color_by, const Run& run);

@@ -59,6 +59,17 @@ Result<PageMessage> parse_show(const Json& json) {
     return PageMessage(std::move(message));
 }
 
+std::optional<std::array<double, 3>> three_numbers(const Json* json) {
+    if (!json || !json->is_array() || json->size() != 3) return std::nullopt;
+    std::array<double, 3> numbers{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto number = finite_number((*json)[axis]);
+        if (!number) return std::nullopt;
+        numbers[axis] = *number;
+    }
+    return numbers;
+}
+
 Result<PageMessage> parse_pick(const Json& json) {
     Result<ViewState> state = message_state(json);
     if (!state) return state.error();
@@ -69,12 +80,12 @@ Result<PageMessage> parse_pick(const Json& json) {
         if (!which || *which >= message.state.slices.size()) return wrong_message("\"slice\" is none of the state");
         message.slice = *which;
     } else if (message.state.isovalues.empty()) return wrong_message("a pick takes an isovalue or a slice");
-    const Json* point = find(json, "point");
-    if (!point || !point->is_array() || point->size() != 3) return wrong_message("\"point\" takes three numbers");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto number = finite_number((*point)[axis]);
-        if (!number) return wrong_message("\"point\" takes three numbers");
-        message.point[axis] = *number;
+    const auto point = three_numbers(find(json, "point"));
+    if (!point) return wrong_message("\"point\" takes three numbers");
+    message.point = *point;
+    if (const Json* ray = find(json, "ray")) {
+        message.ray = three_numbers(ray);
+        if (!message.ray) return wrong_message("\"ray\" takes three numbers");
     }
     return PageMessage(std::move(message));
 }
@@ -236,6 +247,7 @@ std::string picked_text(const Picked& picked) {
     for (const auto& [name, cell, values] : picked.values)
         json["values"].push_back({{"name", name}, {"cell", cell}, {"values", values}});
     if (picked.cell) json["cell"] = *picked.cell;
+    if (picked.isovalue) json["isovalue"] = *picked.isovalue;
     return text_of(json);
 }
 

@@ -65,10 +65,12 @@ struct PasteMessage {
 };
 
 /// {"do": "pick", "state": ..., "slice": n, "point": [x, y, z]}: the values at the point of a surface that is nearest.
+/// {"do": "pick", "state": ..., "point": [x, y, z], "ray": [x, y, z]}: where the ray from the point meets a surface first.
 struct PickMessage {
     ViewState state;                  ///< the first isovalue is that of the surface
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
     std::array<double, 3> point{};
+    std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
 };
 
 /// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n}

@@ -358,6 +358,23 @@ TEST_F(LeanGridView, SlicesAndPicksAreTheSame) {
     EXPECT_EQ(reads_, 0);
 }
 
+TEST_F(LeanGridView, ARayMeetsTheFirstSurfaceThatIsNotClipped) {
+    PickMessage pick;
+    pick.state = show(1, {0.7, 0.5}).state;
+    pick.point = {5, 0.05, 0.05};
+    pick.ray = {-1, 0, 0};
+    EXPECT_NEAR(lean_->pick(pick, {}).value().point[0], 0.7, 0.02);
+    EXPECT_EQ(lean_->pick(pick, {}).value().isovalue, 0.7);
+    pick.state.clips = {Plane{{1, 0, 0}, 0.6}};
+    EXPECT_EQ(lean_->pick(pick, {}).value().isovalue, 0.5);
+    pick.state.slices = {Plane{{1, 0, 0}, 0.8}};
+    const Picked slice = lean_->pick(pick, {}).value();
+    EXPECT_NEAR(slice.point[0], 0.8, 1e-6);
+    EXPECT_FALSE(slice.isovalue);
+    pick.ray = {1, 0, 0};
+    EXPECT_FALSE(lean_->pick(pick, {})) << "it goes away from all";
+}
+
 TEST_F(LeanGridView, ChartsComeFromASampleAndSpectraFromTheFileReadAgain) {
     const Chart a = lean_->chart("gyroid", {}).value(), b = full_->chart("gyroid", {}).value();
     EXPECT_EQ(a.points, b.points);

@@ -204,12 +204,16 @@ def test_keyboard_only(browser, viewer):
     check(missing == [], f'controls without a name: {missing}')
 
 
+def type_value(browser, text):
+    browser.value('(() => { const box = document.getElementById("value"); box.focus(); box.value = "%s"; '
+                  'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); box.blur(); return 1; })()' % text)
+
+
 def test_area_and_volume(browser, viewer):
     """They come when nothing moves, are curves of the chart, and those of the sphere that is shown."""
     start(browser, viewer)
     browser.wait('document.body.dataset.spectrum === "sphere"')
-    browser.value('(() => { const box = document.getElementById("value"); box.focus(); box.value = "0.6"; '
-                  'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); return 1; })()')
+    type_value(browser, '0.6')
     at_rest(browser, 0.6)
     words = browser.value('document.getElementById("measures").textContent')
     area, below, whole = [float(word.strip(',')) for word in words.split() if word[0].isdigit()]
@@ -441,6 +445,29 @@ def test_pictures_of_the_server(browser, viewer):
     check(differ == 0, f'{differ} of {len(rows)} rows differ')
     choose(browser, '#drawn-by', '')
     browser.wait('document.body.dataset.picture === "" && document.getElementById("picture").hidden')
+
+
+def test_surfaces_that_are_too_large_are_drawn_by_the_server(browser, viewer):
+    """The reason is told, values are told under the pointer, and smaller surfaces are the browser's again."""
+    start(browser, viewer, '&iso=0.9')
+    browser.value('document.body.dataset.most = 2000')
+    type_value(browser, '0.8')
+    browser.wait('document.body.dataset.picture === "image/png" && document.body.dataset.shown === "0.8"')
+    check('too many for the browser' in browser.value('document.getElementById("facts").textContent'), 'the reason is told')
+    x, y, w, h = browser.box('#scene')
+    at = (x + w / 2, y + h / 2)
+    browser.mouse('mouseMoved', *at, button='none', buttons=0)
+    browser.mouse('mousePressed', *at)
+    browser.mouse('mouseReleased', *at, buttons=0)
+    browser.wait('!document.getElementById("picked").hidden')
+    rows = browser.value('document.getElementById("picked").textContent')
+    check('sphere = 0.8' in rows and 'Cell' in rows, rows)
+    place = [float(v) for v in browser.value('document.querySelector("#picked-rows td").textContent').split(',')]
+    check(abs(sum(v * v for v in place) - 0.64) < 0.02, f'{place}')
+    browser.key('Escape')
+    type_value(browser, '0.2')
+    browser.wait('document.body.dataset.picture === "" && document.getElementById("picture").hidden')
+    browser.value('delete document.body.dataset.most')
 
 
 def test_without_webgl_the_server_draws(browser, viewer):

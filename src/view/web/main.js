@@ -55,7 +55,22 @@ function chooseScale() {
 let resting = false;
 
 /** Why the server draws, or nothing where the browser does. */
-const serverDraws = () => (!scene ? 'no WebGL2 here' : state.drawn === 'server' ? 'chosen' : '');
+const serverDraws = () => (!scene ? 'no WebGL2 here' : state.drawn === 'server' ? 'chosen' :
+  large && state.drawn !== 'browser' ? `${format.rough(large)} triangles are too many for the browser` : '');
+
+/** Triangles of surfaces that are too large for the browser, else 0: then the server draws until they are a quarter smaller. */
+let large = 0;
+function noteSize(next) {
+  const most = Number(document.body.dataset.most) || 8e6;
+  const all = [...new Map(next.surfaces.filter(({kind}) => kind === 'surface').map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
+  const before = serverDraws();
+  if (all > most) large = all;
+  else if (all < 0.75 * most) large = 0;
+  if (!before === !serverDraws()) return;
+  id('picture').hidden = !serverDraws();
+  sent = null;
+  wishSoon();
+}
 const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);
 const pictureSize = () => ['clientWidth', 'clientHeight'].map((side) => Math.max(1, Math.min(4096, Math.round(id('scene')[side] * (window.devicePixelRatio || 1)))));
 
@@ -180,6 +195,8 @@ function acknowledge(one) {
 
 function takeFrame(buffer) {
   const next = readFrame(buffer);
+  measureLine(next);
+  noteSize(next);
   if (next.picture) return takePicture(next);
   acknowledge(frame);
   if (!scene) return acknowledge(next);
@@ -210,12 +227,21 @@ function stopWaiting() {
 const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic,
   planesOf(state, 'slice'), state.boundary > 0, state.step, document.body.dataset.step === 'ready', serverDraws() && [camera.text(), pictureSize(), toMessage(state)]]);
 
+/** Bytes a ms of the line, by frames that are large enough to tell. */
+let line = null;
+function measureLine(next) {
+  const took = performance.now() - (sentAt.get(next.number) ?? NaN) - next.wait_ms - next.extract_ms - next.mesh_ms;
+  if (next.bytes < 200000 || !(took > 0)) return;
+  line = line === null ? next.bytes / took : 0.7 * line + 0.3 * next.bytes / took;
+}
+
 /** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 0.6 s for one that rests. In few steps. */
 let speed = null, lastMost = 0; // triangles a ms
 function mostTriangles(moving) {
   const [ms, least, limit] = moving ? [40, 30000, 600000] : [600, 150000, 8e6];
   const parts = Math.max(1, frame?.surfaces.length || 1); // share the time
-  const most = speed === null ? 100000 : Math.max(least, Math.min(limit, speed * ms / parts));
+  const sent_in_time = line === null ? Infinity : line * (moving ? 100 : 2000) / (14 * parts); // 14 bytes a triangle
+  const most = Math.max(least, Math.min(limit, speed === null ? 100000 : speed * ms / parts, sent_in_time));
   return Math.round(10000 * 2 ** Math.floor(Math.log2(most / 10000)));
 }
 
@@ -286,7 +312,7 @@ function showState() {
   id('edges').checked = state.edges;
   id('parallel').checked = camera.projection === 'parallel';
   id('color-details').hidden = !state.colorBy;
-  id('drawn-by').value = serverDraws() ? 'server' : '';
+  id('drawn-by').value = scene ? state.drawn : 'server';
   id('drawn-by').disabled = !scene;
   id('picture').hidden = !serverDraws();
   showBoundary();
@@ -583,7 +609,13 @@ const time = new TimeSteps({section: id('time'), slider: id('step'), label: id('
 
 let picked = null;
 function pickAt(x, y) {
-  if (serverDraws()) return say('Values are shown where the browser draws.');
+  if (serverDraws()) {
+    if (!grid?.lower) return;
+    const [point, ray] = camera.ray(x, y, aspect(), grid.lower, grid.upper);
+    picked = {point: null, isovalue: null};
+    link.send({do: 'pick', state: {...toMessage(state), camera: undefined}, point, ray});
+    return;
+  }
   const found = scene?.pickSurface(x, y);
   if (!found) return closePicked();
   const {surface, point} = found, message = {do: 'pick', state: toMessage(state), point};
@@ -597,6 +629,7 @@ function pickAt(x, y) {
 
 function takePicked(message) {
   if (!picked) return;
+  if (picked.point === null) picked.isovalue = message.isovalue ?? null; // of a ray
   picked.point = message.point;
   const numbers = (values) => values.map(format.short).join(', ');
   const rows = [['x, y, z', numbers(message.point)], ...message.values.map(({name, cell, values}) => [name + (cell ? ' (cell)' : ''), numbers(values.map((v) => v ?? NaN))])];
