@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "grid_source.hpp"
+#include "info_chart.hpp"
 #include "json_output.hpp"
 #include "number_format.hpp"
 #include "output_names.hpp"
@@ -251,10 +252,15 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     if (!fields) return fields.error();
     const auto curved = look_at_curved_cells(*grid, *fields, console.run());
     if (!curved) return curved.error();
+    const auto chart = make_chart(command, *grid, console);
+    if (!chart) return chart.error();
     Json report = json_of(found, path);
     report["curved"] = json_of(*curved);
     report["fields"] = json_of(*fields);
-    return finish(console, command.common, grid_table(found, path) + curved_table(*curved) + field_table(*fields),
+    if (*chart) report["chart"] = json_of(**chart);
+    return finish(console, command.common,
+                  grid_table(found, path) + curved_table(*curved) + field_table(*fields) +
+                      (*chart ? chart_table(**chart) : ""),
                   std::move(report));
 }
 

@@ -31,6 +31,14 @@ constexpr const char* info_details = R"(
 A field's range is that of its finite values; no data is the number of NaN. Inverted tets are those whose sign is not
 that of most. Of --survey: repeated tets have the corners of an earlier one, duplicate points the place of another, and
 boundary faces are those that the tets do not use equally often in both directions.
+
+Of --chart: areas are in the square, volumes in the cube of the unit of the points. They are those of the tets that
+extract --split-cells makes, up to rounding; quadratic cells are split at their nodes.
+
+Examples:
+  isotet info grid.vtu
+  isotet info grid.vtu --chart 20 -f pressure
+  isotet info grid.vtu --chart 1000 -f pressure --json -
 )";
 
 constexpr const char* extract_details = R"(
@@ -166,6 +174,10 @@ void add_info(const Command& program, InfoCommand& info) {
     command.add_flag(
         "--survey", info.survey,
         "Count repeated tets, duplicate points and boundary faces, too: that takes about as long as reading");
+    const Option chart = command.add_count(
+        "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
+        "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");
+    add_field(command, info.field, "The field of the chart; without it the one that varies most").needs(chart);
     add_common(command, info.common);
     command.set_details(info_details);
 }

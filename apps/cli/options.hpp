@@ -41,16 +41,18 @@ struct GridOptions {
     std::string displace;
 };
 
-struct InfoCommand {
-    CommonOptions common;
-    GridOptions grid;
-    bool survey = false; ///< also what takes longer than reading
-};
-
 /// A field's name, and what it is when a point field and a cell field have it.
 struct FieldChoice {
     std::string name; ///< empty: the only one there is
     bool cell_field = false;
+};
+
+struct InfoCommand {
+    CommonOptions common;
+    GridOptions grid;
+    bool survey = false;                ///< also what takes longer than reading
+    FieldChoice field;                  ///< of the chart; empty: the one that varies most
+    std::optional<std::uint64_t> chart; ///< steps; nothing: no chart
 };
 
 enum class EngineChoice : std::uint8_t { automatic, cpu, vulkan, reference };

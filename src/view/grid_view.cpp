@@ -8,9 +8,12 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <isotet/boundary.hpp>
 #include <isotet/field_statistics.hpp>
+#include <isotet/linear_cells.hpp>
+#include <isotet/memory.hpp>
 
 namespace isotet::view {
 
@@ -122,16 +125,21 @@ Result<std::unique_ptr<GridView>> GridView::create(Grid grid, const GridViewOpti
             view->bounds_.upper[axis] = (*places)[axis].upper;
         }
     view->fields_ = offered_fields(grid);
+    view->cell_count_ = grid.cells.count();
     view->grid_ = std::move(grid);
     view->options_ = options;
     view->step_ = options.step;
-    if (options.read_step) view->steps_ = std::make_unique<StepReader>(options.read_step, options.threads);
+    if (options.read_step && options.steps > 1)
+        view->steps_ = std::make_unique<StepReader>(options.read_step, options.threads);
     return view;
 }
 
 Result<PointField> GridView::field_of(const std::string& name, const Run& run) {
     constexpr std::size_t max_found = 8; // averaged fields and magnitudes take memory
     if (const auto found = found_.find(name); found != found_.end()) return found->second;
+    const auto offered = std::ranges::find(fields_, name, &OfferedField::name);
+    if (offered == fields_.end() || offered->association == Association::cell)
+        if (Result<void> here = need_cells(run); !here) return here.error(); // it may be averaged
     Result<PointField> field = find_field(grid_, name, {}, run);
     if (!field) return field;
     if (found_.size() >= max_found) found_.clear();
@@ -212,10 +220,13 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
     ContourOptions options;
     options.method = Method::clusters;
     options.source_cells = !grid.cell_fields.empty();
-    Result<Contour> contour = Contour::create({grid, *std::move(contoured), {}, {}}, options);
+    const bool lean = may_release_cells(grid);
+    options.source_cells |= lean; // for picks
+    Result<Contour> contour = Contour::create({grid, *contoured, {}, {}}, options);
     if (!contour) return contour.error();
     if (Result<void> ready = contour->prepare(run); !ready) return ready;
-    packed_.contour = *std::move(contour);
+    if (lean) lean_.emplace(*contour->packed(), *std::move(contoured));
+    else packed_.contour = *std::move(contour);
     packed_.field = field;
     packed_.step = step;
     is_packed_.store(true, std::memory_order_release);
@@ -233,6 +244,65 @@ Result<void> GridView::find_boundary(const Run& run) {
     const std::lock_guard boundary_lock(boundary_mutex_);
     boundary_ = std::make_shared<const Mesh>(*std::move(mesh));
     return {};
+}
+
+bool GridView::may_release_cells(const Grid& grid) const {
+    return options_.steps == 1 && options_.read_step && !has_cells_to_linearize(grid.cells);
+}
+
+/// Reads the file again where the cells were released.
+Result<void> GridView::need_cells(const Run& run) {
+    if (has_cells_) return {};
+    Result<Grid> again = options_.read_step(step_, run);
+    if (!again) return again.error();
+    if (again->points.tuples() != grid_.points.tuples() || again->cells.count() != cell_count_)
+        return Error{ErrorCode::invalid_data,
+                     fmt::format("the file has changed: it had {} points and {} cells, and now {} and {}",
+                                 grid_.points.tuples(), cell_count_, again->points.tuples(), again->cells.count())};
+    const std::lock_guard lock(grid_mutex_);
+    grid_.cells = std::move(again->cells);
+    has_cells_ = true;
+    return {};
+}
+
+void GridView::rest() {
+    if (is_packed_.load(std::memory_order_acquire) && lean_ && has_cells_) {
+        if (!sample_) sample_ = sample_of_cells(grid_);
+        direct_.contour.reset();
+        const std::lock_guard lock(grid_mutex_);
+        grid_.cells = {};
+        has_cells_ = false;
+    }
+    release_memory();
+    malloc_trim(0);
+}
+
+/// The field that colours, as surfaces carry it.
+Result<ExtractOptions> GridView::carried_fields(const std::string& color_by, const Run& run) {
+    ExtractOptions options;
+    if (color_by.empty()) return options;
+    if (const Field* cells = whole_cell_field(grid_, color_by)) {
+        options.cell_fields = {*cells};
+        return options;
+    }
+    const Result<PointField> colors = field_of(color_by, run);
+    if (!colors) return colors.error();
+    options.point_fields = {{color_by, colors->values}};
+    return options;
+}
+
+Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& state, double isovalue,
+                                                             const std::string& key, Making& making, const Run& run) {
+    if (auto kept = kept_mesh(key)) return kept;
+    const Result<PointField> field = field_of(state.field, run);
+    if (!field) return field.error();
+    const Result<ExtractOptions> options = carried_fields(state.color_by, run);
+    if (!options) return options.error();
+    const auto start = std::chrono::steady_clock::now();
+    const Result<Surface> surface = lean_->isosurface(*field, isovalue, *options, run);
+    if (!surface) return surface.error();
+    making.facts.extract_seconds += seconds_of(start);
+    return keep(key, *surface, making.facts.scale, making.facts, run);
 }
 
 Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run& run) {
@@ -312,9 +382,17 @@ Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, c
                                                        const std::string& key, const std::optional<ColorScale>& scale,
                                                        FrameFacts& facts, const Run& run) {
     if (auto kept = kept_mesh(key)) return kept;
-    const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
+    const auto cut = [&]() -> Result<Surface> {
+        if (is_packed_.load(std::memory_order_acquire) && lean_) {
+            const Result<ExtractOptions> options = carried_fields(state.color_by, run);
+            if (!options) return options.error();
+            return lean_->slice(grid_.points, plane, *options, run);
+        }
+        const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
+        return slice_of(grid_, plane, colors ? &*colors : nullptr, run);
+    };
     const auto start = std::chrono::steady_clock::now();
-    const Result<Surface> slice = slice_of(grid_, plane, colors ? &*colors : nullptr, run);
+    const Result<Surface> slice = cut();
     if (!slice) return slice.error();
     facts.extract_seconds += seconds_of(start);
     return keep(key, *slice, scale, facts, run);
@@ -344,14 +422,17 @@ void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh
 
 Result<void> GridView::add_isosurfaces(const ViewState& state, const std::vector<std::string>& known, Making& making,
                                        const Run& run) {
-    Result<Source*> source = source_for(state, run);
+    const bool lean = is_packed_.load(std::memory_order_acquire) && lean_;
+    if (lean) direct_.contour.reset();
+    Result<Source*> source = lean ? Result<Source*>(nullptr) : source_for(state, run);
     if (!source) return source.error();
     std::vector<std::shared_ptr<const Mesh>> meshes;
     std::vector<double> values; // each once
     std::vector<Box> boxes;
     for (const double isovalue : state.isovalues) {
         const std::string key = mesh_key(state, isovalue, step_);
-        auto mesh = mesh_at(**source, isovalue, key, making.facts.scale, making.facts, run);
+        auto mesh = lean ? packed_mesh_at(state, isovalue, key, making, run)
+                         : mesh_at(**source, isovalue, key, making.facts.scale, making.facts, run);
         if (!mesh) return mesh.error();
         meshes.push_back(*mesh);
         if (std::ranges::find(values, isovalue) != values.end()) continue;
@@ -372,7 +453,8 @@ Result<void> GridView::add_isosurfaces(const ViewState& state, const std::vector
         surface.opacity = looks[which].opacity;
         add(std::move(surface), meshes[i], known, making);
     }
-    if (making.facts.method.empty()) making.facts.method = name_of((*source)->contour->method());
+    if (making.facts.method.empty())
+        making.facts.method = name_of(lean ? Method::clusters : (*source)->contour->method());
     return {};
 }
 
@@ -428,28 +510,64 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
     return frame;
 }
 
-Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
+Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
+    const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
+    ExtractOptions with_all;
+    with_all.source_cells = true;
+    with_all.point_fields = grid_.point_fields;
+    with_all.cell_fields = grid_.cell_fields;
+    const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
+    if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
     PointField field;
-    double isovalue = 0;
-    if (message.slice) {
-        const Plane& plane = message.state.slices[*message.slice];
-        field = {"height", heights_over(grid_.points, plane), false, {}};
-        isovalue = plane.offset;
-    } else {
-        Result<PointField> found = field_of(message.state.field, run);
-        if (!found) return found.error();
-        field = *std::move(found);
-        isovalue = message.state.isovalues.front();
-    }
+    if (plane) field = {"height", heights_over(grid_.points, *plane), false, {}};
+    else if (Result<PointField> found = field_of(message.state.field, run); found) field = *std::move(found);
+    else return found.error();
+    const double isovalue = plane ? plane->offset : message.state.isovalues.front();
+    if (packed) return lean_->isosurface(field, isovalue, with_all, run);
     ContourOptions options;
     options.method = Method::direct;
     options.source_cells = true;
     Result<Contour> contour =
         Contour::create({grid_, std::move(field), grid_.point_fields, grid_.cell_fields}, options);
     if (!contour) return contour.error();
-    const Result<ContourResult> extracted = contour->extract(isovalue, run);
+    Result<ContourResult> extracted = contour->extract(isovalue, run);
     if (!extracted) return extracted.error();
-    std::optional<Picked> picked = nearest_on(extracted->surfaces.front().surface, message.point);
+    return std::move(extracted->surfaces.front().surface);
+}
+
+Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) {
+    std::optional<Picked> first;
+    double nearest = INFINITY;
+    const auto look = [&](const PickMessage& one, std::span<const Plane> clips) -> Result<void> {
+        const Result<Surface> surface = surface_of_pick(one, run);
+        if (!surface) return surface.error();
+        const auto along = first_on_ray(*surface, message.point, *message.ray, clips);
+        if (!along || *along >= nearest) return {};
+        nearest = *along;
+        std::array<double, 3> place = message.point;
+        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += nearest * (*message.ray)[axis];
+        first = nearest_on(*surface, place);
+        if (first && !one.slice) first->isovalue = one.state.isovalues.front();
+        return {};
+    };
+    PickMessage one = message;
+    for (const double isovalue : message.state.isovalues) {
+        one.state.isovalues = {isovalue};
+        if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
+    }
+    for (std::size_t i = 0; i < message.state.slices.size(); ++i) {
+        one.slice = i;
+        if (Result<void> ok = look(one, {}); !ok) return ok.error();
+    }
+    if (!first) return Error{ErrorCode::cancelled, "the ray meets nothing"}; // a page is told nothing
+    return *std::move(first);
+}
+
+Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
+    if (message.ray) return pick_along(message, run);
+    const Result<Surface> surface = surface_of_pick(message, run);
+    if (!surface) return surface.error();
+    std::optional<Picked> picked = nearest_on(*surface, message.point);
     if (!picked) return Error{ErrorCode::invalid_data, "the surface has no triangle here"};
     return *std::move(picked);
 }
@@ -457,7 +575,25 @@ Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
 Result<Chart> GridView::chart(const std::string& field, const Run& run) {
     const Result<PointField> found = field_of(field, run);
     if (!found) return found.error();
-    return chart_of(grid_, *found, run);
+    if (has_cells_) return chart_of(grid_, *found, run);
+    Result<Chart> chart = chart_of(sample_->grid, *found, run);
+    if (chart)
+        for (double& triangles : chart->triangles) triangles *= sample_->cells_each;
+    return chart;
+}
+
+Result<ContourSpectrum> GridView::spectrum(const std::string& field, const Run& run) {
+    constexpr std::uint64_t steps = 256;
+    const std::string key = fmt::format("{}|{}", step_, field);
+    if (spectrum_ && spectrum_key_ == key) return *spectrum_;
+    const Result<PointField> found = field_of(field, run);
+    if (!found) return found.error();
+    if (Result<void> here = need_cells(run); !here) return here.error();
+    Result<ContourSpectrum> spectrum = contour_spectrum_over_range(grid_, *found, steps, run);
+    if (!spectrum) return spectrum;
+    spectrum_ = *spectrum;
+    spectrum_key_ = key;
+    return spectrum;
 }
 
 } // namespace isotet::view

@@ -12,9 +12,11 @@
 
 #include <isotet/camera.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/contour_spectrum.hpp>
 #include <isotet/isosurface_scene.hpp>
 
 #include "view/messages.hpp"
+#include "view/packed_source.hpp"
 #include "view/pick.hpp"
 #include "view/steps.hpp"
 
@@ -35,7 +37,7 @@ struct GridViewOptions {
     int threads = 0;                       ///< at most; 0: all
     std::size_t step = 0;                  ///< that the grid is
     std::size_t steps = 1;                 ///< of the file
-    ReadStep read_step;                    ///< of another step; nothing where there is none
+    ReadStep read_step;                    ///< of any step. Nothing: there is one step, and cells stay in memory
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
@@ -47,13 +49,13 @@ struct Frame {
 /// Threads   pack() and find_boundary() by one thread beside one other call; all else one call at a time
 class GridView {
 public:
-    /// Errors   as statistics_of(); the grid is kept, since other fields need it
+    /// Errors   as statistics_of()
     static Result<std::unique_ptr<GridView>> create(Grid grid, const GridViewOptions& options = {});
 
     const std::vector<OfferedField>& fields() const noexcept { return fields_; }
     const Box& bounds() const noexcept { return bounds_; }
     std::uint64_t points() const noexcept { return grid_.points.tuples(); }
-    std::uint64_t cells() const noexcept { return grid_.cells.count(); }
+    std::uint64_t cells() const noexcept { return cell_count_; }
 
     /// Packs the grid for `field`. frame() extracts directly until then, and from the packed grid afterwards.
     /// Errors   as Contour::prepare(); frame() then goes on directly
@@ -69,7 +71,17 @@ public:
     Result<Frame> frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
                         const Run& run);
 
+    /// Gives memory back that the next frame of the same kind does not need: the cells of a packed grid of one step, which
+    /// are read again when something needs them, and what the library keeps for later.
+    void rest();
+    bool has_cells() const noexcept { return has_cells_; }
+
     Result<Chart> chart(const std::string& field, const Run& run);
+
+    /// Area and volume over the range of a field at the step that was shown last. The last answer is kept.
+    /// Errors   as find_field() and contour_spectrum()
+    Result<ContourSpectrum> spectrum(const std::string& field, const Run& run);
+    std::size_t step() const noexcept { return step_; } ///< that was shown last
 
     /// All fields, and the cell, at the point of the isosurface or slice that is nearest.
     /// Errors   as Contour::extract(); invalid_data where there is no triangle
@@ -98,6 +110,13 @@ private:
     };
 
     GridView() = default;
+    Result<void> need_cells(const Run& run);
+    bool may_release_cells(const Grid& grid) const;
+    Result<ExtractOptions> carried_fields(const std::string& color_by, const Run& run);
+    Result<std::shared_ptr<const Mesh>> packed_mesh_at(const ViewState& state, double isovalue, const std::string& key,
+                                                       Making& making, const Run& run);
+    Result<Picked> pick_along(const PickMessage& message, const Run& run);
+    Result<Surface> surface_of_pick(const PickMessage& message, const Run& run);
     Result<PointField> field_of(const std::string& name, const Run& run);
     Result<ContourInput> input_of(const std::string& field, const std::string& color_by, const Run& run);
     Result<std::optional<ColorScale>> scale_of(const ViewState& state, const Run& run);
@@ -125,7 +144,11 @@ private:
                     const std::vector<std::string>& known, Making& making);
 
     mutable std::mutex grid_mutex_; ///< of grid_ and step_, while another thread may copy them
-    Grid grid_;
+    Grid grid_;                     ///< without cells where has_cells_ is false
+    bool has_cells_ = true;
+    std::uint64_t cell_count_ = 0;
+    std::optional<PackedSource> lean_; ///< instead of packed_, where cells may be released
+    std::optional<CellSample> sample_; ///< of the cells that were released
     GridViewOptions options_;
     std::vector<OfferedField> fields_;
     Box bounds_;
@@ -137,6 +160,8 @@ private:
     std::unique_ptr<StepReader> steps_;
     std::optional<IsosurfaceScene> scene_; ///< of pictures, while they are asked for
     std::string scene_key_;
+    std::optional<ContourSpectrum> spectrum_; ///< of spectrum_key_
+    std::string spectrum_key_;
     std::vector<double> scene_isovalues_;
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet

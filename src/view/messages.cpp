@@ -59,6 +59,17 @@ Result<PageMessage> parse_show(const Json& json) {
     return PageMessage(std::move(message));
 }
 
+std::optional<std::array<double, 3>> three_numbers(const Json* json) {
+    if (!json || !json->is_array() || json->size() != 3) return std::nullopt;
+    std::array<double, 3> numbers{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto number = finite_number((*json)[axis]);
+        if (!number) return std::nullopt;
+        numbers[axis] = *number;
+    }
+    return numbers;
+}
+
 Result<PageMessage> parse_pick(const Json& json) {
     Result<ViewState> state = message_state(json);
     if (!state) return state.error();
@@ -69,12 +80,12 @@ Result<PageMessage> parse_pick(const Json& json) {
         if (!which || *which >= message.state.slices.size()) return wrong_message("\"slice\" is none of the state");
         message.slice = *which;
     } else if (message.state.isovalues.empty()) return wrong_message("a pick takes an isovalue or a slice");
-    const Json* point = find(json, "point");
-    if (!point || !point->is_array() || point->size() != 3) return wrong_message("\"point\" takes three numbers");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto number = finite_number((*point)[axis]);
-        if (!number) return wrong_message("\"point\" takes three numbers");
-        message.point[axis] = *number;
+    const auto point = three_numbers(find(json, "point"));
+    if (!point) return wrong_message("\"point\" takes three numbers");
+    message.point = *point;
+    if (const Json* ray = find(json, "ray")) {
+        message.ray = three_numbers(ray);
+        if (!message.ray) return wrong_message("\"ray\" takes three numbers");
     }
     return PageMessage(std::move(message));
 }
@@ -118,9 +129,10 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
         if (const auto number = message_number(json)) return PageMessage(ShownMessage{*number});
         return wrong_message("\"number\" takes a whole number");
     }
-    if (action == "chart") {
+    if (action == "chart" || action == "spectrum") {
         auto field = message_text(json, "field", max_name_bytes);
-        if (field) return PageMessage(ChartMessage{*std::move(field)});
+        if (field && action == "chart") return PageMessage(ChartMessage{*std::move(field)});
+        if (field) return PageMessage(SpectrumMessage{*std::move(field)});
         return wrong_message("\"field\" takes a name");
     }
     if (action == "command") {
@@ -135,7 +147,7 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     }
     if (action == "pick") return parse_pick(json);
     if (action == "save") return parse_save(json);
-    return wrong_message("\"do\" is none of hello, show, shown, chart, command, paste, pick, save");
+    return wrong_message("\"do\" is none of hello, show, shown, chart, spectrum, command, paste, pick, save");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
@@ -235,6 +247,7 @@ std::string picked_text(const Picked& picked) {
     for (const auto& [name, cell, values] : picked.values)
         json["values"].push_back({{"name", name}, {"cell", cell}, {"values", values}});
     if (picked.cell) json["cell"] = *picked.cell;
+    if (picked.isovalue) json["isovalue"] = *picked.isovalue;
     return text_of(json);
 }
 
@@ -247,6 +260,16 @@ std::string chart_text(const std::string& field, const Chart& chart) {
                     {"triangles", chart.triangles},
                     {"first", chart.first},
                     {"no_data", chart.no_data}});
+}
+
+std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum) {
+    return text_of({{"say", "spectrum"},
+                    {"field", field},
+                    {"step", step},
+                    {"isovalues", spectrum.isovalues},
+                    {"area", spectrum.area},
+                    {"volume_below", spectrum.volume_below},
+                    {"volume", spectrum.volume}});
 }
 
 } // namespace isotet::view

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include <isotet/contour_spectrum.hpp>
 #include <isotet/result.hpp>
 
 #include "view/chart.hpp"
@@ -48,6 +49,11 @@ struct ChartMessage {
     std::string field;
 };
 
+/// {"do": "spectrum", "field": name}: area and volume against the isovalue, when nothing else is to be done.
+struct SpectrumMessage {
+    std::string field;
+};
+
 /// {"do": "command", "state": ...}: the state as command lines.
 struct CommandMessage {
     ViewState state;
@@ -59,10 +65,12 @@ struct PasteMessage {
 };
 
 /// {"do": "pick", "state": ..., "slice": n, "point": [x, y, z]}: the values at the point of a surface that is nearest.
+/// {"do": "pick", "state": ..., "point": [x, y, z], "ray": [x, y, z]}: where the ray from the point meets a surface first.
 struct PickMessage {
     ViewState state;                  ///< the first isovalue is that of the surface
     std::optional<std::size_t> slice; ///< which of the slices, instead of the isosurface
     std::array<double, 3> point{};
+    std::optional<std::array<double, 3>> ray = {}; ///< from the point; of all surfaces and slices of the state
 };
 
 /// {"do": "save", "kind": ..., "name": ..., "state": ..., "width": w, "height": h, "from": a, "to": b, "pictures": n}
@@ -71,7 +79,7 @@ struct SaveMessage {
 };
 
 using PageMessage = std::variant<HelloMessage, ShowMessage, ShownMessage, ChartMessage, CommandMessage, PasteMessage,
-                                 PickMessage, SaveMessage>;
+                                 PickMessage, SaveMessage, SpectrumMessage>;
 
 /// Any bytes from a page. Errors   invalid_argument
 Result<PageMessage> parse_page_message(std::string_view text);
@@ -108,6 +116,7 @@ std::string refusal_text(std::uint64_t number, std::string_view sentence);
 std::string error_text(std::string_view about, std::string_view sentence);
 std::string picked_text(const Picked& picked);
 std::string chart_text(const std::string& field, const Chart& chart);
+std::string spectrum_text(const std::string& field, std::size_t step, const ContourSpectrum& spectrum);
 
 /// "#rrggbb"
 std::string color_text(const Color& color);

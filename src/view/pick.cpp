@@ -101,4 +101,39 @@ std::optional<Picked> nearest_on(const Surface& surface, const std::array<double
     return picked;
 }
 
+std::optional<double> first_on_ray(const Surface& surface, const std::array<double, 3>& origin,
+                                   const std::array<double, 3>& direction, std::span<const Plane> clips) {
+    const auto cross = [](const PickPoint& a, const PickPoint& b) {
+        return PickPoint{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto is_clipped = [&](double along) {
+        PickPoint place = origin;
+        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += along * direction[axis];
+        return std::ranges::any_of(clips,
+                                   [&](const Plane& plane) { return pick_dot(plane.normal, place) > plane.offset; });
+    };
+    double first = INFINITY;
+    surface.positions.visit([&](auto positions) {
+        surface.triangles.visit([&](auto corners) {
+            for (std::size_t i = 0; i < surface.triangle_count(); ++i) {
+                std::array<PickPoint, 3> at{};
+                for (std::size_t k = 0; k < 3; ++k)
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        at[k][axis] =
+                            static_cast<double>(positions[3 * static_cast<std::size_t>(corners[3 * i + k]) + axis]);
+                // Moller, Trumbore 1997.
+                const PickPoint e1 = pick_minus(at[1], at[0]), e2 = pick_minus(at[2], at[0]);
+                const PickPoint p = cross(direction, e2), from = pick_minus(origin, at[0]), q = cross(from, e1);
+                const double determinant = pick_dot(e1, p);
+                if (determinant == 0) continue;
+                const double u = pick_dot(from, p) / determinant, v = pick_dot(direction, q) / determinant;
+                const double along = pick_dot(e2, q) / determinant;
+                const bool inside = u >= 0 && v >= 0 && u + v <= 1;
+                if (inside && along > 0 && along < first && !is_clipped(along)) first = along;
+            }
+        });
+    });
+    return std::isfinite(first) ? std::optional(first) : std::nullopt;
+}
+
 } // namespace isotet::view

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <isotet/isosurface_scene.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
 #include <isotet/surface.hpp>
@@ -28,9 +30,15 @@ struct Picked {
     std::array<double, 3> point{};
     std::vector<PickedValue> values;
     std::optional<std::int64_t> cell;
+    std::optional<double> isovalue = {}; ///< of the surface that a ray met; nothing: a slice, or no ray
 };
 
 /// Nothing for a surface without triangles. Cost   O(F)
 std::optional<Picked> nearest_on(const Surface& surface, const std::array<double, 3>& point);
+
+/// How far along a ray the first triangle is, as a multiple of `direction`; nothing where there is none. Places beyond a
+/// plane of `clips` do not count. Cost   O(F)
+std::optional<double> first_on_ray(const Surface& surface, const std::array<double, 3>& origin,
+                                   const std::array<double, 3>& direction, std::span<const Plane> clips);
 
 } // namespace isotet::view

@@ -53,6 +53,7 @@ Result<void> GridView::make_scene(const ShowMessage& message, const std::optiona
         scene_.reset();
         Result<PointField> field = field_of(state.field, run);
         if (!field) return field.error();
+        if (Result<void> here = need_cells(run); !here) return here;
         IsosurfaceOptions options;
         options.grid = grid_;
         options.field = *std::move(field);

@@ -53,6 +53,14 @@ public:
         return chart_text(field, *chart);
     }
 
+    Result<std::string> spectrum(const std::string& field, const Run& run) override {
+        const Result<ContourSpectrum> spectrum = view_.spectrum(field, {threads_, run.progress});
+        if (!spectrum) return spectrum.error();
+        return spectrum_text(field, view_.step(), *spectrum);
+    }
+
+    void rest() override { view_.rest(); }
+
     Result<std::string> pick(const PickMessage& message, const Run& run) override {
         const Result<Picked> picked = view_.pick(message, {threads_, run.progress});
         if (!picked) return picked.error();
@@ -174,7 +182,7 @@ void Viewer::Data::read_and_pack() {
     view_options.threads = options.threads;
     view_options.step = input->state.step.value_or(0);
     view_options.steps = std::max<std::size_t>(1, input->times.size());
-    if (view_options.steps > 1) view_options.read_step = options.read_step;
+    view_options.read_step = options.read_step;
     Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());
     view = *std::move(made);
@@ -184,6 +192,7 @@ void Viewer::Data::read_and_pack() {
     const Result<void> packed = view->pack(input->state.field, run);
     tell_progress("boundary", 0);
     const Result<void> found = view->find_boundary(run);
+    worker->start_background();
     if (!packed) return tell_progress("not packed: " + packed.error().message, 1);
     tell_progress(found ? "ready" : "no boundary: " + found.error().message, 1);
 }
@@ -242,6 +251,8 @@ void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
     if (auto* show = std::get_if<ShowMessage>(&message)) worker->wish(from, std::move(*show));
     else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
     else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
+    else if (auto* spectrum = std::get_if<SpectrumMessage>(&message))
+        worker->ask_spectrum(from, std::move(spectrum->field));
     else if (auto* pick = std::get_if<PickMessage>(&message)) worker->ask_pick(from, std::move(*pick));
     else if (const auto* wanted = std::get_if<SaveMessage>(&message)) save(from, wanted->request);
     else if (const auto* command = std::get_if<CommandMessage>(&message)) {

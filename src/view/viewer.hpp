@@ -39,7 +39,7 @@ struct ViewerOptions {
     std::size_t max_pages = 4;                           ///< at once
     int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
-    ReadStep read_step;                                  ///< of another step; nothing where there is one
+    ReadStep read_step;                                  ///< of any step; nothing: the file is not read again
     std::string out;                                     ///< a folder where pages may save files; empty: they may not
     std::string program;                                 ///< that writes these files, by command lines of isotet
 };

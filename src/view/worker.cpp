@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "view/worker.hpp"
 
+#include <chrono>
 #include <utility>
 
 namespace isotet::view {
@@ -28,13 +29,14 @@ void Worker::start(std::shared_ptr<FrameMaker> maker) {
 
 void Worker::add_page(PageNumber page) {
     const std::lock_guard lock(mutex_);
-    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}});
+    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}, {}});
 }
 
 void Worker::remove_page(PageNumber page) {
     const std::lock_guard lock(mutex_);
     pages_.erase(page);
     if (working_for_ == page) cancel_ = true;
+    interrupt_background();
 }
 
 void Worker::wish(PageNumber page, ShowMessage message) {
@@ -44,6 +46,7 @@ void Worker::wish(PageNumber page, ShowMessage message) {
         if (found == pages_.end()) return;
         found->second.slot.put({std::move(message), clock_()});
         cancel_if_stale();
+        interrupt_background();
     }
     changed_.notify_all();
 }
@@ -54,6 +57,7 @@ void Worker::ask_chart(PageNumber page, std::string field) {
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
         found->second.chart = std::move(field);
+        interrupt_background();
     }
     changed_.notify_all();
 }
@@ -64,8 +68,34 @@ void Worker::ask_pick(PageNumber page, PickMessage message) {
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
         found->second.pick = std::move(message);
+        interrupt_background();
     }
     changed_.notify_all();
+}
+
+void Worker::ask_spectrum(PageNumber page, std::string field) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) return;
+        found->second.spectrum = std::move(field);
+        interrupt_background();
+    }
+    changed_.notify_all();
+}
+
+void Worker::start_background() {
+    {
+        const std::lock_guard lock(mutex_);
+        has_background_ = true;
+        rested_ = false;
+    }
+    changed_.notify_all();
+}
+
+void Worker::interrupt_background() {
+    busy_ = clock_();
+    if (is_in_background_) cancel_ = true;
 }
 
 void Worker::acknowledge(PageNumber page) {
@@ -105,14 +135,54 @@ void Worker::work() {
     while (!stop_) {
         const std::optional<PageNumber> number = next_page();
         if (!number) {
-            changed_.wait(lock);
+            const std::optional<PageNumber> later = next_in_background();
+            const double idle = clock_() - busy_;
+            const bool restless = maker_ && has_background_ && !rested_;
+            if (later && idle >= pause) make_spectrum(lock, *later);
+            else if (!later && restless && idle >= rest_pause) rest(lock);
+            else if (later || restless) changed_.wait_for(lock, std::chrono::milliseconds(20));
+            else changed_.wait(lock);
             continue;
         }
         last_ = *number;
         if (pages_.at(*number).chart) make_chart(lock, *number);
         else if (pages_.at(*number).pick) make_pick(lock, *number);
         else make_frame(lock, *number);
+        busy_ = clock_();
+        rested_ = false;
     }
+}
+
+void Worker::rest(std::unique_lock<std::mutex>& lock) {
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    rested_ = true;
+    lock.unlock();
+    maker->rest();
+    lock.lock();
+}
+
+std::optional<PageNumber> Worker::next_in_background() const {
+    if (!maker_ || !has_background_) return std::nullopt;
+    for (const auto& [number, page] : pages_)
+        if (page.spectrum) return number;
+    return std::nullopt;
+}
+
+void Worker::make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    const std::string field = *std::exchange(pages_.at(number).spectrum, std::nullopt);
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    is_in_background_ = true;
+    cancel_ = stop_;
+    lock.unlock();
+    Result<std::string> answer = maker->spectrum(field, {0, {{}, &cancel_}});
+    const bool cancelled = !answer && answer.error().code == ErrorCode::cancelled;
+    if (!cancelled) tell(number, "spectrum", std::move(answer));
+    lock.lock();
+    is_in_background_ = false;
+    rested_ = false;
+    busy_ = clock_();
+    const auto page = pages_.find(number);
+    if (cancelled && page != pages_.end() && !page->second.spectrum) page->second.spectrum = field;
 }
 
 void Worker::make_chart(std::unique_lock<std::mutex>& lock, PageNumber number) {
@@ -141,6 +211,10 @@ void Worker::tell(PageNumber number, std::string_view about, Result<std::string>
 
 Result<std::string> FrameMaker::pick(const PickMessage&, const Run&) {
     return Error{ErrorCode::invalid_argument, "nothing can be picked here"};
+}
+
+Result<std::string> FrameMaker::spectrum(const std::string&, const Run&) {
+    return Error{ErrorCode::invalid_argument, "nothing can be measured here"};
 }
 
 void Worker::make_frame(std::unique_lock<std::mutex>& lock, PageNumber number) {

@@ -31,6 +31,9 @@ public:
     /// Text of the answer.
     virtual Result<std::string> chart(const std::string& field, const Run& run) = 0;
     virtual Result<std::string> pick(const PickMessage& message, const Run& run);
+    /// Nothing is to be done for a while: memory may be given back.
+    virtual void rest() {}
+    virtual Result<std::string> spectrum(const std::string& field, const Run& run);
 };
 
 /// How the worker answers. Called by the worker's thread.
@@ -42,6 +45,8 @@ struct WorkerOutput {
 /// Threads   safe from many threads
 class Worker {
 public:
+    static constexpr double pause = 0.25;   ///< seconds before work in the background
+    static constexpr double rest_pause = 2; ///< and before FrameMaker::rest(), once, after start_background()
     Worker(WorkerOutput output, std::function<double()> clock, SlotRules rules = {});
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -55,6 +60,10 @@ public:
     void wish(PageNumber page, ShowMessage message);
     void ask_chart(PageNumber page, std::string field);  ///< the newest counts
     void ask_pick(PageNumber page, PickMessage message); ///< the newest counts
+    /// The newest counts. Begun after start_background(), when `pause` seconds nothing else was done, and begun anew when
+    /// it was cancelled for something else.
+    void ask_spectrum(PageNumber page, std::string field);
+    void start_background();
     void acknowledge(PageNumber page);
 
     /// To be called now and then: cancels work that became stale in the meantime.
@@ -69,12 +78,17 @@ private:
         Slot<Wish> slot;
         std::optional<std::string> chart;
         std::optional<PickMessage> pick;
+        std::optional<std::string> spectrum;
         std::vector<std::string> known;
     };
 
     void work();
     std::optional<PageNumber> next_page() const;
     void make_chart(std::unique_lock<std::mutex>& lock, PageNumber number);
+    std::optional<PageNumber> next_in_background() const;
+    void make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number);
+    void interrupt_background();
+    void rest(std::unique_lock<std::mutex>& lock);
     void make_pick(std::unique_lock<std::mutex>& lock, PageNumber number);
     void tell(PageNumber number, std::string_view about, Result<std::string> answer);
     void make_frame(std::unique_lock<std::mutex>& lock, PageNumber number);
@@ -89,6 +103,10 @@ private:
     std::map<PageNumber, Page> pages_;
     PageNumber last_ = 0; ///< that was served
     std::optional<PageNumber> working_for_;
+    bool has_background_ = false;   ///< start_background() was called
+    bool is_in_background_ = false; ///< what is done now can be done later
+    bool rested_ = true;            ///< rest() was called since
+    double busy_ = 0;               ///< when something else was done last
     std::atomic<bool> cancel_{false};
     bool stop_ = false;
     std::thread thread_;

@@ -57,6 +57,20 @@ TEST_F(Program, InfoCountsValuesThatAreNoNumber) {
     }
 }
 
+TEST_F(Program, InfoChartsAreaAndVolumeAgainstTheIsovalue) {
+    const json chart = json_of({"info", "make:kuhn:16:sphere", "--chart", "4"})["chart"];
+    EXPECT_EQ(chart["field"], "sphere");
+    EXPECT_EQ(chart["tets"], 6 * 16 * 16 * 16);
+    EXPECT_EQ(chart["volume_below"][0], 0);
+    EXPECT_NEAR(chart["volume"].get<double>(), 8, 1e-5);
+    ASSERT_EQ(chart["isovalues"].size(), 5u);
+    const double radius = chart["isovalues"][2];
+    EXPECT_NEAR(chart["area"][2].get<double>(), 4 * 3.14159265 * radius * radius, 0.05);
+    const std::string table = isotet({"info", "make:kuhn:16:sphere", "--chart", "4"}).out;
+    EXPECT_NE(table.find("volume below"), std::string::npos) << table;
+    EXPECT_FALSE(json_of({"info", "make:kuhn:3"}).contains("chart"));
+}
+
 TEST_F(Program, InfoOfASurfaceNamesTheCommandsForSurfaces) {
     EXPECT_EQ(isotet({"extract", "make:kuhn:4:sphere", path("s.vtp"), "-i", "0.5"}).status, 0);
     const RunResult run = isotet({"info", path("s.vtp")});

@@ -158,6 +158,12 @@ TEST_F(GridViewTest, TheChartCountsAllPointsAndBeginsWhereASurfaceIs) {
     EXPECT_GT(chart.first, chart.lower);
     EXPECT_LT(chart.first, chart.upper);
     EXPECT_GT(frame(show(1, {chart.first}))["surfaces"][0]["triangles"], 0);
+    const ContourSpectrum spectrum = view_->spectrum("sphere", {}).value();
+    EXPECT_EQ(spectrum.isovalues.size(), 257u);
+    EXPECT_EQ(spectrum.isovalues.front(), chart.lower);
+    EXPECT_EQ(spectrum.isovalues.back(), chart.upper);
+    EXPECT_GT(spectrum.volume, 0);
+    EXPECT_FALSE(view_->spectrum("nothing", {}));
     const Chart constant = view_->chart("v:x", {}).value();
     EXPECT_EQ(constant.first, 2);
     EXPECT_FALSE(view_->chart("nothing", {}));
@@ -291,6 +297,115 @@ TEST_F(StepsTest, AStepThatIsNotThereIsRefusedAndTheLastOneStays) {
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("steps 0 to 3"), std::string::npos) << refused.error().message;
     EXPECT_EQ(frame(at_step(1, 0.7))["step"], 1);
+}
+
+/// A grid whose cells were released, beside one whose cells stay.
+class LeanGridView : public testing::Test {
+protected:
+    int reads_ = 0, cells_more_ = 0;
+    std::unique_ptr<GridView> lean_, full_ = GridView::create(made_grid(12)).value();
+
+    LeanGridView() {
+        GridViewOptions options;
+        options.read_step = [this](std::size_t, const isotet::Run&) -> Result<Grid> {
+            ++reads_;
+            return made_grid(static_cast<std::uint64_t>(12 + cells_more_));
+        };
+        lean_ = GridView::create(made_grid(12), options).value();
+        for (GridView* view : {lean_.get(), full_.get()}) {
+            EXPECT_TRUE(view->pack("sphere", {}));
+            view->rest();
+        }
+    }
+    static std::uint64_t triangles(GridView& view, const ShowMessage& message) {
+        std::vector<std::string> known;
+        const Json head = head_of(view.frame(message, 0, known, {}).value().bytes);
+        return head["surfaces"].back()["triangles"].get<std::uint64_t>();
+    }
+};
+
+TEST_F(LeanGridView, HasNoCellsAndReadsThemForNoSurfaceOfAPointField) {
+    EXPECT_FALSE(lean_->has_cells());
+    EXPECT_TRUE(full_->has_cells()) << "it cannot be read again";
+    EXPECT_EQ(lean_->cells(), full_->cells());
+    ShowMessage message = show(1, {0.7});
+    for (const char* field : {"gyroid", "sphere", "v:x"})
+        for (const char* colors : {"", "gyroid", "seventh", "v:mag"}) {
+            message.state.field = field;
+            message.state.color_by = colors;
+            EXPECT_EQ(triangles(*lean_, message), triangles(*full_, message)) << field << " by " << colors;
+        }
+    EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(LeanGridView, SlicesAndPicksAreTheSame) {
+    ShowMessage message = show(1, {0.7});
+    message.state.slices = {Plane{{1, 2, 0.5}, 0.1}};
+    message.state.color_by = "seventh";
+    EXPECT_EQ(triangles(*lean_, message), triangles(*full_, message));
+    PickMessage pick;
+    pick.state = message.state;
+    for (const bool of_slice : {false, true}) {
+        if (of_slice) pick.slice = 0;
+        pick.point = {0.31, 0.42, 0.53};
+        const Picked a = lean_->pick(pick, {}).value(), b = full_->pick(pick, {}).value();
+        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(a.point[axis], b.point[axis], 1e-6);
+        EXPECT_EQ(a.cell, b.cell);
+        ASSERT_EQ(a.values.size(), b.values.size());
+        for (std::size_t i = 0; i < a.values.size(); ++i)
+            EXPECT_NEAR(a.values[i].values[0], b.values[i].values[0], 1e-5) << a.values[i].name;
+    }
+    EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(LeanGridView, ARayMeetsTheFirstSurfaceThatIsNotClipped) {
+    PickMessage pick;
+    pick.state = show(1, {0.7, 0.5}).state;
+    pick.point = {5, 0.05, 0.05};
+    pick.ray = {-1, 0, 0};
+    EXPECT_NEAR(lean_->pick(pick, {}).value().point[0], 0.7, 0.02);
+    EXPECT_EQ(lean_->pick(pick, {}).value().isovalue, 0.7);
+    pick.state.clips = {Plane{{1, 0, 0}, 0.6}};
+    EXPECT_EQ(lean_->pick(pick, {}).value().isovalue, 0.5);
+    pick.state.slices = {Plane{{1, 0, 0}, 0.8}};
+    const Picked slice = lean_->pick(pick, {}).value();
+    EXPECT_NEAR(slice.point[0], 0.8, 1e-6);
+    EXPECT_FALSE(slice.isovalue);
+    pick.ray = {1, 0, 0};
+    EXPECT_FALSE(lean_->pick(pick, {})) << "it goes away from all";
+}
+
+TEST_F(LeanGridView, ChartsComeFromASampleAndSpectraFromTheFileReadAgain) {
+    const Chart a = lean_->chart("gyroid", {}).value(), b = full_->chart("gyroid", {}).value();
+    EXPECT_EQ(a.points, b.points);
+    EXPECT_EQ(a.triangles, b.triangles) << "all of so few cells are in the sample";
+    EXPECT_EQ(reads_, 0);
+    EXPECT_EQ(lean_->spectrum("gyroid", {}).value().area, full_->spectrum("gyroid", {}).value().area);
+    EXPECT_EQ(reads_, 1);
+    EXPECT_TRUE(lean_->has_cells());
+    lean_->rest();
+    EXPECT_FALSE(lean_->has_cells());
+    ShowMessage averaged = show(1, {3});
+    averaged.state.field = "seventh";
+    EXPECT_EQ(triangles(*lean_, averaged), triangles(*full_, averaged));
+    EXPECT_EQ(reads_, 2);
+}
+
+TEST_F(LeanGridView, SaysThatTheFileHasChanged) {
+    cells_more_ = 1;
+    const auto spectrum = lean_->spectrum("gyroid", {});
+    ASSERT_FALSE(spectrum);
+    EXPECT_TRUE(spectrum.error().message.starts_with("the file has changed: it had 2197 points and 10368 cells"))
+        << spectrum.error().message;
+}
+
+TEST(SampleOfCells, HasCellsOfTheGridAndSaysHowManyEachStandsFor) {
+    const Grid grid = made_grid(20);
+    const CellSample sample = sample_of_cells(grid);
+    EXPECT_LT(sample.grid.cells.count(), grid.cells.count());
+    EXPECT_DOUBLE_EQ(sample.cells_each * static_cast<double>(sample.grid.cells.count()),
+                     static_cast<double>(grid.cells.count()));
+    EXPECT_TRUE(survey(sample.grid));
 }
 
 } // namespace

@@ -22,6 +22,7 @@ TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(show.most, 900U);
     EXPECT_EQ(show.state.isovalues, std::vector<double>{0.5});
     EXPECT_EQ(std::get<ShownMessage>(*parse_page_message(R"({"do":"shown","number":7})")).number, 7U);
+    EXPECT_EQ(std::get<SpectrumMessage>(*parse_page_message(R"({"do":"spectrum","field":"p"})")).field, "p");
     EXPECT_EQ(std::get<ChartMessage>(*parse_page_message(R"({"do":"chart","field":"p"})")).field, "p");
     EXPECT_EQ(std::get<CommandMessage>(*parse_page_message(R"({"do":"command","state":{"field":"q"}})")).state.field,
               "q");

@@ -204,6 +204,28 @@ def test_keyboard_only(browser, viewer):
     check(missing == [], f'controls without a name: {missing}')
 
 
+def type_value(browser, text):
+    browser.value('(() => { const box = document.getElementById("value"); box.focus(); box.value = "%s"; '
+                  'box.dispatchEvent(new KeyboardEvent("keydown", {key: "Enter"})); box.blur(); return 1; })()' % text)
+
+
+def test_area_and_volume(browser, viewer):
+    """They come when nothing moves, are curves of the chart, and those of the sphere that is shown."""
+    start(browser, viewer)
+    browser.wait('document.body.dataset.spectrum === "sphere"')
+    type_value(browser, '0.6')
+    at_rest(browser, 0.6)
+    words = browser.value('document.getElementById("measures").textContent')
+    area, below, whole = [float(word.strip(',')) for word in words.split() if word[0].isdigit()]
+    check(abs(area - 4 * 3.14159 * 0.36) < 0.1, words)
+    check(abs(below - 4 / 3 * 3.14159 * 0.216) < 0.05 and whole == 8, words)
+    before = browser.value('document.getElementById("chart").toDataURL()')
+    choose(browser, '#curve', 'volume_below')
+    check(before != browser.value('document.getElementById("chart").toDataURL()'), 'the curve is the same')
+    choose(browser, '#field', 'gyroid')
+    browser.wait('document.body.dataset.spectrum === "gyroid"')
+
+
 def test_pins_undo_and_address(browser, viewer):
     start(browser, viewer)
     first = shown(browser)
@@ -425,6 +447,29 @@ def test_pictures_of_the_server(browser, viewer):
     browser.wait('document.body.dataset.picture === "" && document.getElementById("picture").hidden')
 
 
+def test_surfaces_that_are_too_large_are_drawn_by_the_server(browser, viewer):
+    """The reason is told, values are told under the pointer, and smaller surfaces are the browser's again."""
+    start(browser, viewer, '&iso=0.9')
+    browser.value('document.body.dataset.most = 2000')
+    type_value(browser, '0.8')
+    browser.wait('document.body.dataset.picture === "image/png" && document.body.dataset.shown === "0.8"')
+    check('too many for the browser' in browser.value('document.getElementById("facts").textContent'), 'the reason is told')
+    x, y, w, h = browser.box('#scene')
+    at = (x + w / 2, y + h / 2)
+    browser.mouse('mouseMoved', *at, button='none', buttons=0)
+    browser.mouse('mousePressed', *at)
+    browser.mouse('mouseReleased', *at, buttons=0)
+    browser.wait('!document.getElementById("picked").hidden')
+    rows = browser.value('document.getElementById("picked").textContent')
+    check('sphere = 0.8' in rows and 'Cell' in rows, rows)
+    place = [float(v) for v in browser.value('document.querySelector("#picked-rows td").textContent').split(',')]
+    check(abs(sum(v * v for v in place) - 0.64) < 0.02, f'{place}')
+    browser.key('Escape')
+    type_value(browser, '0.2')
+    browser.wait('document.body.dataset.picture === "" && document.getElementById("picture").hidden')
+    browser.value('delete document.body.dataset.most')
+
+
 def test_without_webgl_the_server_draws(browser, viewer):
     script = browser.call('Page.addScriptToEvaluateOnNewDocument', source='HTMLCanvasElement.prototype.getContext = (get => function(kind, '
                           '...more) { return kind === "webgl2" ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype'
@@ -604,6 +649,8 @@ def test_layout(browser, viewer):
         try:
             start(browser, viewer)
             browser.click('#pin')
+            browser.wait('document.body.dataset.spectrum !== ""')
+            choose(browser, '#curve', 'area')
             browser.wait(f'scene.width === {ratio} * scene.clientWidth')  # the pixels of the screen, at rest
             check(overlaps(browser) == [], f'{width} x {height}: {overlaps(browser)}')
             browser.picture(pictures and f'{pictures}/{width}x{height}@{ratio}.png')

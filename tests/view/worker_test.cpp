@@ -32,6 +32,28 @@ public:
     }
     Result<std::string> chart(const std::string& field, const Run&) override { return "chart of " + field; }
 
+    /// Works until it is cancelled the first time; then at once.
+    Result<std::string> spectrum(const std::string& field, const Run& run) override {
+        std::unique_lock lock(mutex_);
+        ++spectra_;
+        changed_.notify_all();
+        while (spectra_ == 1 && !run.progress.cancelled()) changed_.wait_for(lock, std::chrono::milliseconds(1));
+        if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "cancelled"};
+        return "spectrum of " + field;
+    }
+    /// Lets time pass until a spectrum was begun so many times.
+    void spectra(int count, std::atomic<double>& now) {
+        std::unique_lock lock(mutex_);
+        while (spectra_ < count) {
+            now = now + 1;
+            changed_.wait_for(lock, std::chrono::milliseconds(1));
+        }
+    }
+    int spectra() {
+        const std::lock_guard lock(mutex_);
+        return spectra_;
+    }
+
     void let_go() {
         set([&] { ++let_go_; });
     }
@@ -55,7 +77,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<std::uint64_t> begun_;
-    int let_go_ = 0;
+    int let_go_ = 0, spectra_ = 0;
     bool free_ = false;
 };
 
@@ -207,6 +229,36 @@ TEST_F(WorkerTest, ChartsComeBeforeFrames) {
     engine_->set_free();
     worker_.start(engine_);
     EXPECT_EQ(sent_.to(1, 2), (std::vector<std::string>{"chart of q", "frame 1"}));
+}
+
+TEST_F(WorkerTest, ASpectrumIsCancelledForAWishAndBegunAgain) {
+    worker_.add_page(1);
+    engine_->set_free();
+    worker_.start(engine_);
+    worker_.start_background();
+    worker_.ask_spectrum(1, "p");
+    engine_->spectra(1, now_);
+    wish(1, 1);
+    EXPECT_EQ(sent_.to(1, 1).back(), "frame 1");
+    engine_->spectra(2, now_);
+    EXPECT_EQ(sent_.to(1, 2).back(), "spectrum of p");
+}
+
+TEST_F(WorkerTest, ASpectrumWaitsForThePauseAfterAFrame) {
+    worker_.add_page(1);
+    engine_->set_free();
+    worker_.start(engine_);
+    worker_.start_background();
+    now_ = 10;
+    worker_.ask_spectrum(1, "p");
+    for (std::uint64_t number = 1; number <= 20; ++number) { // a hand that moves: none is begun
+        wish(1, number);
+        sent_.to(1, number);
+        worker_.acknowledge(1);
+        now_ = now_ + Worker::pause / 2;
+    }
+    EXPECT_EQ(engine_->spectra(), 0);
+    engine_->spectra(1, now_);
 }
 
 } // namespace

@@ -114,6 +114,17 @@ export class Camera {
     return add(eye, ray, depth);
   }
 
+  /** Origin and direction of the ray under a place of the picture, from before a box. */
+  ray(x, y, aspect, lower, upper) {
+    const through = this.under(x, y, aspect, this.target);
+    if (this.projection === 'perspective') {
+      const eye = add(this.target, this.direction, this.distance);
+      return [eye, unit(add(through, eye, -1))];
+    }
+    const size = Math.hypot(...add(upper, lower, -1)), away = Math.hypot(...add(through, lower, -1));
+    return [add(through, this.direction, size + away), this.direction.map((v) => -v)];
+  }
+
   /** World to clip space, column by column, for a box that is to be between the near and the far plane. */
   matrix(aspect, lower, upper) {
     const right = this.right(), {up, direction, target} = this;

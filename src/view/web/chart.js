@@ -10,6 +10,8 @@ export class ChartSlider {
     this.context = canvas.getContext('2d');
     this.on = on;
     this.chart = null;
+    this.spectrum = null; // area and volume against the isovalue
+    this.curve = 'triangles'; // or 'area', 'volume_below'
     this.value = 0;
     this.marks = [];
     element.addEventListener('pointerdown', (event) => {
@@ -66,6 +68,28 @@ export class ChartSlider {
     return triangles[Math.max(0, Math.min(triangles.length - 1, at))];
   }
 
+  /** Area or volume at a value, between two that are exact; null where nothing is known. */
+  measured(name, value) {
+    if (!this.spectrum || this.spectrum.isovalues.length < 2) return null;
+    const {isovalues} = this.spectrum, list = this.spectrum[name], last = isovalues.length - 1;
+    if (value <= isovalues[0] || value > isovalues[last]) return name === 'volume_below' && value > isovalues[0] ? list[last] : 0;
+    let i = Math.min(last - 1, Math.floor((value - isovalues[0]) / (isovalues[last] - isovalues[0]) * last));
+    while (i > 0 && value < isovalues[i]) --i;
+    while (i < last - 1 && value > isovalues[i + 1]) ++i;
+    const part = (value - isovalues[i]) / (isovalues[i + 1] - isovalues[i]);
+    return list[i] + part * (list[i + 1] - list[i]);
+  }
+
+  /** The curve as points (part of the range, part of the largest). */
+  line() {
+    if (this.curve === 'triangles' || !this.spectrum) {
+      const {triangles} = this.chart, largest = Math.max(1, ...triangles);
+      return triangles.map((count, i) => [(i + 0.5) / triangles.length, count / largest]);
+    }
+    const {isovalues} = this.spectrum, list = this.spectrum[this.curve], largest = Math.max(...list) || 1;
+    return list.map((one, i) => [(isovalues[i] - this.chart.lower) / (this.range() || 1), one / largest]);
+  }
+
   set(value, marks) {
     this.value = value;
     this.marks = marks;
@@ -90,7 +114,7 @@ export class ChartSlider {
     if (!this.chart) return;
     const style = getComputedStyle(document.documentElement), color = (name) => style.getPropertyValue('--' + name).trim();
     const base = height - 2, room = height - 14;
-    const {points, triangles} = this.chart;
+    const {points} = this.chart;
     // Square roots: bins with few points stay visible beside a bin with most of them.
     const most = Math.sqrt(Math.max(1, ...points)), wide = width / points.length;
     context.fillStyle = color('bars');
@@ -98,12 +122,11 @@ export class ChartSlider {
       const tall = room * Math.sqrt(count) / most;
       if (count > 0) context.fillRect(i * wide, base - Math.max(1, tall), Math.max(1, wide - 0.5), Math.max(1, tall));
     });
-    const largest = Math.max(1, ...triangles);
     context.strokeStyle = color('curve');
     context.lineWidth = 1.5;
     context.lineJoin = 'round';
     context.beginPath();
-    triangles.forEach((count, i) => context[i ? 'lineTo' : 'moveTo']((i + 0.5) * wide, base - room * count / largest));
+    this.line().forEach(([x, y], i) => context[i ? 'lineTo' : 'moveTo'](x * width, base - room * y));
     context.stroke();
     const x = (value) => this.range() > 0 ? Math.round((value - this.chart.lower) / this.range() * (width - 2)) + 1 : width / 2;
     for (const mark of this.marks) {

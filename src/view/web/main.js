@@ -55,7 +55,22 @@ function chooseScale() {
 let resting = false;
 
 /** Why the server draws, or nothing where the browser does. */
-const serverDraws = () => (!scene ? 'no WebGL2 here' : state.drawn === 'server' ? 'chosen' : '');
+const serverDraws = () => (!scene ? 'no WebGL2 here' : state.drawn === 'server' ? 'chosen' :
+  large && state.drawn !== 'browser' ? `${format.rough(large)} triangles are too many for the browser` : '');
+
+/** Triangles of surfaces that are too large for the browser, else 0: then the server draws until they are a quarter smaller. */
+let large = 0;
+function noteSize(next) {
+  const most = Number(document.body.dataset.most) || 8e6;
+  const all = [...new Map(next.surfaces.filter(({kind}) => kind === 'surface').map((one) => [one.isovalue, one.triangles])).values()].reduce((a, b) => a + b, 0);
+  const before = serverDraws();
+  if (all > most) large = all;
+  else if (all < 0.75 * most) large = 0;
+  if (!before === !serverDraws()) return;
+  id('picture').hidden = !serverDraws();
+  sent = null;
+  wishSoon();
+}
 const aspect = () => id('scene').clientWidth / Math.max(1, id('scene').clientHeight);
 const pictureSize = () => ['clientWidth', 'clientHeight'].map((side) => Math.max(1, Math.min(4096, Math.round(id('scene')[side] * (window.devicePixelRatio || 1)))));
 
@@ -93,6 +108,8 @@ function draw() {
     acknowledge(frame);
     tellFacts();
     time.shown(frame.step);
+    measureServer(frame);
+    askSpectrum();
   }
   document.body.dataset.camera = camera.text();
 }
@@ -166,6 +183,7 @@ async function takePicture(next) {
   drawSoon();
   if (next.preview && next.number >= number) restSoon();
   time.shown(next.step);
+  askSpectrum();
 }
 
 /** The server sends no more than two frames ahead: each is acknowledged once, also one that is replaced before it is drawn. */
@@ -177,6 +195,8 @@ function acknowledge(one) {
 
 function takeFrame(buffer) {
   const next = readFrame(buffer);
+  measureLine(next);
+  noteSize(next);
   if (next.picture) return takePicture(next);
   acknowledge(frame);
   if (!scene) return acknowledge(next);
@@ -207,12 +227,21 @@ function stopWaiting() {
 const wanted = () => JSON.stringify([state.field, state.value, state.pins.map((pin) => pin.value), state.colorBy, state.map, state.range, state.logarithmic,
   planesOf(state, 'slice'), state.boundary > 0, state.step, document.body.dataset.step === 'ready', serverDraws() && [camera.text(), pictureSize(), toMessage(state)]]);
 
+/** Bytes a ms of the line, by frames that are large enough to tell. */
+let line = null;
+function measureLine(next) {
+  const took = performance.now() - (sentAt.get(next.number) ?? NaN) - next.wait_ms - next.extract_ms - next.mesh_ms;
+  if (next.bytes < 200000 || !(took > 0)) return;
+  line = line === null ? next.bytes / took : 0.7 * line + 0.3 * next.bytes / took;
+}
+
 /** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 0.6 s for one that rests. In few steps. */
 let speed = null, lastMost = 0; // triangles a ms
 function mostTriangles(moving) {
   const [ms, least, limit] = moving ? [40, 30000, 600000] : [600, 150000, 8e6];
   const parts = Math.max(1, frame?.surfaces.length || 1); // share the time
-  const most = speed === null ? 100000 : Math.max(least, Math.min(limit, speed * ms / parts));
+  const sent_in_time = line === null ? Infinity : line * (moving ? 100 : 2000) / (14 * parts); // 14 bytes a triangle
+  const most = Math.max(least, Math.min(limit, speed === null ? 100000 : speed * ms / parts, sent_in_time));
   return Math.round(10000 * 2 ** Math.floor(Math.log2(most / 10000)));
 }
 
@@ -283,7 +312,7 @@ function showState() {
   id('edges').checked = state.edges;
   id('parallel').checked = camera.projection === 'parallel';
   id('color-details').hidden = !state.colorBy;
-  id('drawn-by').value = serverDraws() ? 'server' : '';
+  id('drawn-by').value = scene ? state.drawn : 'server';
   id('drawn-by').disabled = !scene;
   id('picture').hidden = !serverDraws();
   showBoundary();
@@ -315,13 +344,38 @@ function showValue() {
   if (rows.length > 0 && state.value !== null) rows[0].querySelector('.value').textContent = format.short(state.value);
   slider.set(state.value ?? 0, state.pins.map((pin, i) => ({value: pin.value, color: pinColor(i)})));
   const expected = state.value === null ? null : slider.expected(state.value);
-  id('prediction').textContent = expected === null ? '' : `About ${format.rough(expected)} triangles expected`;
+  const ms = expected === null || !msPerTriangle ? '' : `, ${format.duration(expected * msPerTriangle)}`;
+  id('prediction').textContent = expected === null ? '' : `About ${format.rough(expected)} triangles${ms} expected`;
+  showMeasures();
 }
+
+/** What the server took for a triangle, by the last frames that it made. */
+let msPerTriangle = null;
+function measureServer(made) {
+  const triangles = made.surfaces.filter(({kind, mesh}) => kind === 'surface' && mesh).reduce((sum, one) => sum + one.triangles, 0);
+  if (triangles < 1000 || made.picture) return;
+  const now = (made.extract_ms + made.mesh_ms) / triangles;
+  msPerTriangle = msPerTriangle === null ? now : 0.7 * msPerTriangle + 0.3 * now;
+}
+
+/** Area and volume at the slider's value. */
+function showMeasures() {
+  const {spectrum} = slider;
+  for (const option of id('curve').options) option.disabled = option.value !== 'triangles' && !spectrum;
+  id('curve').value = spectrum ? slider.curve : 'triangles';
+  document.body.dataset.spectrum = spectrum ? spectrum.field : '';
+  if (!spectrum || state.value === null) { id('measures').textContent = 'Area and volume come when nothing moves'; return; }
+  const [area, below] = ['area', 'volume_below'].map((name) => slider.measured(name, state.value));
+  id('measures').textContent = area === null ? '' :
+    `Area ${area.toPrecision(4)}, volume below ${below.toPrecision(4)} of ${spectrum.volume.toPrecision(4)}`;
+}
+
+id('curve').addEventListener('change', () => { slider.curve = id('curve').value; slider.draw(); });
 
 const pinColor = (i) => state.pins[i].color || frame?.surfaces[i + 1]?.color || '#888888';
 
 function askChart() {
-  if (slider.chart?.field !== state.field) slider.chart = null; // the same field's serves until the new one is there
+  if (slider.chart?.field !== state.field) slider.chart = slider.spectrum = null; // the same field's serves until the new one is there
   link.send({do: 'chart', field: state.field});
 }
 
@@ -335,7 +389,23 @@ function takeChart(chart) {
     history.replaceState(null, '', address());
   }
   showValue();
+  askSpectrum();
   wishSoon();
+}
+
+/** Of the step that is shown, unless they play. */
+let spectrumAsked = '';
+function askSpectrum() {
+  const step = frame?.step ?? 0, wanted = `${step}|${state.field}`;
+  if (!slider.chart || time.playing || spectrumAsked === wanted || (slider.spectrum?.field === state.field && slider.spectrum.step === step)) return;
+  if (link.send({do: 'spectrum', field: state.field})) spectrumAsked = wanted;
+}
+
+function takeSpectrum(spectrum) {
+  spectrumAsked = '';
+  if (spectrum.field !== state.field || (frame && spectrum.step !== frame.step)) return;
+  slider.spectrum = spectrum.isovalues.length > 0 ? spectrum : null;
+  showValue();
 }
 
 function typed() {
@@ -539,7 +609,13 @@ const time = new TimeSteps({section: id('time'), slider: id('step'), label: id('
 
 let picked = null;
 function pickAt(x, y) {
-  if (serverDraws()) return say('Values are shown where the browser draws.');
+  if (serverDraws()) {
+    if (!grid?.lower) return;
+    const [point, ray] = camera.ray(x, y, aspect(), grid.lower, grid.upper);
+    picked = {point: null, isovalue: null};
+    link.send({do: 'pick', state: {...toMessage(state), camera: undefined}, point, ray});
+    return;
+  }
   const found = scene?.pickSurface(x, y);
   if (!found) return closePicked();
   const {surface, point} = found, message = {do: 'pick', state: toMessage(state), point};
@@ -553,6 +629,7 @@ function pickAt(x, y) {
 
 function takePicked(message) {
   if (!picked) return;
+  if (picked.point === null) picked.isovalue = message.isovalue ?? null; // of a ray
   picked.point = message.point;
   const numbers = (values) => values.map(format.short).join(', ');
   const rows = [['x, y, z', numbers(message.point)], ...message.values.map(({name, cell, values}) => [name + (cell ? ' (cell)' : ''), numbers(values.map((v) => v ?? NaN))])];
@@ -711,6 +788,7 @@ const messages = {
   grid: takeGrid,
   progress: takeProgress,
   chart: takeChart,
+  spectrum: takeSpectrum,
   command: takeCommand,
   picked: takePicked,
   state: (message) => takeState(message.state),
@@ -735,6 +813,7 @@ const link = new Link(token, {
   lost: () => {
     // Another connection begins without surfaces: all are sent again.
     sent = null;
+    spectrumAsked = '';
     stopWaiting();
     id('link').textContent = 'No connection: trying again';
     document.body.dataset.link = 'lost';

@@ -5,7 +5,7 @@ export const firstState = () => ({
   field: '', value: null, pins: [], // [{value, color, opacity}], color null: the one that isotet render gives
   color: null, opacity: null,       // of the surface that the slider moves
   colorBy: '', map: 'viridis', range: null, logarithmic: false, outline: false, edges: false, camera: null,
-  boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures
+  boundary: 0.1, planes: [], step: null, drawn: '', // 'server': pictures, 'browser': never
   // planes: [{kind: 'clip' or 'slice', normal, offset}]
 });
 
@@ -64,7 +64,7 @@ export function fromAddress(text) {
   }
   const step = number(parts.get('step'));
   if (step !== null && Number.isInteger(step) && step >= 0) state.step = step;
-  if (parts.get('drawn') === 'server') state.drawn = 'server';
+  if (['server', 'browser'].includes(parts.get('drawn'))) state.drawn = parts.get('drawn');
   state.camera = parts.get('camera');
   return state;
 }
