@@ -376,7 +376,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
         info = self.GetInputArrayInformation(0)
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
         if association is not None and association != vtkDataObject.FIELD_ASSOCIATION_POINTS:
-            raise ValueError("isotet contours point data, but the array to process is of cells: use vtkCellDataToPointData before")
+            raise ValueError("isotet contours point data, but the array to process is of cells: use vtkCellDataToPointData before, in ParaView Cell Data to Point Data")
         name = info.Get(vtkDataObject.FIELD_NAME())
         return grid.GetPointData().GetArray(name) if name else grid.GetPointData().GetScalars()
 
@@ -386,7 +386,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
             return ValueError("there are no active point scalars")
         text = f"there is no point array '{name}'"
         if grid.GetCellData().HasArray(name):
-            text += ", but a cell array: use vtkCellDataToPointData before"
+            text += ", but a cell array: use vtkCellDataToPointData before, in ParaView Cell Data to Point Data"
         return ValueError(text)
 
     def _session_of(self, grid) -> _Session:
