@@ -39,6 +39,7 @@ struct GridOptions {
     bool keep_pieces = false;
     bool allow_outside = false;
     std::string displace;
+    std::vector<std::string> blocks; ///< names or numbers; empty: all
 };
 
 struct InfoCommand {

@@ -23,8 +23,7 @@ Result<void> check_names(const std::string& path, bool allow_outside) {
         const bool names_file = line.starts_with("model:") || line.starts_with("measured:") ||
                                 line.starts_with("match:") || line.starts_with("boundary:") ||
                                 line.starts_with("rigid_body:") || line.find(" per ") != std::string_view::npos;
-        if (!names_file || line.starts_with("constant per case"))
-            continue;
+        if (!names_file || line.starts_with("constant per case")) continue;
         while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
         for (std::string_view last = line.substr(line.find(':') + 1);
              !last.empty();) { // every word of it, so none is missed
@@ -46,8 +45,9 @@ Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options,
     vtkNew<vtkGenericEnSightReader> reader;
     reader->SetCaseFileName(path.c_str());
     reader->ReadAllVariablesOff();
-    return load_with(*reader, path, options, depth,
-                     [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(*reader, chosen, info); });
+    return load_with(
+        *reader, path, options, depth,
+        [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(*reader, chosen, info); }, "part");
 }
 
 } // namespace isotet::io::vtk
