@@ -161,6 +161,24 @@ std::string grid_table(const Findings& found, const std::string& path) {
     return table.text();
 }
 
+/// Chosen or not: what --block takes.
+std::string block_table(const FileInfo& file) {
+    using enum Table::Align;
+    Table table({left, right, left, left, right});
+    for (const BlockInfo& block : file.blocks)
+        table.row({"block", std::to_string(block.number), block.name.empty() ? "-" : block.name, block.kind,
+                   fmt::format("{} cell{}", grouped(block.cells), block.cells == 1 ? "" : "s")});
+    return table.text();
+}
+
+Json json_of(const std::vector<BlockInfo>& blocks) {
+    Json list = Json::array();
+    for (const BlockInfo& block : blocks)
+        list.push_back(
+            {{"number", block.number}, {"name", json_text(block.name)}, {"kind", block.kind}, {"cells", block.cells}});
+    return list;
+}
+
 std::string field_table(const std::vector<DescribedField>& fields) {
     using enum Table::Align;
     Table table({left, left, left, right, left, left});
@@ -256,10 +274,11 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     if (!chart) return chart.error();
     Json report = json_of(found, path);
     report["curved"] = json_of(*curved);
+    report["blocks"] = json_of(source->info().blocks);
     report["fields"] = json_of(*fields);
     if (*chart) report["chart"] = json_of(**chart);
     return finish(console, command.common,
-                  grid_table(found, path) + curved_table(*curved) + field_table(*fields) +
+                  grid_table(found, path) + curved_table(*curved) + block_table(source->info()) + field_table(*fields) +
                       (*chart ? chart_table(**chart) : ""),
                   std::move(report));
 }

@@ -147,6 +147,9 @@ void add_time(const Command& command, GridOptions& grid) {
 void add_reading(const Command& command, GridOptions& grid, const std::string& format_option) {
     command.add_text(format_option, grid.format, "FORMAT",
                      "Format of the grid; without it content decides, then the name");
+    command.add_texts(
+        "--block", [&](const std::vector<std::string>& names) { grid.blocks = names; }, "NAME|NUMBER",
+        "Read only this block, zone or part of the file, by its name or number as info lists them; may be repeated");
     command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
@@ -307,7 +310,7 @@ void add_view(const Command& program, ViewCommand& view) {
 void add_bench(const Command& program, BenchCommand& bench) {
     const Command command = add_bench_command(program, bench);
     add_machine_and_input(command, bench.device, bench.grid, bench.common);
-    for (const char* name : {"--time", "--step", "--format", "--displace", "--merge-points", "--keep-pieces",
+    for (const char* name : {"--time", "--step", "--format", "--block", "--displace", "--merge-points", "--keep-pieces",
                              "--allow-outside", "--cell-field"})
         command.option(name).excludes(command.option("--paper"));
 }

@@ -32,6 +32,7 @@ std::vector<std::string> reading_options(const GridOptions& grid) {
     if (grid.keep_pieces) words.emplace_back("--keep-pieces");
     if (grid.allow_outside) words.emplace_back("--allow-outside");
     if (!grid.displace.empty()) add("--displace", grid.displace);
+    for (const std::string& block : grid.blocks) add("--block", block);
     return words;
 }
 

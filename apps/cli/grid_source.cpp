@@ -77,6 +77,9 @@ Result<GridSource> GridSource::open(const GridOptions& options, const Console& c
     GridSource source;
     source.options_ = options;
     if (options.file.starts_with(made_prefix)) {
+        if (!options.blocks.empty())
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("--block {}: a made grid has no blocks", options.blocks.front())};
         Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
         if (!made) return made.error();
         source.info_ = info_of(*made);
@@ -88,6 +91,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, const Console& c
     read_options.merge_pieces_by_coordinates = !options.keep_pieces;
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
+    read_options.blocks = options.blocks;
     Result<FileInfo> info = inspect(options.file, read_options, console.run());
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);

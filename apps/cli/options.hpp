@@ -39,6 +39,7 @@ struct GridOptions {
     bool keep_pieces = false;
     bool allow_outside = false;
     std::string displace;
+    std::vector<std::string> blocks; ///< names or numbers; empty: all
 };
 
 /// A field's name, and what it is when a point field and a cell field have it.

@@ -33,13 +33,23 @@ struct FieldInfo {
     std::size_t components = 1;
 };
 
+/// A part of a file that can be read without the others: an element block of Exodus, a zone of CGNS, a part of EnSight,
+/// a block of another of VTK's readers.
+struct BlockInfo {
+    std::int64_t number = 0; ///< of the file where it numbers blocks, else from 1 in its order
+    std::string name;        ///< empty where the file has none; "Base/Zone" where blocks are in others
+    std::string kind;        ///< "element block", "zone", "part", "block"
+    std::uint64_t cells = 0; ///< of all types and dimensions
+};
+
 /// What a file holds.
 struct FileInfo {
     std::string format;
     std::vector<FieldInfo> fields;
     std::vector<double> times; ///< empty where the file knows no time; ascending as stored
     std::vector<std::string>
-        files; ///< those that were opened to find this out, or to read: the file and its companions
+        files;                     ///< those that were opened to find this out, or to read: the file and its companions
+    std::vector<BlockInfo> blocks; ///< empty where the format has none that can be chosen
 };
 
 struct ReadOptions {
@@ -54,6 +64,8 @@ struct ReadOptions {
                                              ///< program, in PATH, or where isotet was to be installed
     std::uint64_t memory_limit = 0;          ///< bytes of address space of a reader process; 0: by free memory
     std::chrono::seconds time_limit{3600};
+    std::vector<std::string> blocks; ///< names or numbers of FileInfo::blocks to read; empty: all, of CGNS those of the
+                                     ///< first base. A name also stands for the blocks in it ("Base" for "Base/Zone")
 };
 
 struct ReadResult {
@@ -73,7 +85,7 @@ ISOTET_API Result<FileInfo> inspect(const std::string& path, const ReadOptions& 
 /// too.
 ///
 /// Errors   file: not there, not readable, format not recognized; invalid_data: broken content; invalid_argument: an
-///          unknown field, step or format; out_of_memory; system; cancelled
+///          unknown field, step, block or format; out_of_memory; system; cancelled
 ISOTET_API Result<ReadResult> read(const std::string& path, const ReadOptions& options = {}, const Run& run = {});
 
 /// How far the system confines isotet-reader, which reads formats through VTK (docs/security.md).

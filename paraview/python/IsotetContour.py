@@ -5,7 +5,6 @@ Needs the package isotet in ParaView's own Python. Load this file as a plugin, o
 """
 
 from paraview.util.vtkAlgorithm import smdomain, smhint, smproperty, smproxy
-from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from isotet.vtk import IsotetContour
@@ -18,9 +17,9 @@ _NAME = "IsotetContourPython"
 @smproperty.xml("""
     <InputProperty name="Input" command="SetInputConnection">
       <ProxyGroupDomain name="groups"><Group name="sources"/><Group name="filters"/></ProxyGroupDomain>
-      <DataTypeDomain name="input_type" composite_data_supported="0"><DataType value="vtkUnstructuredGrid"/></DataTypeDomain>
+      <DataTypeDomain name="input_type" composite_data_supported="1"><DataType value="vtkUnstructuredGrid"/></DataTypeDomain>
       <InputArrayDomain name="scalar_array" attribute_type="point" number_of_components="1"/>
-      <Documentation>The unstructured grid.</Documentation>
+      <Documentation>The grid, or the grids of a composite data set, which are contoured as one.</Documentation>
     </InputProperty>
     <StringVectorProperty name="ContourBy" label="Contour By" command="SetInputArrayToProcess" number_of_elements="5"
                           element_types="0 0 0 0 2" animateable="0">
@@ -54,19 +53,8 @@ _NAME = "IsotetContourPython"
     </IntVectorProperty>
 """)
 class IsotetContourPython(IsotetContour):
-    """On several ranks surfaces meet without a word between these: in double precision where the data are not float32."""
+    """The blocks of all ranks are contoured as one grid."""
 
-    def RequestData(self, request, inputs, outputs):
-        controller = vtkMultiProcessController.GetGlobalController()
-        self._precision = "float32"
-        if controller is not None and controller.GetNumberOfProcesses() > 1:
-            self._precision = self._precision_of(self.GetInputData(inputs, 0, 0))
-        return super().RequestData(request, inputs, outputs)
-
-    def _precision_of(self, grid):
-        name = self.GetInputArrayInformation(0).Get(vtkDataObject.FIELD_NAME())
-        scalars = grid.GetPointData().GetArray(name) if name else grid.GetPointData().GetScalars()
-        if scalars is None or grid.GetPoints() is None:  # an empty piece, or an error that the filter tells
-            return "float32"
-        single = scalars.GetDataTypeAsString() == "float" and grid.GetPoints().GetData().GetDataTypeAsString() == "float"
-        return "float32" if single else "float64"
+    def __init__(self):
+        super().__init__()
+        self.SetController(vtkMultiProcessController.GetGlobalController())

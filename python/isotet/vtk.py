@@ -7,17 +7,20 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataObjectTree, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from . import _isotet
 from ._arrays import points_in, scalars_in, values_in
 from ._grid import Grid
+from ._ranks import Ranks
 from ._surface import Surface, call_options
 
 __all__ = ["IsotetContour", "grid_of", "to_polydata"]
@@ -167,23 +170,28 @@ class _Session:
         parts += (grid.GetCellGhostArray(),)
         return tuple(part.GetMTime() for part in parts if part is not None)
 
-    def contour(self, grid, scalars, isovalues: list[float], *, normals: bool, surfaces: int,
-                fields: list[tuple[str, np.ndarray]], cell_fields: list[tuple[str, np.ndarray]],
-                precision: str = "float32") -> Surface:  # fmt: skip
-        self.set(grid, scalars, normals=normals, surfaces=surfaces, fields=fields, cell_fields=cell_fields, precision=precision)
+    def contour(self, grid, scalars, isovalues: list[float], **how) -> Surface:
+        self.set(grid, scalars, **how)
         assert self._session is not None
         return Surface._of(*self._session.extract(isovalues, call_options(0, None)))
 
-    def set(self, grid, scalars, *, normals: bool, surfaces: int, fields, cell_fields,
-            precision: str = "float32") -> None:  # fmt: skip
+    def _input(self, grid, scalars, numbers: np.ndarray | None = None) -> tuple[_isotet.Grid, _isotet.PointField]:
         times = self.times_of(grid)
         if self._cells is None or times != self._times:
             self._cells, self._times = _cells_of(grid), times
-        values = scalars_in(scalars.GetName() or "scalars", vtk_to_numpy(scalars))
-        field = _isotet.PointField(scalars.GetName() or "scalars", values)
+        name = scalars.GetName() or "scalars"
+        field = _isotet.PointField(name, scalars_in(name, vtk_to_numpy(scalars)))
+        return _isotet.Grid(_points_of(grid), self._cells, [], [], numbers), field
+
+    def survey(self, grid, scalars, fields: list[tuple[str, np.ndarray]]) -> bytes:
+        return _isotet.survey(*self._input(grid, scalars), fields, False, call_options(0, None))
+
+    def set(self, grid, scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
+            cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
+            frame: _isotet.Frame | None = None) -> None:  # fmt: skip
+        mine, field = self._input(grid, scalars, numbers)
         kind = "gradient" if normals else "none"
-        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces)
-        mine = _isotet.Grid(_points_of(grid), self._cells, [], [])
+        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces, False, frame)
         call = call_options(0, None)
         if self._session is None:
             self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call)
@@ -214,11 +222,50 @@ def _finish(surface: Surface, isovalues: list[float], scalars, compute_scalars: 
     return out
 
 
+class _Block(NamedTuple):
+    """A grid with cells, its scalars, and where its surface goes."""
+
+    grid: Any
+    scalars: Any
+    out: Any
+
+    @property
+    def numbers(self):
+        return self.grid.GetPointData().GetGlobalIds()
+
+    def fields(self) -> list[tuple[str, np.ndarray]]:
+        """The carried point arrays, in the same order on all ranks."""
+        return sorted(_arrays_of(self.grid.GetPointData(), self.scalars.GetName()), key=lambda named: named[0])
+
+    def times(self) -> tuple[int, ...]:
+        """Modified times of what a frame follows from."""
+        parts = [self.grid.GetPoints().GetData(), self.scalars, self.numbers, self.grid.GetPointData()]
+        return _Session.times_of(self.grid) + tuple(part.GetMTime() for part in parts if part is not None)
+
+
+def _leaves(data, out) -> Iterator[tuple[int, Any, Any]]:
+    """Number, data set and output of each block; blocks of the output are made here."""
+    if not isinstance(data, vtkDataObjectTree):
+        yield 0, data, out
+        return
+    out.CopyStructure(data)
+    at = data.NewIterator()
+    at.InitTraversal()
+    while not at.IsDoneWithTraversal():
+        surface = vtkPolyData()
+        out.SetDataSet(at, surface)
+        yield at.GetCurrentFlatIndex(), at.GetCurrentDataObject(), surface
+        at.GoToNextItem()
+
+
 class IsotetContour(VTKPythonAlgorithmBase):
     """A vtkAlgorithm like vtkContourFilter, for vtkUnstructuredGrid: it follows a moving isovalue.
 
     The grid is packed when many surfaces are expected (`SetExpectedSurfaces`) or were asked for, and not again while its
     cells and points are the same; another array or time step only stores values. Point and cell arrays are carried.
+
+    Composite data are taken whole: the output has the same blocks, whose surfaces fit bit for bit. `SetController` does the
+    same for the ranks of a vtkMultiProcessController.
 
     >>> import pyvista, isotet.vtk
     >>> sphere = pyvista.ImageData(dimensions=(9, 9, 9)).cast_to_unstructured_grid()
@@ -240,7 +287,10 @@ class IsotetContour(VTKPythonAlgorithmBase):
         self._compute_normals, self._compute_scalars = False, True
         self._expected = 0
         self._precision = "float32"
+        self._controller = None
         self._sessions: OrderedDict[Any, _Session] = OrderedDict()
+        self._frame: _isotet.Frame | None = None
+        self._framed: list[tuple[int, ...]] | None = None  # modified times that the frame follows from
         self.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, 0)
 
     def _set(self, name: str, value) -> None:
@@ -297,16 +347,47 @@ class IsotetContour(VTKPythonAlgorithmBase):
     def GetPrecision(self) -> str:
         return self._precision
 
+    def SetController(self, controller) -> None:
+        """Whose ranks have the pieces of the grid; None, the default: this process has all of it. Every rank must execute the
+        filter, those without cells, too; an error on one is an error on all."""
+        self._set("_controller", controller)
+
+    def GetController(self):
+        return self._controller
+
+    def FillInputPortInformation(self, port, info) -> int:
+        info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), self.InputType)
+        info.Append(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree")
+        return 1
+
+    def FillOutputPortInformation(self, port, info) -> int:
+        info.Set(vtkDataObject.DATA_TYPE_NAME(), "vtkDataObject")
+        return 1
+
+    def RequestDataObject(self, request, inputs, outputs) -> int:
+        data, out = vtkDataObject.GetData(inputs[0], 0), vtkDataObject.GetData(outputs, 0)
+        kind = data.GetClassName() if isinstance(data, vtkDataObjectTree) else "vtkPolyData"
+        if out is None or out.GetClassName() != kind:
+            outputs.GetInformationObject(0).Set(vtkDataObject.DATA_OBJECT(), data.NewInstance() if kind != "vtkPolyData" else vtkPolyData())
+        return 1
+
     def _scalars_of(self, grid):
+        """The point array to contour; None where the grid has none."""
         info = self.GetInputArrayInformation(0)
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
         if association is not None and association != vtkDataObject.FIELD_ASSOCIATION_POINTS:
-            raise ValueError("isotet contours point data, but the array to process is of cells: convert it first")
+            raise ValueError("isotet contours point data, but the array to process is of cells: use vtkCellDataToPointData before, in ParaView Cell Data to Point Data")
         name = info.Get(vtkDataObject.FIELD_NAME())
-        scalars = grid.GetPointData().GetArray(name) if name else grid.GetPointData().GetScalars()
-        if scalars is None:
-            raise ValueError(f"there is no point array '{name}'" if name else "there are no active point scalars")
-        return scalars
+        return grid.GetPointData().GetArray(name) if name else grid.GetPointData().GetScalars()
+
+    def _missing(self, grid) -> ValueError:
+        name = self.GetInputArrayInformation(0).Get(vtkDataObject.FIELD_NAME())
+        if not name:
+            return ValueError("there are no active point scalars")
+        text = f"there is no point array '{name}'"
+        if grid.GetCellData().HasArray(name):
+            text += ", but a cell array: use vtkCellDataToPointData before, in ParaView Cell Data to Point Data"
+        return ValueError(text)
 
     def _session_of(self, grid) -> _Session:
         """By the connectivity: blocks of a composite data set come one after another."""
@@ -317,20 +398,98 @@ class IsotetContour(VTKPythonAlgorithmBase):
             self._sessions.popitem(last=False)
         return session
 
-    def RequestData(self, request, inputs, outputs) -> int:
-        try:
-            grid, out = self.GetInputData(inputs, 0, 0), vtkPolyData.GetData(outputs, 0)
+    def _blocks_of(self, data, out) -> tuple[list[_Block], Exception | None]:
+        """The grids that have the array; of composite data others stay empty. And what to say if no grid has it."""
+        blocks, missing = [], None
+        for number, grid, surface in _leaves(data, out):
             if grid is None or grid.GetNumberOfCells() == 0:
-                return 1
+                continue
+            if not isinstance(grid, vtkUnstructuredGrid):
+                raise ValueError(f"block {number} is a {grid.GetClassName()}, but isotet contours vtkUnstructuredGrid")
+            surface.GetFieldData().PassData(grid.GetFieldData())
             scalars = self._scalars_of(grid)
-            cell_fields = _arrays_of(grid.GetCellData())
-            surface = self._session_of(grid).contour(
-                grid, scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
-                fields=_arrays_of(grid.GetPointData(), scalars.GetName()), cell_fields=cell_fields,
-                precision=self._precision)  # fmt: skip
-            _finish(surface, self._values, scalars, self._compute_scalars, any(n == "isovalue" for n, _ in cell_fields), out)
-            out.GetFieldData().PassData(grid.GetFieldData())
+            if scalars is not None:
+                blocks.append(_Block(grid, scalars, surface))
+            elif surface is out:
+                raise self._missing(grid)
+            else:
+                missing = missing or self._missing(grid)
+        return blocks, missing
+
+    def _surveys_of(self, blocks: list[_Block], ranks: Ranks, *, carried: bool) -> list[bytes]:
+        """Of all blocks of all ranks, with the carried fields or without."""
+        mine, failure = [], None
+        try:
+            for block in blocks:
+                fields = block.fields() if carried else []
+                mine.append(self._session_of(block.grid).survey(block.grid, block.scalars, fields))
+        except Exception as error:  # noqa: BLE001 - the other ranks wait for this one
+            failure = error
+        ranks.agree(failure)
+        return [survey for surveys in ranks.gather_objects(mine) for survey in surveys]
+
+    def _make_frame(self, blocks: list[_Block], ranks: Ranks) -> None:
+        """One frame for all; None where there is no cell, or points or scalars are not of one type."""
+        self._frame = None
+        for carried in (True, False):  # carried fields need not be the same in all pieces
+            surveys = self._surveys_of(blocks, ranks, carried=carried)
+            try:
+                self._frame = _isotet.make_frame(surveys) if surveys else None
+                return
+            except ValueError:  # on all ranks alike
+                continue
+
+    def _agree(self, blocks: list[_Block], missing: Exception | None, failure: Exception | None) -> tuple[Ranks, bool]:
+        """What all ranks must know before one extracts; and whether all points have global ids. Raises alike on all."""
+        ranks = Ranks(self._controller)
+        times = [block.times() for block in blocks] if failure is None else None
+        failed, changed, found, lacks, many, unnumbered = ranks.any(
+            [failure is not None, times is None or times != self._framed, bool(blocks), missing is not None, len(blocks) > 1,
+             any(block.numbers is None for block in blocks)])  # fmt: skip
+        if failed:
+            ranks.agree(failure)
+        if lacks and not found:
+            ranks.agree(missing)
+        if ranks.count < 2 and not many:
+            self._frame, self._framed = None, None
+            return ranks, False
+        if changed:
+            self._framed = None
+            self._make_frame(blocks, ranks)
+            self._framed = times
+        return ranks, not unnumbered
+
+    def _contour(self, block: _Block, framed: bool, numbered: bool) -> None:
+        precision, frame, numbers = self._precision, None, None
+        if framed:
+            frame = self._frame
+            precision = precision if frame is not None else "float64"  # fits where types differ, but for one rounding
+            numbers = vtk_to_numpy(block.numbers) if numbered else None
+        cell_fields = _arrays_of(block.grid.GetCellData())
+        surface = self._session_of(block.grid).contour(
+            block.grid, block.scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
+            fields=block.fields(), cell_fields=cell_fields, precision=precision, numbers=numbers, frame=frame)  # fmt: skip
+        own = any(name == "isovalue" for name, _ in cell_fields)
+        _finish(surface, self._values, block.scalars, self._compute_scalars, own, block.out)
+
+    def RequestData(self, request, inputs, outputs) -> int:
+        blocks, missing, failure = [], None, None
+        out = vtkDataObject.GetData(outputs, 0)
+        try:
+            try:
+                blocks, missing = self._blocks_of(vtkDataObject.GetData(inputs[0], 0), out)
+            except Exception as error:  # noqa: BLE001 - the other ranks wait for this one
+                failure = error
+            ranks, numbered = self._agree(blocks, missing, failure)
+            try:
+                for block in blocks:
+                    self._contour(block, self._framed is not None, numbered)
+            except Exception as error:  # noqa: BLE001
+                failure = error
+            ranks.agree(failure)
         except Exception as error:  # noqa: BLE001 - VTK would say that a method failed, and not why
+            for block in blocks:
+                block.out.Initialize()
             self._fail(error)
             return 0
         return 1

@@ -66,6 +66,14 @@ Result<void> check_names(const std::vector<std::string>& asked, Association asso
     return {};
 }
 
+/// Readers of formats that have blocks know them all.
+Result<void> check_blocks(const FileInfo& info, const ReadOptions& options) {
+    if (options.blocks.empty() || !info.blocks.empty()) return {};
+    return Error{ErrorCode::invalid_argument,
+                 fmt::format("block {} cannot be chosen: the file ({}) has no blocks that can be read alone",
+                             in_quotes(options.blocks.front()), info.format)};
+}
+
 /// What every grid must hold to, whoever read it.
 Result<void> check_grid(const Grid& grid, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
@@ -113,6 +121,7 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     const ReadOptions all = with_displacement(options);
     auto result = (*reader)->read(path, all, progress);
     if (!result) return result;
+    if (auto known = check_blocks(result->info, options); !known) return known.error();
     if (const auto step = choose_step(result->info, options); !step) return step.error();
     if (all.point_fields) {
         if (auto known = check_names(*all.point_fields, Association::point, *result); !known) return known.error();
@@ -158,7 +167,10 @@ Result<FileInfo> inspect(const std::string& path, const ReadOptions& options, co
     return io::without_exceptions<FileInfo>(path, run, [&](const Progress& progress) -> Result<FileInfo> {
         const auto reader = io::choose_reader(path, options);
         if (!reader) return reader.error();
-        return (*reader)->inspect(path, options, progress);
+        auto info = (*reader)->inspect(path, options, progress);
+        if (!info) return info;
+        if (auto known = io::check_blocks(*info, options); !known) return known.error();
+        return info;
     });
 }
 

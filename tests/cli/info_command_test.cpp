@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet info`, `isotet FILE`, `isotet formats` and `isotet --version`.
 #include "program.hpp"
+#include "support/places.hpp"
 #include "small_grid.hpp"
 
 namespace isotet::test {
@@ -69,6 +70,26 @@ TEST_F(Program, InfoChartsAreaAndVolumeAgainstTheIsovalue) {
     const std::string table = isotet({"info", "make:kuhn:16:sphere", "--chart", "4"}).out;
     EXPECT_NE(table.find("volume below"), std::string::npos) << table;
     EXPECT_FALSE(json_of({"info", "make:kuhn:3"}).contains("chart"));
+}
+
+TEST_F(Program, InfoListsBlocksAndBlockChoosesOne) {
+    const std::string file = (source_folder() / "data/exodus/mixed_blocks_hdf5.exo").string();
+    const json whole = json_of({"info", file});
+    ASSERT_GT(whole["blocks"].size(), 1u) << whole["blocks"];
+    std::uint64_t cells = 0;
+    for (const json& block : whole["blocks"]) cells += block["cells"].get<std::uint64_t>();
+    EXPECT_EQ(whole["cells"], cells);
+    const json one = json_of({"info", file, "--block", "2"});
+    EXPECT_EQ(one["cells"], whole["blocks"][1]["cells"]);
+    EXPECT_EQ(one["blocks"], whole["blocks"]);
+    EXPECT_EQ(one["unused_points"], 0);
+    const json two = json_of({"info", file, "--block", "2", "--block", "line_weld_block_1"});
+    EXPECT_EQ(two["cells"], one["cells"].get<int>() + 22);
+    EXPECT_NE(isotet({"info", file}).out.find("element block"), std::string::npos);
+    const RunResult unknown = isotet({"info", file, "--block", "none such"});
+    EXPECT_NE(unknown.status, 0);
+    EXPECT_NE(unknown.err.find("block 'none such' is not in the file, which has "), std::string::npos) << unknown.err;
+    EXPECT_NE(isotet({"info", "make:kuhn:3", "--block", "1"}).status, 0);
 }
 
 TEST_F(Program, InfoOfASurfaceNamesTheCommandsForSurfaces) {

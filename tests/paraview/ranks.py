@@ -1,74 +1,112 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-"""By mpirun and pvbatch: pieces of files on several ranks. First `write` on one process, then `check` on any number."""
+"""By mpirun and pvbatch: pieces of files on several ranks. First `write` on one process, then on any number the steps `check`,
+`blocks` and `error`, with the plugins that ISOTET_PLUGINS names: `plugin` (in C++) and `python`."""
 
 import pickle
 
+from pieces import NAME, VALUES, data, filter_of, read_pieces, whole_of
 from support import *
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.util.vtkConstants import VTK_MULTIBLOCK_DATA_SET
 
-NAME = "pieces"
-VALUES = (0.3, 0.33)
-
-
-def data():
-    return lattice(10, dtype=np.float64, origin=5e5)
-
-
-def write_pieces(count):
-    """One PVTU with random pieces, with global ids."""
-    points, cells, field = data()
-    owner = np.random.default_rng(3).integers(0, count, len(cells))
-    for piece in range(count):
-        used, local = np.unique(cells[owner == piece], return_inverse=True)
-        write(grid_of(points[used], local.reshape(-1, 4), {"r": field[used]}, ids=used), f"{NAME}_{piece}.vtu")
-    with open(os.path.join(scratch, NAME + ".pvtu"), "w") as file:
-        file.write('<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
-                   '<PUnstructuredGrid GhostLevel="0"><PPointData GlobalIds="ids"><PDataArray type="Float64" Name="r"/>'
-                   '<PDataArray type="Int64" IdType="1" Name="ids"/></PPointData><PPoints><PDataArray type="Float64" Name="Points" '
-                   'NumberOfComponents="3"/></PPoints>')  # fmt: skip
-        for piece in range(count):
-            file.write(f'<Piece Source="{NAME}_{piece}.vtu"/>')
-        file.write("</PUnstructuredGrid></VTKFile>")
-
-
-def check():
-    load()
-    reader = simple.XMLPartitionedUnstructuredGridReader(FileName=[os.path.join(scratch, NAME + ".pvtu")])
-    filter = contour(reader, ComputeNormals=0, ExpectedSurfaces=100)
-    for value in VALUES:
-        filter.Isosurfaces = [value]
-        filter.UpdatePipeline()
-        out = os.path.join(scratch, f"surface-{ranks}.pvtp")
-        writer = simple.servermanager.writers.XMLPPolyDataWriter(Input=filter, FileName=out, DataMode="Binary")
-        writer.UpdatePipeline()
-        if rank == 0:
-            surface, wanted = read(out), pickle.load(open(os.path.join(scratch, f"whole-{value}"), "rb"))
-            assert corners_of(surface) == wanted, (len(corners_of(surface)), len(wanted))
-            assert open_edges(surface) == 0
-    if rank == 0:
-        print("ok", ranks, flush=True)
+# What ParaView runs on every rank. Blocks: rank k has the blocks k, k + ranks, ...; each is a third of the grid.
+BLOCKS = """
+import sys
+sys.path.insert(0, {folder!r})
+from pieces import piece_of
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+controller = vtkMultiProcessController.GetGlobalController()
+rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+output = self.GetOutputDataObject(0)
+output.SetNumberOfBlocks(5)
+for piece in range(3):
+    if piece % ranks == rank:
+        output.SetBlock(piece + 1, piece_of(piece))
+"""
+BREAK = """
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+output = self.GetOutputDataObject(0)
+output.DeepCopy(self.GetInputDataObject(0, 0))
+if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 1:
+    vtk_to_numpy(output.GetCells().GetConnectivityArray())[5] = 10**9
+"""
+KEEP = "self.GetOutputDataObject(0).ShallowCopy(self.GetInputDataObject(0, 0))"
 
 
-def read(name):
+def written(source, kind):
+    """The surface of all ranks, on rank 0."""
+    out = os.path.join(scratch, f"surface-{kind}-{'-'.join(sys.argv[1:])}-{ranks}.pvtp")
+    simple.servermanager.writers.XMLPPolyDataWriter(Input=source, FileName=out, DataMode="Binary").UpdatePipeline()
+    if rank > 0:
+        return None
     from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
     reader = vtkXMLPPolyDataReader()
-    reader.SetFileName(name)
+    reader.SetFileName(out)
     reader.Update()
     return reader.GetOutput()
 
 
-def write_whole():
-    """The triangles of the grid in one piece."""
+def is_whole(surface, value):
+    if rank == 0:
+        assert corners_of(surface) == whole_of(value), (len(corners_of(surface)), len(whole_of(value)))
+        assert open_edges(surface) == 0
+
+
+def check(kind):
+    filter = filter_of(kind, read_pieces())
+    for value in VALUES:
+        filter.Isosurfaces = [value]
+        filter.UpdatePipeline()
+        is_whole(written(filter, kind), value)
+
+
+def blocks(kind):
+    """Each rank has other blocks, or none; the output has the same ones, and surfaces fit."""
+    folder = os.path.dirname(os.path.abspath(__file__))
+    source = simple.ProgrammableSource(OutputDataSetType="vtkMultiblockDataSet", Script=BLOCKS.format(folder=folder))
+    filter = filter_of(kind, source)
+    for value in VALUES:
+        filter.Isosurfaces = [value]
+        is_whole(written(simple.MergeBlocks(Input=filter, OutputDataSetType="Polygonal Mesh", MergePoints=0), kind), value)
+    assert filter.GetDataInformation().DataInformation.GetCompositeDataSetType() == VTK_MULTIBLOCK_DATA_SET
+
+
+def error(kind):
+    """Cells of one rank are broken: no rank hangs or gives a surface, and every later surface is right."""
+    said = []
+
+    def listen(caller, event, text):
+        said.append(text)
+
+    listen.CallDataType = "string0"
+    vtkOutputWindow.GetInstance().AddObserver("ErrorEvent", listen)
+    broken = simple.ProgrammableFilter(Input=read_pieces(), Script=BREAK)
+    filter = filter_of(kind, broken)
+    filter.Isosurfaces = [VALUES[0]]
+    filter.UpdatePipeline()
+    assert filter.GetDataInformation().GetNumberOfCells() == 0
+    if rank == 0 and kind == "plugin":
+        assert any("rank 1: " in text and "1000000000" in text for text in said), said
+    broken.Script = KEEP
+    is_whole(written(filter, kind), VALUES[0])
+
+
+if sys.argv[1] == "write":
+    import pieces
+
+    pieces.write_pieces()
     load()
     points, cells, field = data()
     source = made(grid_of(points, cells, {"r": field}))
     for value in VALUES:
-        pickle.dump(corners_of(fetch(contour(source, value, ComputeNormals=0))), open(os.path.join(scratch, f"whole-{value}"), "wb"))
-
-
-if sys.argv[1] == "write":
-    write_pieces(3)
-    write_whole()
-    print("ok")
+        surface = corners_of(fetch(contour(source, value, ComputeNormals=0)))
+        pickle.dump(surface, open(os.path.join(scratch, f"{NAME}-{value}"), "wb"))
 else:
-    check()
+    for kind in os.environ["ISOTET_PLUGINS"].split():
+        for step in sys.argv[1:]:
+            {"check": check, "blocks": blocks, "error": error}[step](kind)
+if rank == 0:
+    print("ok", ranks, flush=True)

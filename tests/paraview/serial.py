@@ -32,6 +32,14 @@ assert ours.GetNumberOfPoints() == theirs.GetNumberOfPoints(), (ours.GetNumberOf
 assert names(ours.GetPointData()) == names(theirs.GetPointData()), names(ours.GetPointData())
 assert open_edges(ours) == 0
 
+# A cell array that is chosen as one of points is averaged by ParaView's pipeline, for this filter as for Contour.
+of_cells = grid_of(grid[0], grid[1], {"r": grid[2]})
+add(of_cells.GetCellData(), "c", grid[2][grid[1]].mean(axis=1))
+of_cells = made(of_cells)
+counts = [fetch(kind(Input=of_cells, ContourBy=["POINTS", "c"], Isosurfaces=[0.3])).GetNumberOfCells()
+          for kind in (simple.IsotetContour, simple.Contour)]  # fmt: skip
+assert counts[0] == counts[1] > 0, counts
+
 # A moving isovalue keeps the cells, another array the cells, too.
 filter.ExpectedSurfaces = 100
 fetch(filter)

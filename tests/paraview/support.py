@@ -10,7 +10,7 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "vtk"))
-from grids import corners_of, grid_of, lattice, names, open_edges, points_of, triangles_of  # noqa: E402, F401
+from grids import add, corners_of, grid_of, lattice, names, open_edges, points_of, triangles_of  # noqa: E402, F401
 
 scratch = os.environ["ISOTET_SCRATCH"]
 controller = vtkMultiProcessController.GetGlobalController()

@@ -100,6 +100,29 @@ def test_composite_data_sets_come_block_by_block():
     assert list(contour._sessions.values()) == kept
 
 
+def test_surfaces_of_blocks_fit_bit_for_bit():
+    whole = cubes(8)
+    whole.points = whole.points.astype(np.float64) / 7 + 5e5
+    whole["r"] = whole["r"].astype(np.float64) / 7
+    left = whole.cell_centers().points[:, 0] < 5e5 + 0.6
+    blocks = pv.MultiBlock([whole.extract_cells(left), whole.extract_cells(~left)])
+    both = output(pipeline(blocks, value=0.31)).combine().extract_geometry().clean(tolerance=0, absolute=True)
+    assert both.n_cells > 0 and both.n_open_edges == output(pipeline(whole, value=0.31)).n_open_edges
+
+
+def test_composite_data_without_the_array_are_an_error():
+    contour = pipeline(pv.MultiBlock([cubes(), cubes(6)]), "pressure")
+    heard = []
+
+    def hear(caller, event, text):
+        heard.append(text)
+
+    hear.CallDataType = "string0"
+    contour.AddObserver("ErrorEvent", hear)
+    contour.Update()
+    assert heard[0] == "there is no point array 'pressure'"
+
+
 @pytest.mark.parametrize("storage", ["Use32BitStorage", "Use64BitStorage", "UseFixedSize32BitStorage", "UseFixedSize64BitStorage"])
 def test_every_storage_of_cells(storage):
     grid = cubes().triangulate()

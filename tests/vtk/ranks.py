@@ -6,6 +6,7 @@ import sys
 import numpy as np
 from isotet_vtk.vtkIsotet import vtkIsotetContour
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 from vtkmodules.vtkParallelMPI import vtkMPIController
 from mpi4py import MPI
@@ -158,6 +159,22 @@ def errors():
     contour.SetValue(0, 0.31)
     contour.Update()
     assert "rank 0: there is no array" in contour.said[-1], contour.said
+
+
+def missing():
+    """Composite data of which no rank has the array: an error on all. One rank with it is enough."""
+    points, cells, field = lattice(4)
+    piece = piece_of(points, cells, field, owners(len(cells), -1))
+    for holder in (-1, ranks - 1):
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, grid_of(points, cells, {"other": field}))
+        if rank == holder:
+            blocks.SetBlock(1, piece)
+        contour = contour_of(blocks)
+        if holder < 0:
+            assert len(contour.said) == 1 and "no point array is called 'r'" in contour.said[0], contour.said
+        else:
+            assert contour.said == [] and (rank != holder or contour.GetOutputDataObject(0).GetBlock(1).GetNumberOfCells() > 0)
 
 
 def other_arrays():

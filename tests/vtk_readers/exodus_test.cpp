@@ -110,6 +110,65 @@ TEST_P(ReadExodus, IsAnErrorWhenAnElementHasANodeThatIsNotThere) {
     }
 }
 
+ExodusSample named_blocks() {
+    ExodusSample sample;
+    sample.block_names = {"steel", "rubber"};
+    return sample;
+}
+
+TEST_P(ReadExodus, ListsItsBlocks) {
+    const auto info = inspect(written(named_blocks()));
+    ASSERT_TRUE(info) << info.error().message;
+    ASSERT_EQ(info->blocks.size(), 2u);
+    EXPECT_EQ(info->blocks[1].number, 20);
+    EXPECT_EQ(info->blocks[1].name, "rubber");
+    EXPECT_EQ(info->blocks[1].kind, "element block");
+    EXPECT_EQ(info->blocks[1].cells, 1u);
+    EXPECT_EQ(inspect(written())->blocks[1].name, "");
+}
+
+TEST_P(ReadExodus, ReadsOnlyTheBlockThatIsAskedFor) {
+    for (const char* asked : {"rubber", "20"}) {
+        ReadOptions options;
+        options.blocks = {asked};
+        const auto result = read(written(named_blocks()), options);
+        ASSERT_TRUE(result) << result.error().message;
+        const Grid& grid = result->grid;
+        ASSERT_EQ(grid.cells.count(), 1u);
+        EXPECT_EQ(grid.points.tuples(), 4u); // the point that only the other block uses is gone
+        for (const Field& field : grid.point_fields) EXPECT_EQ(field.values.tuples(), 4u);
+        const std::vector<double> z = {0, 0, 0, -1};
+        for (std::size_t i = 0; i < 4; ++i)
+            EXPECT_EQ(grid.points.at(static_cast<std::size_t>(grid.cells.connectivity.at(i)), 2), z[i]);
+        EXPECT_TRUE(std::isnan(grid.cell_fields.at(0).values.at(0)));
+        EXPECT_EQ(grid.point_fields.at(3).values.at(3), 4); // "temp" is the number of the node
+    }
+}
+
+TEST_P(ReadExodus, AllOfItsBlocksAreTheWhole) {
+    ReadOptions options;
+    options.blocks = {"20", "10"};
+    const auto some = read(written(), options);
+    const auto whole = read(written());
+    ASSERT_TRUE(some && whole);
+    EXPECT_EQ(some->grid.points.tuples(), whole->grid.points.tuples()); // welded as ever
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(some->grid.cells.connectivity.at(i), whole->grid.cells.connectivity.at(i));
+}
+
+TEST_P(ReadExodus, ABlockThatIsNotThereIsAnErrorThatListsThem) {
+    ReadOptions options;
+    options.blocks = {"steel", "wood"};
+    const std::string path = written(named_blocks());
+    const auto result = read(path, options);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::invalid_argument);
+    EXPECT_NE(result.error().message.find("block 'wood' is not in the file, which has 10 'steel', 20 'rubber'"),
+              std::string::npos)
+        << result.error().message;
+    EXPECT_FALSE(inspect(path, options));
+}
+
 INSTANTIATE_TEST_SUITE_P(Containers, ReadExodus, testing::Values(0, EX_64BIT_OFFSET, EX_64BIT_DATA, EX_NETCDF4));
 
 /// Two parts of one run: the second block's cell is in both of them.
@@ -127,6 +186,16 @@ protected:
     }
     TemporaryFolder folder_;
 };
+
+TEST_F(ReadExodusParts, BlocksAreChosenInAllOfThem) {
+    ReadOptions options;
+    options.blocks = {"20"};
+    const auto result = read(folder_.file("run.e.2.0"), options);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.blocks.at(1).cells, 2u);
+    EXPECT_EQ(result->grid.cells.count(), 2u); // elements 2 and 3
+    EXPECT_EQ(result->grid.points.tuples(), 6u - 1u);
+}
 
 TEST_F(ReadExodusParts, JoinsByTheNumbersOfNodesAndElements) {
     for (const char* name : {"run.e.2.0", "run.e.2.1"}) {

@@ -17,6 +17,7 @@ ReadResult made_result() {
     result.info.format = "vtu";
     result.info.fields = {{"p", Association::point, ScalarType::float32, 1}};
     result.info.times = {0.5, 1.5};
+    result.info.blocks = {{10, "steel", "element block", 1}};
     result.step = 1;
     result.notes = {"a note"};
     result.grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 3);
@@ -127,6 +128,7 @@ TEST(Request, ComesBackAsItWasWritten) {
     request.options.step = 7;
     request.options.memory_limit = 1u << 30;
     request.options.allow_outside = true;
+    request.options.blocks = {"steel", "7"};
     const auto decoded = decode_request(encode(request));
     ASSERT_TRUE(decoded);
     EXPECT_EQ(decoded->task, Task::inspect);
@@ -135,6 +137,7 @@ TEST(Request, ComesBackAsItWasWritten) {
     EXPECT_FALSE(decoded->options.cell_fields);
     EXPECT_EQ(decoded->options.step, request.options.step);
     EXPECT_TRUE(decoded->options.allow_outside);
+    EXPECT_EQ(decoded->options.blocks, request.options.blocks);
     EXPECT_EQ(decoded->options.memory_limit, request.options.memory_limit);
 }
 

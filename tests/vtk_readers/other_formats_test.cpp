@@ -1,14 +1,20 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // AVS UCD, EnSight Gold, OpenFOAM and VTKHDF.
+#include <algorithm>
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include <isotet/read.hpp>
 
 #include "vtk_readers/hdf5_writer.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {
+
+std::string data_file(const std::string& name) { return (source_folder() / "data" / name).string(); }
 
 const std::string ucd =
     "# a comment\n5 2 3 1 0\n10 0 0 0\n11 1 0 0\n12 1 1 0\n13 0 1 0\n7 0 0 1\n"
@@ -69,6 +75,108 @@ TEST(ReadEnsight, GivesPartsAndVariables) {
     ASSERT_EQ(result->grid.point_fields.size(), 1u);
     EXPECT_EQ(result->grid.point_fields[0].name, "temp");
     EXPECT_EQ(result->grid.point_fields[0].values.at(4), 5);
+}
+
+/// Two parts with a tet each, the second one moved.
+std::string two_parts() {
+    const auto part = [](int number, const std::string& name, const char* z) {
+        return "part\n" + std::to_string(number) + "\n" + name + "\ncoordinates\n4\n0\n1\n0\n0\n0\n0\n1\n0\n0\n0\n0\n" +
+               z + "\ntetra4\n1\n1 2 3 4\n";
+    };
+    return "made for a test\nline two\nnode id off\nelement id off\n" + part(1, "solid", "1") + part(2, "fluid", "5");
+}
+
+TEST(ReadEnsight, ReadsThePartThatIsAskedFor) {
+    const TemporaryFolder folder;
+    folder.write("grid.geo", two_parts());
+    const std::string path = folder.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n");
+    const auto info = inspect(path);
+    ASSERT_TRUE(info) << info.error().message;
+    ASSERT_EQ(info->blocks.size(), 2u);
+    EXPECT_EQ(info->blocks[1].name, "fluid");
+    EXPECT_EQ(info->blocks[1].kind, "part");
+    EXPECT_EQ(info->blocks[1].cells, 1u);
+    ReadOptions options;
+    for (const char* asked : {"fluid", "2"}) {
+        options.blocks = {asked};
+        const auto result = read(path, options);
+        ASSERT_TRUE(result) << result.error().message;
+        ASSERT_EQ(result->grid.cells.count(), 1u);
+        EXPECT_EQ(result->grid.points.at(3, 2), 5);
+    }
+    options.blocks = {"gas"};
+    const auto unknown = read(path, options);
+    ASSERT_FALSE(unknown);
+    EXPECT_NE(unknown.error().message.find("which has 1 'solid', 2 'fluid'"), std::string::npos)
+        << unknown.error().message;
+}
+
+/// A CGNS file with its base a second time, as "Other".
+std::string with_two_bases(const TemporaryFolder& folder) {
+    std::string path = folder.file("two.cgns");
+    std::filesystem::copy_file(data_file("cgns/wall_distance_hdf5.cgns"), path);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    std::string base;
+    H5Literate(
+        file, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,
+        [](hid_t group, const char* name, const H5L_info_t*, void* found) -> herr_t {
+            if (std::string(name).starts_with(" ") || std::string(name) == "CGNSLibraryVersion") return 0;
+            const hid_t node = H5Oopen(group, name, H5P_DEFAULT);
+            if (H5Aexists(node, "label") > 0) *static_cast<std::string*>(found) = name;
+            H5Oclose(node);
+            return 0;
+        },
+        &base);
+    EXPECT_EQ(H5Ocopy(file, base.c_str(), file, "Other", H5P_DEFAULT, H5P_DEFAULT), 0);
+    const hid_t copy = H5Oopen(file, "Other", H5P_DEFAULT), name = H5Aopen(copy, "name", H5P_DEFAULT);
+    const std::vector<char> text = [] {
+        std::vector<char> padded(33, '\0');
+        std::ranges::copy(std::string("Other"), padded.begin());
+        return padded;
+    }();
+    const hid_t type = H5Aget_type(name);
+    EXPECT_EQ(H5Awrite(name, type, text.data()), 0);
+    H5Tclose(type);
+    H5Aclose(name);
+    H5Oclose(copy);
+    H5Fclose(file);
+    return path;
+}
+
+TEST(ReadCgns, ReadsTheFirstBaseAndOthersWhenAsked) {
+    const TemporaryFolder folder;
+    const std::string path = with_two_bases(folder);
+    const auto alone = read(data_file("cgns/wall_distance_hdf5.cgns"));
+    const auto info = inspect(path);
+    ASSERT_TRUE(alone && info);
+    ASSERT_EQ(info->blocks.size(), 2 * alone->info.blocks.size());
+    EXPECT_EQ(info->blocks[0].kind, "zone");
+    EXPECT_TRUE(info->blocks.back().name.starts_with("Other/")) << info->blocks.back().name;
+
+    const auto first = read(path);
+    ASSERT_TRUE(first) << first.error().message;
+    EXPECT_EQ(first->grid.cells.count(), alone->grid.cells.count());
+    ASSERT_FALSE(first->notes.empty());
+    EXPECT_NE(first->notes[0].find("only the first of 2 bases is read"), std::string::npos) << first->notes[0];
+
+    ReadOptions options;
+    for (const std::string& asked :
+         {std::string("Other"), info->blocks.back().name, std::to_string(info->blocks.back().number)}) {
+        options.blocks = {asked};
+        const auto other = read(path, options);
+        ASSERT_TRUE(other) << other.error().message;
+        EXPECT_EQ(other->grid.cells.count(), alone->grid.cells.count()) << asked;
+        EXPECT_TRUE(other->notes.empty() || other->notes[0].find("bases") == std::string::npos);
+    }
+}
+
+TEST(ReadBlocks, OfAFormatWithoutThemAreAnError) {
+    ReadOptions options;
+    options.blocks = {"1"};
+    const auto result = read(data_file("vtu/wall_distance_point.vtu"), options);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, ErrorCode::invalid_argument);
+    EXPECT_NE(result.error().message.find("has no blocks"), std::string::npos) << result.error().message;
 }
 
 TEST(ReadEnsight, RefusesFilesOutsideItsFolder) {

@@ -25,6 +25,7 @@ void write(const ExodusSample& sample, const std::string& path) {
         ex_put_block(file, EX_ELEM_BLOCK, id, "TETRA", static_cast<std::int64_t>(sample.blocks[b].size() / 4), 4, 0, 0,
                      0);
         ex_put_conn(file, EX_ELEM_BLOCK, id, sample.blocks[b].data(), nullptr, nullptr);
+        if (b < sample.block_names.size()) ex_put_name(file, EX_ELEM_BLOCK, id, sample.block_names[b].c_str());
     }
     ex_put_id_map(file, EX_NODE_MAP, sample.node_ids.data());
     ex_put_id_map(file, EX_ELEM_MAP, sample.cell_ids.data());

@@ -17,6 +17,7 @@ struct ExodusSample {
     int steps = 2;       ///< with disp_x, disp_y, disp_z and temp on nodes: 10 * step + node; load on the first block
                          ///< only
     int format = 0;      ///< a flag of ex_create: EX_64BIT_OFFSET, EX_NETCDF4 and so on
+    std::vector<std::string> block_names; ///< empty: none has a name; ids are 10, 20 and so on
 };
 
 void write_exodus(const ExodusSample& sample, const std::string& path);

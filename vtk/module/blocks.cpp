@@ -88,18 +88,24 @@ std::string Blocks::make_frame(const Ranks& ranks, const isotet::Run& run) {
 
 /// The first collective call: whether all may go on, and whether the frame must be made again.
 std::string Blocks::agree(const std::vector<BlockTask>& tasks, const Ranks& ranks, const isotet::Run& run,
-                          std::string error) {
+                          std::string error, const Looked& looked) {
     Ranks::Flags mine{.failed = !error.empty(),
                       .changed = !is_framed_,
                       .renumbered = false,
                       .no_global_ids = false,
-                      .too_many = tasks.size() > 1};
+                      .too_many = tasks.size() > 1,
+                      .missing = !looked.missing.empty(),
+                      .found = looked.found};
     for (const auto& [index, block] : blocks_) {
         mine.changed |= block.is_new();
         mine.renumbered |= block.is_renumbered();
         mine.no_global_ids |= block.has_contoured() && !block.has_global_ids();
     }
     const Ranks::Flags all = ranks.any(mine);
+    if (!all.failed && all.missing && !all.found) {
+        is_framed_ = false;
+        return ranks.first_error(looked.missing);
+    }
     if (ranks.count() < 2 && !all.too_many) { // a grid of its own
         frame_.reset();
         is_framed_ = with_numbers_ = false;
@@ -127,10 +133,10 @@ std::string Blocks::extract(const std::vector<BlockTask>& tasks, const isotet::R
 }
 
 std::string Blocks::contour(const std::vector<BlockTask>& tasks, const Wishes& wishes, const Ranks& ranks,
-                            const isotet::Run& run, const std::string& failed) {
+                            const isotet::Run& run, const Looked& looked) {
     notes_.clear();
-    std::string error = failed.empty() ? take(tasks, wishes) : failed;
-    error = agree(tasks, ranks, run, std::move(error));
+    std::string error = looked.error.empty() ? take(tasks, wishes) : looked.error;
+    error = agree(tasks, ranks, run, std::move(error), looked);
     if (error.empty()) error = ranks.first_error(extract(tasks, run));
     if (!error.empty())
         for (const BlockTask& task : tasks) task.out->Initialize();

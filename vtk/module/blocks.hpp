@@ -20,15 +20,22 @@ struct BlockTask {
     vtkPolyData* out = nullptr;
 };
 
+/// What was found when a rank looked for its tasks.
+struct Looked {
+    std::string error;
+    std::string missing; ///< of blocks without the array: the error if no block of any rank has it
+    bool found = false;  ///< a block has it
+};
+
 class Blocks {
 public:
     /// Contours all tasks of this rank. Collective: each rank of `ranks` calls it once an execution, with no task or after
-    /// an error (`failed`), too.
+    /// an error, too.
     ///
     /// Guarantees  the surfaces of all ranks are together those of the whole, if points have global ids; else vertices are
     /// Returns     empty, or the error, of another rank perhaps: then no rank has a surface
-    std::string contour(const std::vector<BlockTask>& tasks, const Wishes& wishes, const Ranks& ranks, const isotet::Run& run,
-                        const std::string& failed);
+    std::string contour(const std::vector<BlockTask>& tasks, const Wishes& wishes, const Ranks& ranks,
+                        const isotet::Run& run, const Looked& looked);
 
     /// Sentences for the user about the last contour().
     const std::vector<std::string>& notes() const { return notes_; }
@@ -44,7 +51,8 @@ public:
 
 private:
     std::string take(const std::vector<BlockTask>& tasks, const Wishes& wishes);
-    std::string agree(const std::vector<BlockTask>& tasks, const Ranks& ranks, const isotet::Run& run, std::string error);
+    std::string agree(const std::vector<BlockTask>& tasks, const Ranks& ranks, const isotet::Run& run,
+                      std::string error, const Looked& looked);
     std::string make_frame(const Ranks& ranks, const isotet::Run& run);
     isotet::Result<isotet::Survey> survey(const isotet::Run& run);
     std::string extract(const std::vector<BlockTask>& tasks, const isotet::Run& run);

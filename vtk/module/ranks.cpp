@@ -17,10 +17,11 @@ Ranks::Ranks(vtkMultiProcessController* controller)
 
 Ranks::Flags Ranks::any(const Flags& mine) const {
     if (count_ < 2) return mine;
-    const std::array<int, 5> own = {mine.failed, mine.changed, mine.renumbered, mine.no_global_ids, mine.too_many};
-    std::array<int, 5> all{};
+    const std::array<int, 7> own = {mine.failed,   mine.changed, mine.renumbered, mine.no_global_ids,
+                                    mine.too_many, mine.missing, mine.found};
+    std::array<int, 7> all{};
     controller_->AllReduce(own.data(), all.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::MAX_OP);
-    return {all[0] != 0, all[1] != 0, all[2] != 0, all[3] != 0, all[4] != 0};
+    return {all[0] != 0, all[1] != 0, all[2] != 0, all[3] != 0, all[4] != 0, all[5] != 0, all[6] != 0};
 }
 
 std::string Ranks::first_error(const std::string& mine) const {

@@ -26,6 +26,8 @@ public:
         bool renumbered = false;    ///< as changed, and numbers of points may be others
         bool no_global_ids = false; ///< has points without them
         bool too_many = false;      ///< has more than one block
+        bool missing = false;       ///< has a block without the array
+        bool found = false;         ///< has one with it
     };
     Flags any(const Flags& mine) const;
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkContourValues.h"
 #include "vtkDataObjectTree.h"
@@ -49,7 +50,25 @@ struct Work
   std::vector<std::pair<Leaf, vtkDataArray*>> ForVtk;
   std::set<std::string> Reasons; ///< why VTK contours
   std::string Error;
+  std::string Missing; ///< of blocks without the array: an error if no block of any rank has it
 };
+
+/// Why there are no scalars to contour.
+std::string WhyThereIsNone(vtkAlgorithm* algorithm, vtkDataSet* data)
+{
+  vtkInformation* const asked = algorithm->GetInputArrayInformation(0);
+  const char* const name = asked->Get(vtkDataObject::FIELD_NAME());
+  if (!name)
+  {
+    return "there is no array to process: the point data have no active scalars";
+  }
+  std::string text = "there is no array to process: no point array is called '" + std::string(name) + "'";
+  if (data->GetCellData()->HasArray(name))
+  {
+    text += ", but a cell array is: use vtkCellDataToPointData before, in ParaView Cell Data to Point Data";
+  }
+  return text;
+}
 
 /// The data sets of `input`; the output is given a polydata for each.
 std::vector<Leaf> LeavesOf(vtkDataObject* input, vtkDataObject* output)
@@ -280,11 +299,12 @@ int vtkIsotetContour::RequestData(
     {
       if (scalars)
       {
-        work.Error = "the array to process is of cells, but isosurfaces are of point data: use vtkCellDataToPointData";
+        work.Error = "the array to process is of cells, but isosurfaces are of point data: use vtkCellDataToPointData "
+                     "before, in ParaView Cell Data to Point Data";
       }
-      else if (leaf.Data == input) // blocks need not all have the array
+      else // blocks need not all have the array
       {
-        work.Error = "there is no array to process";
+        (leaf.Data == input ? work.Error : work.Missing) = WhyThereIsNone(this, leaf.Data);
       }
       continue;
     }
@@ -303,7 +323,9 @@ int vtkIsotetContour::RequestData(
   isotet_vtk::AlgorithmRun run(this, this->NumberOfThreads);
   const isotet_vtk::Ranks ranks(this->Controller);
   isotet_vtk::Blocks& blocks = this->Internal->Blocks;
-  const std::string error = blocks.contour(work.Tasks, wishes, ranks, run.run(), work.Error);
+  const bool found = !work.Tasks.empty() || !work.ForVtk.empty();
+  const std::string error =
+    blocks.contour(work.Tasks, wishes, ranks, run.run(), { work.Error, work.Missing, found });
   if (run.cancelled())
   {
     return 1; // VTK knows

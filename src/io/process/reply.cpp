@@ -20,7 +20,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint64_t magic = 0x3130795f74657469; // "iteT_y01", and the byte order with it
+constexpr std::uint64_t magic = 0x3230795f74657469; // "iteT_y02", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -95,6 +95,12 @@ public:
         });
         out_.list(info.times, [&](double time) { out_.number(time); });
         out_.list(info.files, [&](const std::string& file) { out_.text(file); });
+        out_.list(info.blocks, [&](const BlockInfo& block) {
+            out_.number(block.number);
+            out_.text(block.name);
+            out_.text(block.kind);
+            out_.number(block.cells);
+        });
     }
     void describe(ReadResult& result) {
         describe(result.info);
@@ -161,6 +167,13 @@ public:
         });
         in_.list([&] { result.times.push_back(in_.number<double>()); });
         in_.list([&] { result.files.push_back(in_.text()); });
+        in_.list([&] {
+            BlockInfo& block = result.blocks.emplace_back();
+            block.number = in_.number<std::int64_t>();
+            block.name = in_.text();
+            block.kind = in_.text();
+            block.cells = in_.number<std::uint64_t>();
+        });
         return result;
     }
     ReadResult result() {

@@ -6,7 +6,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730002;
+constexpr std::uint32_t request_version = 0x69730003;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -39,6 +39,7 @@ std::string encode(const Request& request) {
     out.number<std::uint8_t>(options.allow_outside);
     out.text(options.displace);
     out.number(options.memory_limit);
+    out.list(options.blocks, [&](const std::string& block) { out.text(block); });
     out.list(request.readable, [&](const std::string& place) { out.text(place); });
     return out.bytes();
 }
@@ -60,6 +61,7 @@ Result<Request> decode_request(std::string_view bytes) {
     options.allow_outside = in.number<std::uint8_t>() != 0;
     options.displace = in.text();
     options.memory_limit = in.number<std::uint64_t>();
+    in.list([&] { options.blocks.push_back(in.text()); });
     in.list([&] { request.readable.push_back(in.text()); });
     if (!known || !in.finished())
         return Error{ErrorCode::system, "the program isotet-reader that was found is of another version than isotet: "

@@ -3,9 +3,11 @@
 // apart again, so that fields have the names of the file.
 #include <array>
 
+#include <fmt/core.h>
 #include <vtkCGNSReader.h>
 #include <vtkNew.h>
 
+#include "io/own/escape.hpp"
 #include "io/vtk/hdf5_walk.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaders.hpp"
@@ -65,6 +67,18 @@ std::vector<FieldInfo> unglued(const std::vector<FieldInfo>& fields) {
     return result;
 }
 
+/// Bases are grids of their own, often in the same place: without a choice only the first is read.
+void choose_bases(vtkCGNSReader& reader, const ReadOptions& options, Depth depth, std::vector<std::string>& notes) {
+    reader.EnableAllBases();
+    const int count = reader.GetNumberOfBaseArrays();
+    if (count < 2 || depth == Depth::description || !options.blocks.empty()) return;
+    for (int i = 1; i < count; ++i) reader.SetBaseArrayStatus(reader.GetBaseArrayName(i), 0);
+    std::string others;
+    for (int i = 1; i < count; ++i) others += (i > 1 ? ", '" : "'") + escaped(reader.GetBaseArrayName(i)) + "'";
+    notes.push_back(fmt::format("only the first of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
+                                count, escaped(reader.GetBaseArrayName(0)), others));
+}
+
 } // namespace
 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
@@ -77,12 +91,16 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
     reader->SetUse3DVector(false); // no third component where the file has two
     reader->SetLoadBndPatch(false);
     reader->SetDoublePrecisionMesh(1); // exact for coordinates of either precision
-    auto loaded =
-        load_with(*reader, path, with_glued_names(options), depth, [&](const ReadOptions& chosen, FileInfo& info) {
-            reader->EnableAllBases();
+    std::vector<std::string> notes;
+    auto loaded = load_with(
+        *reader, path, with_glued_names(options), depth,
+        [&](const ReadOptions& chosen, FileInfo& info) {
+            choose_bases(*reader, options, depth, notes);
             choose_arrays_by_name(*reader, chosen, info);
-        });
+        },
+        "zone");
     if (!loaded) return loaded;
+    loaded->notes.insert(loaded->notes.begin(), notes.begin(), notes.end());
     if (auto set = MarkedMemory::check(path, *loaded); !set) return set.error();
     loaded->info.fields = unglued(loaded->info.fields);
     for (Piece& piece : loaded->pieces) {

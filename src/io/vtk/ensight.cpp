@@ -47,8 +47,9 @@ Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options,
     vtkNew<vtkGenericEnSightReader> reader;
     reader->SetCaseFileName(path.c_str());
     reader->ReadAllVariablesOff();
-    return load_with(*reader, path, options, depth,
-                     [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(*reader, chosen, info); });
+    return load_with(
+        *reader, path, options, depth,
+        [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(*reader, chosen, info); }, "part");
 }
 
 } // namespace isotet::io::vtk

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "io/reader.hpp"
+#include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
 #include "io/vtk/exodus_file.hpp"
 #include "io/vtk/exodus_parts.hpp"
@@ -123,6 +124,50 @@ Result<void> read_displacement(ExodusFile& file, const std::string& name, std::s
     return {};
 }
 
+std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
+    std::vector<BlockInfo> blocks;
+    for (const ExodusFile::Block& block : file.blocks())
+        blocks.push_back({block.id, block.name, "element block", block.cells});
+    return blocks;
+}
+
+/// Opens a part, once it is known to be whole.
+Result<ExodusFile> open_part(const std::string& part, const ReadOptions& options) {
+    if (auto complete = check_netcdf_length(part); !complete) return complete.error();
+    if (auto complete = check_hdf5_length(part); !complete) return complete.error();
+    if (auto names = check_hdf5_names(part, options.allow_outside); !names) return names.error();
+    return ExodusFile::open(part);
+}
+
+/// What all parts hold.
+Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const ReadOptions& options) {
+    FileInfo all;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        auto file = open_part(parts[i], options);
+        if (!file) return file.error();
+        FileInfo info = describe(*file);
+        if (i == 0) all.times = info.times;
+        if (info.times.size() != all.times.size())
+            return broken(parts[i], fmt::format("this part has {} time steps, the first one {}", info.times.size(),
+                                                all.times.size()));
+        for (FieldInfo& field : info.fields) announce(all, std::move(field));
+        for (const BlockInfo& block : blocks_of(*file)) announce_block(all, block);
+    }
+    return all;
+}
+
+/// Leaves out the blocks of one part that are not asked for.
+void choose_blocks(ExodusFile& file, const FileInfo& info, const std::vector<bool>& chosen) {
+    std::vector<bool> here;
+    for (const BlockInfo& block : blocks_of(file)) {
+        const auto known = std::ranges::find_if(info.blocks, [&](const BlockInfo& other) {
+            return other.number == block.number && other.name == block.name;
+        });
+        here.push_back(chosen[static_cast<std::size_t>(known - info.blocks.begin())]);
+    }
+    file.choose(here);
+}
+
 Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded,
                          bool with_ids) {
     Piece piece;
@@ -151,25 +196,23 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
     auto parts = exodus_parts(path);
     if (!parts) return parts.error();
     Loaded loaded;
+    auto info = describe_parts(*parts, options);
+    if (!info) return info.error();
+    loaded.info = std::move(*info);
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
     for (std::size_t i = 0; i < parts->size(); ++i) {
         const std::string& part = (*parts)[i];
-        if (auto complete = check_netcdf_length(part); !complete) return complete.error();
-        if (auto complete = check_hdf5_length(part); !complete) return complete.error();
-        if (auto names = check_hdf5_names(part, options.allow_outside); !names) return names.error();
-        auto file = ExodusFile::open(part);
+        auto file = open_part(part, options);
         if (!file) return file.error();
-        FileInfo info = describe(*file);
-        if (i == 0) loaded.info.times = info.times;
-        if (info.times.size() != loaded.info.times.size())
-            return broken(part, fmt::format("this part has {} time steps, the first one {}", info.times.size(),
-                                            loaded.info.times.size()));
-        for (FieldInfo& field : info.fields) announce(loaded.info, std::move(field));
-        if (depth == Depth::description) continue;
-        auto step = choose_step(loaded.info, options);
-        if (!step) return step.error();
-        loaded.step = *step;
+        if (!options.blocks.empty()) choose_blocks(*file, loaded.info, *chosen);
         auto piece = read_piece(*file, part, options, loaded, parts->size() > 1);
         if (!piece) return piece.error();
+        if (!options.blocks.empty()) drop_unused_points(*piece);
         loaded.pieces.push_back(std::move(*piece));
         report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));
     }

@@ -11,6 +11,7 @@
 namespace isotet::io::vtk {
 namespace {
 
+constexpr int max_name = 4096;
 constexpr std::uint64_t max_plausible = std::uint64_t(1) << 48; // more than any file can hold
 
 /// What to call with `visit` for the file's floating-point type.
@@ -29,6 +30,7 @@ ExodusFile::ExodusFile(ExodusFile&& other) noexcept
       points_(other.points_),
       cells_(other.cells_),
       blocks_(std::move(other.blocks_)),
+      all_blocks_(std::move(other.all_blocks_)),
       point_variables_(std::move(other.point_variables_)),
       cell_variables_(std::move(other.cell_variables_)),
       times_(std::move(other.times_)) {}
@@ -96,6 +98,8 @@ Result<void> ExodusFile::read_contents() {
 
 Result<void> ExodusFile::read_blocks(std::size_t count) {
     if (count == 0) return {};
+    const std::int64_t longest = ex_inquire_int(number_, EX_INQ_DB_MAX_ALLOWED_NAME_LENGTH);
+    ex_set_max_name_length(number_, static_cast<int>(std::clamp<std::int64_t>(longest, MAX_STR_LENGTH, max_name)));
     std::vector<std::int64_t> ids(count);
     if (ex_get_ids(number_, EX_ELEM_BLOCK, ids.data()) < 0) return failed("the numbers of the element blocks");
     for (const std::int64_t id : ids) {
@@ -119,10 +123,24 @@ Result<void> ExodusFile::read_blocks(std::size_t count) {
         result.corners = ragged ? 0 : static_cast<std::uint64_t>(block.num_nodes_per_entry);
         if (result.corners > 1000)
             return failed(fmt::format("element block {} with {} nodes an element", id, result.corners));
+        char name[max_name + 1] = {};
+        if (ex_get_name(number_, EX_ELEM_BLOCK, id, name) >= 0) result.name = name;
         cells_ += result.cells;
         blocks_.push_back(std::move(result));
     }
     return {};
+}
+
+void ExodusFile::choose(const std::vector<bool>& chosen) {
+    std::vector<Block> kept;
+    cells_ = 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        all_blocks_.emplace_back(blocks_[i].cells, chosen[i]);
+        if (!chosen[i]) continue;
+        cells_ += blocks_[i].cells;
+        kept.push_back(std::move(blocks_[i]));
+    }
+    blocks_ = std::move(kept);
 }
 
 Result<std::vector<std::string>> ExodusFile::variable_names(int entity) {
@@ -130,7 +148,7 @@ Result<std::vector<std::string>> ExodusFile::variable_names(int entity) {
     int count = 0;
     if (ex_get_variable_param(number_, type, &count) < 0 || count < 0) return failed("the number of variables");
     const std::int64_t longest = ex_inquire_int(number_, EX_INQ_DB_MAX_ALLOWED_NAME_LENGTH);
-    const int length = static_cast<int>(std::clamp<std::int64_t>(longest, MAX_STR_LENGTH, 4096));
+    const int length = static_cast<int>(std::clamp<std::int64_t>(longest, MAX_STR_LENGTH, max_name));
     ex_set_max_name_length(number_, length);
     std::vector<std::string> names;
     for (int i = 1; i <= count; ++i) {
@@ -210,7 +228,22 @@ Result<Array> ExodusFile::id_map(int map, std::uint64_t count) {
 }
 
 Result<Array> ExodusFile::point_ids() { return id_map(EX_NODE_MAP, points_); }
-Result<Array> ExodusFile::cell_ids() { return id_map(EX_ELEM_MAP, cells_); }
+
+Result<Array> ExodusFile::cell_ids() {
+    if (all_blocks_.empty()) return id_map(EX_ELEM_MAP, cells_);
+    std::uint64_t count = 0;
+    for (const auto& [cells, chosen] : all_blocks_) count += cells;
+    const auto all = id_map(EX_ELEM_MAP, count);
+    if (!all) return all;
+    std::vector<std::int64_t> ids;
+    const auto numbers = all->as<std::int64_t>();
+    std::size_t first = 0;
+    for (const auto& [cells, chosen] : all_blocks_) {
+        if (chosen) ids.insert(ids.end(), numbers.begin() + first, numbers.begin() + first + cells);
+        first += cells;
+    }
+    return Array::own(std::move(ids));
+}
 
 std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corners) {
     struct Known {

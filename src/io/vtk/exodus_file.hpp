@@ -16,6 +16,7 @@ class ExodusFile {
 public:
     struct Block {
         std::int64_t id = 0;
+        std::string name;     ///< empty: it has none
         std::string topology; ///< upper case
         std::uint64_t cells = 0;
         std::uint64_t corners = 0; ///< of each cell; 0 where cells differ (polyhedra, polygons)
@@ -32,6 +33,9 @@ public:
     const std::vector<std::string>& point_variables() const noexcept { return point_variables_; }
     const std::vector<std::string>& cell_variables() const noexcept { return cell_variables_; }
     const std::vector<double>& times() const noexcept { return times_; }
+    /// Leaves out blocks for all that follows: of the file's blocks those stay that `chosen` marks.
+    void choose(const std::vector<bool>& chosen);
+
     ScalarType type() const noexcept; ///< of coordinates and variables
 
     Result<Array> coordinates();
@@ -58,8 +62,9 @@ private:
     std::string path_;
     int number_ = -1;
     int word_ = 8;
-    std::uint64_t dimensions_ = 3, points_ = 0, cells_ = 0;
+    std::uint64_t dimensions_ = 3, points_ = 0, cells_ = 0; ///< cells of the chosen blocks
     std::vector<Block> blocks_;
+    std::vector<std::pair<std::uint64_t, bool>> all_blocks_; ///< cells, and whether chosen; empty: all are
     std::vector<std::string> point_variables_, cell_variables_;
     std::vector<double> times_;
 };

@@ -11,6 +11,7 @@
 #include <vtkDataArraySelection.h>
 #include <vtkDataSet.h>
 #include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -47,6 +48,22 @@ void each_data_set(vtkDataObject* data, Visit visit) {
     }
 }
 
+/// The names of a tree's data sets with those of the blocks they are in, in the order of each_data_set().
+void append_paths(vtkDataObject* data, const std::string& path, std::vector<std::string>& paths) {
+    auto* const tree = vtkMultiBlockDataSet::SafeDownCast(data);
+    if (!tree) {
+        if (vtkDataSet::SafeDownCast(data)) paths.push_back(path);
+        else each_data_set(data, [&](vtkDataSet*, const std::string& name) { paths.push_back(name); });
+        return;
+    }
+    for (unsigned int i = 0; i < tree->GetNumberOfBlocks(); ++i) {
+        const char* const name =
+            tree->HasMetaData(i) ? tree->GetMetaData(i)->Get(vtkCompositeDataSet::NAME()) : nullptr;
+        const std::string own = name ? name : fmt::format("block {}", i + 1);
+        append_paths(tree->GetBlock(i), path.empty() ? own : path + "/" + own, paths);
+    }
+}
+
 Result<void> verdict(const std::string& path, bool worked) {
     if (auto error = take_vtk_error()) return broken(path, "VTK's reader says: " + *error);
     if (!worked) return broken(path, "VTK's reader failed without a reason");
@@ -72,6 +89,21 @@ void announce_fields(vtkDataObject* data, FileInfo& info) {
     each_data_set(data, [&](vtkDataSet* set, const std::string&) {
         announce_attributes(set->GetPointData(), Association::point, info);
         announce_attributes(set->GetCellData(), Association::cell, info);
+    });
+}
+
+void announce_blocks(vtkDataObject* data, FileInfo& info, const char* kind) {
+    if (!vtkCompositeDataSet::SafeDownCast(data)) return;
+    std::vector<std::string> paths;
+    append_paths(data, {}, paths);
+    std::size_t next = 0;
+    each_data_set(data, [&](vtkDataSet* set, const std::string& name) {
+        BlockInfo& block = info.blocks.emplace_back();
+        block.number = static_cast<std::int64_t>(next + 1);
+        block.name = next < paths.size() ? paths[next] : name;
+        block.kind = kind;
+        block.cells = static_cast<std::uint64_t>(set->GetNumberOfCells());
+        ++next;
     });
 }
 

@@ -32,6 +32,9 @@ Result<std::vector<Piece>> pieces_of(vtkDataObject* data, const ReadOptions& opt
 /// Adds the fields of a data set (or of all blocks of a tree) to the description.
 void announce_fields(vtkDataObject* data, FileInfo& info);
 
+/// Adds the data sets of a tree to the description as blocks, numbered from 1; a data set alone is none.
+void announce_blocks(vtkDataObject* data, FileInfo& info, const char* kind);
+
 /// Switches on the arrays that the options want and nothing else.
 void choose_arrays(vtkDataArraySelection* selection, const ReadOptions& options, Association association);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "io/reader.hpp"
+#include "io/own/block_choice.hpp"
 #include "io/own/loaded.hpp"
 #include "io/vtk/vtk_grid.hpp"
 
@@ -26,11 +27,11 @@ void choose_arrays_by_name(Reader& reader, const ReadOptions& options, FileInfo&
     }
 }
 
-/// Reads one time step. `choose(options, info)` switches arrays on; it is called after the reader has looked at the
-/// file.
+/// Reads the chosen blocks of one time step. `choose(options, info)` switches arrays on; it is called after the reader
+/// has looked at the file.
 template <class Reader, class Choose>
 Result<Loaded> load_with(Reader& reader, const std::string& path, const ReadOptions& options, Depth depth,
-                         Choose choose) {
+                         Choose choose, const char* kind_of_block = "block") {
     Loaded loaded;
     if (auto ready = update_information(reader, path); !ready) return ready.error();
     loaded.info.times = announced_times(reader);
@@ -46,11 +47,15 @@ Result<Loaded> load_with(Reader& reader, const std::string& path, const ReadOpti
     choose(all, loaded.info);
     if (auto done = update(reader, path, loaded.info.times, loaded.step); !done) return done.error();
     announce_fields(reader.GetOutputDataObject(0), loaded.info);
+    announce_blocks(reader.GetOutputDataObject(0), loaded.info, kind_of_block);
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
     if (depth == Depth::description) return loaded;
     auto pieces = pieces_of(reader.GetOutputDataObject(0), options, loaded.notes);
     if (!pieces) return broken(path, pieces.error().message);
     if (pieces->empty()) return broken(path, "VTK's reader found no grid in it");
-    loaded.pieces = std::move(*pieces);
+    for (std::size_t i = 0; i < pieces->size(); ++i)
+        if (i >= chosen->size() || (*chosen)[i]) loaded.pieces.push_back(std::move((*pieces)[i]));
     return loaded;
 }
 

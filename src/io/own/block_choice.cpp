@@ -1,0 +1,107 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/own/block_choice.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "io/own/escape.hpp"
+
+namespace isotet::io {
+
+namespace {
+
+bool has_name(const BlockInfo& block, const std::string& asked) {
+    if (block.name.empty() || asked.empty()) return false;
+    return block.name == asked || block.name.ends_with("/" + asked) || block.name.starts_with(asked + "/");
+}
+
+/// The numbers of the blocks that one word asks for.
+std::vector<std::size_t> found_by(const std::vector<BlockInfo>& blocks, const std::string& asked) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        if (has_name(blocks[i], asked)) found.push_back(i);
+    for (std::size_t i = 0; found.empty() && i < blocks.size(); ++i)
+        if (std::to_string(blocks[i].number) == asked) return {i};
+    return found;
+}
+
+std::string list_of(const std::vector<BlockInfo>& blocks) {
+    constexpr std::size_t max_shown = 20;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(blocks.size(), max_shown); ++i) {
+        list += fmt::format("{}{}", i == 0 ? "" : ", ", blocks[i].number);
+        if (!blocks[i].name.empty()) list += fmt::format(" '{}'", escaped(blocks[i].name));
+    }
+    if (blocks.size() > max_shown) list += fmt::format(" and {} more", blocks.size() - max_shown);
+    return list;
+}
+
+/// The tuples of `values` whose number `kept` marks.
+Array kept_tuples(const Array& values, const std::vector<std::uint8_t>& kept, std::size_t count) {
+    if (values.empty()) return values;
+    return values.visit([&](auto from) {
+        using Value = std::remove_const_t<typename decltype(from)::value_type>;
+        const std::size_t width = values.components();
+        std::vector<Value> to;
+        to.reserve(count * width);
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            if (kept[i]) to.insert(to.end(), from.begin() + i * width, from.begin() + (i + 1) * width);
+        return Array::own(std::move(to), width);
+    });
+}
+
+} // namespace
+
+Result<std::vector<bool>> chosen_blocks(const std::vector<BlockInfo>& blocks, const ReadOptions& options) {
+    std::vector<bool> chosen(blocks.size(), options.blocks.empty());
+    for (const std::string& asked : options.blocks) {
+        const std::vector<std::size_t> found = found_by(blocks, asked);
+        if (found.empty())
+            return Error{
+                ErrorCode::invalid_argument,
+                blocks.empty()
+                    ? fmt::format("block '{}' is not in the file, which has no blocks to choose from", escaped(asked))
+                    : fmt::format("block '{}' is not in the file, which has {}", escaped(asked), list_of(blocks))};
+        for (const std::size_t i : found) chosen[i] = true;
+    }
+    return chosen;
+}
+
+void announce_block(FileInfo& info, const BlockInfo& block) {
+    const auto known = std::ranges::find_if(
+        info.blocks, [&](const BlockInfo& other) { return other.number == block.number && other.name == block.name; });
+    if (known == info.blocks.end()) info.blocks.push_back(block);
+    else known->cells += block.cells;
+}
+
+void drop_unused_points(Piece& piece) {
+    Grid& grid = piece.grid;
+    const std::size_t count = grid.points.tuples();
+    std::vector<std::uint8_t> used(count);
+    std::vector<std::int64_t> corners(grid.cells.connectivity.size());
+    grid.cells.connectivity.visit([&](auto from) {
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            corners[i] = static_cast<std::int64_t>(from[i]);
+            const auto point = static_cast<std::size_t>(corners[i]);
+            if (point < count) used[point] = 1;
+        }
+    });
+    std::vector<std::int64_t> place(count, -1);
+    std::int64_t next = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        if (used[i]) place[i] = next++;
+    if (static_cast<std::size_t>(next) == count) return;
+    for (std::int64_t& corner : corners)
+        if (static_cast<std::size_t>(corner) < count) corner = place[static_cast<std::size_t>(corner)];
+        else corner = next; // still no point: the checks of what was read say so
+    const auto kept = static_cast<std::size_t>(next);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.points = kept_tuples(grid.points, used, kept);
+    grid.point_numbers = kept_tuples(grid.point_numbers, used, kept);
+    piece.point_ids = kept_tuples(piece.point_ids, used, kept);
+    for (Field& field : grid.point_fields) field.values = kept_tuples(field.values, used, kept);
+}
+
+} // namespace isotet::io

@@ -1,0 +1,55 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""A grid in three pieces, in files and in memory, and its surface; what scripts on several ranks and clients of pvserver share."""
+
+import pickle
+
+from support import *
+
+NAME = "pieces"
+VALUES = (0.3, 0.33)
+COUNT = 3
+FILTERS = {"plugin": "IsotetContour", "python": "IsotetContourPython"}
+
+
+def data():
+    return lattice(10, dtype=np.float64, origin=5e5)
+
+
+def piece_of(piece):
+    """Random cells, with global ids."""
+    points, cells, field = data()
+    owner = np.random.default_rng(3).integers(0, COUNT, len(cells))
+    used, local = np.unique(cells[owner == piece], return_inverse=True)
+    return grid_of(points[used], local.reshape(-1, 4), {"r": field[used]}, ids=used)
+
+
+def write_pieces():
+    """One PVTU with all pieces."""
+    for piece in range(COUNT):
+        write(piece_of(piece), f"{NAME}_{piece}.vtu")
+    with open(os.path.join(scratch, NAME + ".pvtu"), "w") as file:
+        file.write('<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
+                   '<PUnstructuredGrid GhostLevel="0"><PPointData GlobalIds="ids"><PDataArray type="Float64" Name="r"/>'
+                   '<PDataArray type="Int64" IdType="1" Name="ids"/></PPointData><PPoints><PDataArray type="Float64" Name="Points" '
+                   'NumberOfComponents="3"/></PPoints>')  # fmt: skip
+        for piece in range(COUNT):
+            file.write(f'<Piece Source="{NAME}_{piece}.vtu"/>')
+        file.write("</PUnstructuredGrid></VTKFile>")
+
+
+def read_pieces():
+    return simple.XMLPartitionedUnstructuredGridReader(FileName=[os.path.join(scratch, NAME + ".pvtu")])
+
+
+def whole_of(value):
+    """The triangles of the grid in one piece."""
+    return pickle.load(open(os.path.join(scratch, f"{NAME}-{value}"), "rb"))
+
+
+def filter_of(kind, source):
+    """The filter of the plugin in C++ ("plugin") or Python ("python")."""
+    if not hasattr(simple, FILTERS[kind]):
+        load() if kind == "plugin" else simple.LoadPlugin(os.environ["ISOTET_PLUGIN_PYTHON"], remote=True, ns=vars(simple))
+    if kind == "plugin":
+        return contour(source, ComputeNormals=0, ExpectedSurfaces=100)
+    return simple.IsotetContourPython(Input=source, ContourBy=["POINTS", "r"], Isosurfaces=[0.3], ComputeNormals=0)
