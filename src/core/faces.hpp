@@ -25,7 +25,7 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets);
 
 struct FaceSurveyOptions {
     std::uint64_t memory = std::uint64_t{1} << 30; ///< bytes that it should not take more of
-    bool wide = false; ///< point numbers of 64 bits, even where 32 would do
+    bool wide = false;                             ///< point numbers of 64 bits, even where 32 would do
 };
 
 struct FaceSurvey {
