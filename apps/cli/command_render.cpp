@@ -2,6 +2,8 @@
 // `isotet render`: a picture of isosurfaces, or of a surface.
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -115,8 +117,9 @@ Result<Picture> FrameDrawer::draw(const RenderInput& input, double azimuth) {
 Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const RenderCommand& command, Drawer& drawer,
                             RenderSource& source, RenderInput& input, PictureFiles& files, PictureNumbers& numbers,
                             Console& console) {
-    Result<Picture> picture = Error{};
+    std::shared_ptr<const Picture> last;
     FrameDrawer frame_drawer(command, drawer, console);
+    PictureWriter writer(files, frames.size() > 1 && console.run().threads != 1);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (console.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
         if (frames.size() > 1) console.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
@@ -133,15 +136,16 @@ Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const Render
             note_empty_surfaces(input, console);
         }
         const Stopwatch drawing;
-        picture = frame_drawer.draw(input, frames[i].azimuth);
+        Result<Picture> picture = frame_drawer.draw(input, frames[i].azimuth);
         if (!picture) return picture;
+        last = std::make_shared<const Picture>(*std::move(picture));
         numbers.draw_seconds += drawing.seconds();
         const Stopwatch writing;
-        if (Result<void> added = files.add(*picture); !added) return added.error();
+        if (Result<void> added = writer.add(last); !added) return added.error();
         numbers.write_seconds += writing.seconds();
     }
     const Stopwatch writing;
-    if (Result<void> finished = files.finish(); !finished) return finished.error();
+    if (Result<void> finished = writer.finish(); !finished) return finished.error();
     numbers.write_seconds += writing.seconds();
     numbers.bytes = files.bytes();
     numbers.drawing = drawer.work();
@@ -149,7 +153,7 @@ Result<Picture> draw_frames(const std::vector<RenderFrame>& frames, const Render
     console.detail("--camera " + numbers.camera);
     if (const std::string film = files.film_command(command.frames_per_second); !film.empty())
         console.note("a film of them: " + film);
-    return picture;
+    return *last;
 }
 
 /// Compares with --reference.

@@ -2,6 +2,7 @@
 #include "render_frames.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -110,5 +111,19 @@ Result<void> PictureFiles::finish() {
     bytes_ = *written;
     return {};
 }
+
+Result<void> PictureWriter::add(std::shared_ptr<const Picture> picture) {
+    if (!beside_) return files_.add(*picture);
+    if (Result<void> done = wait(); !done) return done;
+    writing_ = std::async(std::launch::async, [this, picture = std::move(picture)] { return files_.add(*picture); });
+    return {};
+}
+
+Result<void> PictureWriter::finish() {
+    if (Result<void> done = wait(); !done) return done;
+    return files_.finish();
+}
+
+Result<void> PictureWriter::wait() { return writing_.valid() ? writing_.get() : Result<void>(); }
 
 } // namespace isotet::cli

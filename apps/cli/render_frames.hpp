@@ -2,6 +2,8 @@
 // The pictures of one `isotet render`: one, or with --sweep and --orbit many; and the files that they go to.
 #pragma once
 
+#include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +18,7 @@ namespace isotet::cli {
 /// One of the pictures.
 struct RenderFrame {
     std::vector<double> isovalues;
-    double azimuth = 0; ///< degrees to the right of --view
+    double azimuth = 0;   ///< degrees to the right of --view
     std::size_t step = 0; ///< of those that are drawn
 };
 
@@ -52,6 +54,25 @@ private:
     std::size_t pictures_, added_ = 0;
     std::optional<Animation> animation_;
     std::uint64_t bytes_ = 0;
+};
+
+/// Writes a picture while the next one is drawn: on a thread of its own, one at a time, in the order in which they come.
+class PictureWriter {
+public:
+    /// `beside`   false: add() writes, and there is no other thread
+    PictureWriter(PictureFiles& files, bool beside) : files_(files), beside_(beside) {}
+
+    /// Waits for the one before. Errors   as PictureFiles::add(), of that one or of this one
+    Result<void> add(std::shared_ptr<const Picture> picture);
+    /// Waits for the last one, and finishes the files.
+    Result<void> finish();
+
+private:
+    Result<void> wait();
+
+    PictureFiles& files_;
+    bool beside_;
+    std::future<Result<void>> writing_; ///< waits when it goes
 };
 
 } // namespace isotet::cli

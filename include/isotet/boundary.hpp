@@ -24,11 +24,12 @@ ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run 
 /// once too often stands there once. Positions
 /// are the grid's, in its type; both edge ends of a vertex are its point.
 ///
-/// Guarantees   the same bytes for any thread count
+/// Guarantees   the same bytes for any thread count; a point's faces are missed with probability 2^-64 (see Method)
 /// Cost         O(n), as survey() with faces; faster than boundary_of() a packed grid
 /// Errors       invalid_data as survey(); out_of_memory; cancelled
 /// Threads      safe from many threads on one grid
-/// Method       tets are dealt into buckets that fit a processor's cache, where their faces are hashed
+/// Method       a signed sum of hashes a point, 64 bits, says where faces do not cancel; the tets there are dealt into
+///              buckets that fit a processor's cache, where their faces are counted
 ISOTET_API Result<Surface> boundary_of(const Grid& grid, const Run& run = {});
 
 } // namespace isotet

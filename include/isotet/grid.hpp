@@ -94,10 +94,11 @@ struct SurveyOptions {
 
 /// Checks a grid and counts what is in it. Polyhedra are counted as tets of what linearize() makes of them.
 ///
-/// Guarantees   the same counts for any thread count
+/// Guarantees   the same counts for any thread count; a point's boundary faces are missed with probability 2^-64, as by
+///              boundary_of() (boundary.hpp)
 /// Cost         O(n): two passes over the cells and one over the points, a byte a point; with `faces` every tet, face
-///              and point is hashed, too, and up to 32 bytes a tet are taken, or a quarter of the free memory where
-///              that is less (then in several passes over the cells)
+///              and point is hashed, too: 17 bytes a point, and up to 32 bytes a tet beside the boundary, or a quarter
+///              of the free memory where that is less (then in several passes over the cells)
 /// Errors       invalid_data: point number out of range, array of the wrong length or type, wrong number of corners,
 ///              offsets that fall, a coordinate that is not finite or is 2^91 or more where a cell uses the point,
 ///              nothing left that can be contoured; out_of_memory; cancelled

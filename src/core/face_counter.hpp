@@ -132,14 +132,17 @@ template <class Point>
 class FaceCounter {
 public:
     /// Adds what is found among a bucket's tets. Stops early when cancelled.
-    void add(std::span<const AscendingTet<Point>> tets, std::size_t bucket, PointBuckets buckets,
-             const Progress& progress, FaceCounts& counts) {
+    /// `is_here(point)`   whether faces with this lowest point are counted: all tets that have it as their lowest or
+    ///                    second lowest one are there
+    template <class IsHere>
+    void add(std::span<const AscendingTet<Point>> tets, const IsHere& is_here, const Progress& progress,
+             FaceCounts& counts) {
         tets_.clear(tets.size());
         faces_.clear(2 * tets.size()); // most are used twice
         for (std::size_t i = 0; i < tets.size(); ++i) {
             if (i % tets_between_looks == 0 && progress.cancelled()) return;
             const std::array<Point, 4> p = tets[i].corners();
-            const bool lowest_is_here = buckets.of(p[0]) == bucket, second_is_here = buckets.of(p[1]) == bucket;
+            const bool lowest_is_here = is_here(p[0]), second_is_here = is_here(p[1]);
             const std::size_t different = tets_.size();
             tets_[p];
             if (tets_.size() == different) {

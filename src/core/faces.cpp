@@ -11,6 +11,7 @@
 
 #include "core/dealt.hpp"
 #include "core/face_counter.hpp"
+#include "core/face_sums.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet::core {
@@ -41,7 +42,7 @@ PointBuckets buckets_for(std::uint64_t points, std::uint64_t tets) {
     return {static_cast<unsigned>(std::bit_width((points - 1) / buckets))};
 }
 
-/// Deals the tets of a checked grid, and counts bucket by bucket.
+/// Finds the points where faces may be unbalanced, deals the tets there, and counts bucket by bucket.
 template <class Point>
 class FaceSurveyor {
 public:
@@ -50,19 +51,17 @@ public:
           cells_(cells),
           survey_(survey),
           progress_(progress),
-          buckets_(buckets_for(cells.points(), survey.tets)),
-          bucket_count_(buckets_.of(cells.points() - 1) + 1),
           chunks_(std::clamp<std::size_t>(cells.count() / min_chunk, 1, max_chunks)) {}
 
-    /// Faces are kept, too, bucket by bucket.
-    void keep_faces() { faces_.emplace(bucket_count_); }
+    /// Faces are kept, too.
+    void keep_faces() { keeps_faces_ = true; }
 
     std::vector<BoundaryFace> faces() {
         std::size_t count = 0;
-        for (const auto& some : *faces_) count += some.size();
+        for (const auto& some : faces_) count += some.size();
         std::vector<BoundaryFace> all;
         all.reserve(count);
-        for (auto& some : *faces_) {
+        for (auto& some : faces_) {
             all.insert(all.end(), some.begin(), some.end());
             some = {};
         }
@@ -70,7 +69,11 @@ public:
     }
 
     Result<FaceSurvey> run(std::uint64_t memory) {
-        const std::uint64_t bytes = 2 * survey_.tets * sizeof(AscendingTet<Point>); // a tet is in at most two buckets
+        if (cells_.points() * FaceSums::bytes_per_point <= memory) find_doubted();
+        buckets_ = buckets_for(cells_.points(), to_count_);
+        bucket_count_ = buckets_.of(cells_.points() - 1) + 1;
+        if (keeps_faces_) faces_.resize(bucket_count_);
+        const std::uint64_t bytes = 2 * to_count_ * sizeof(AscendingTet<Point>); // a tet is in at most two buckets
         const std::uint64_t rounds =
             std::min<std::uint64_t>(1 + bytes / std::max<std::uint64_t>(memory, 1), bucket_count_);
         const std::size_t buckets_per_round = (bucket_count_ + rounds - 1) / rounds;
@@ -81,6 +84,25 @@ public:
     }
 
 private:
+    /// Finds the points of which faces must be counted one by one, and how many tets about have them.
+    void find_doubted() {
+        FaceSums sums(cells_.points());
+        parallel_pieces(cells_.count(), min_chunk, progress_, [&](std::size_t begin, std::size_t end) {
+            FaceSums::Adder<Point> adder(sums);
+            for_tets(begin, end, [&](const Tet& tet, const auto& is_mirrored) {
+                adder.add(AscendingTet<Point>::make(tet, is_mirrored()));
+            });
+        });
+        const double points = static_cast<double>(cells_.points() - survey_.unused);
+        const double tets_of_a_point = 2 * static_cast<double>(survey_.tets) / points;
+        const double tets = tets_of_a_point * static_cast<double>(sums.look());
+        to_count_ = static_cast<std::uint64_t>(std::min(tets, static_cast<double>(survey_.tets)));
+        doubted_ = std::move(sums).take_doubted();
+        report(0);
+    }
+
+    bool is_counted(std::uint64_t point) const { return doubted_.empty() || doubted_[point]; }
+
     /// Counts the buckets [first, last).
     void count(std::size_t first, std::size_t last) {
         auto dealt = Dealt<AscendingTet<Point>>::deal(
@@ -98,8 +120,9 @@ private:
         parallel_each(last - first, 1, [&](std::size_t b) {
             if (progress_.cancelled()) return;
             FaceCounter<Point>& counter = counters.local();
-            counter.add(dealt.bucket(b), first + b, buckets_, progress_, counts.local());
-            if (faces_) keep_unbalanced(counter, (*faces_)[first + b]);
+            const auto is_here = [&](Point point) { return buckets_.of(point) == first + b && is_counted(point); };
+            counter.add(dealt.bucket(b), is_here, progress_, counts.local());
+            if (keeps_faces_) keep_unbalanced(counter, faces_[first + b]);
             report(first + 0.4 * static_cast<double>(last - first) + 0.6 * static_cast<double>(++done));
         });
         for (const FaceCounts& part : counts) {
@@ -119,36 +142,45 @@ private:
     }
 
     void report(double buckets) const {
-        if (!progress_.cancelled()) progress_("check", 0.6 + 0.4 * buckets / static_cast<double>(bucket_count_));
+        if (!progress_.cancelled()) progress_("check", 0.75 + 0.25 * buckets / static_cast<double>(bucket_count_));
     }
 
     /// Deals the tets of the cells [begin, end) that belong into the buckets [first, last).
     template <class Dealer>
     void deal(std::size_t begin, std::size_t end, std::size_t first, std::size_t last, Dealer& dealer) const {
-        const auto is_here = [&](std::size_t bucket) { return first <= bucket && bucket < last; };
+        for_tets(begin, end, [&](const Tet& tet, const auto& is_mirrored) {
+            const auto [lowest, second] = two_lowest(tet);
+            const std::size_t a = buckets_.of(lowest), b = buckets_.of(second);
+            const bool in_a = first <= a && a < last && is_counted(lowest);
+            const bool in_b = first <= b && b < last && is_counted(second);
+            const auto make = [&] { return AscendingTet<Point>::make(tet, is_mirrored()); };
+            if (in_a && in_b) dealer.put(a - first, b - first, make);
+            else if (in_a) dealer.put(a - first, make);
+            else if (in_b) dealer.put(b - first, make);
+        });
+    }
+
+    /// Calls use(tet, is_mirrored) for the tets of the cells [begin, end); is_mirrored() says whether its stored form is.
+    template <class Use>
+    void for_tets(std::size_t begin, std::size_t end, const Use& use) const {
         cells_.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
             const bool whole = Orienter::is_whole(cells_.type(cell));
-            bool cell_mirrored = survey_.mostly_negative();
-            if constexpr (Dealer::writes)
-                if (!whole && !survey_.all_alike()) cell_mirrored = Orienter::six_volumes(points_, pieces) < 0;
-            for (const Tet& tet : pieces) {
-                const auto [lowest, second] = two_lowest(tet);
-                const std::size_t a = buckets_.of(lowest), b = buckets_.of(second);
-                const auto make = [&] {
-                    return AscendingTet<Point>::make(tet, is_mirrored(tet, whole, cell_mirrored));
-                };
-                if (is_here(a) && is_here(b)) dealer.put(a - first, b - first, make);
-                else if (is_here(a)) dealer.put(a - first, make);
-                else if (is_here(b)) dealer.put(b - first, make);
-            }
+            std::optional<bool> cell_mirrored;
+            if (whole) cell_mirrored = survey_.mostly_negative();
+            const auto is_cell_mirrored = [&] {
+                if (!cell_mirrored) cell_mirrored = Orienter::six_volumes(points_, pieces) < 0;
+                return *cell_mirrored;
+            };
+            for (const Tet& tet : pieces) use(tet, [&] { return is_mirrored(tet, whole, is_cell_mirrored); });
         });
     }
 
     /// Whether the tet's stored form is mirrored. Where all are alike, the answer for all of them is as good.
-    bool is_mirrored(const Tet& tet, bool whole, bool cell_mirrored) const {
+    template <class IsCellMirrored>
+    bool is_mirrored(const Tet& tet, bool whole, const IsCellMirrored& is_cell_mirrored) const {
         if (survey_.all_alike()) return false;
         Orienter::Counts ignored;
-        return ignored.add(points_.orientation(tet), whole, cell_mirrored);
+        return ignored.add(points_.orientation(tet), whole, is_cell_mirrored());
     }
 
     static std::pair<std::uint64_t, std::uint64_t> two_lowest(const Tet& t) {
@@ -161,10 +193,14 @@ private:
     const CellReader& cells_;
     const TetSurvey& survey_;
     const Progress& progress_;
+    std::size_t chunks_;
+    std::uint64_t to_count_ = survey_.tets; ///< tets, about
+    Buffer<std::uint8_t> doubted_;          ///< by point: 1 where its faces are counted; empty: everywhere
     PointBuckets buckets_;
-    std::size_t bucket_count_, chunks_;
+    std::size_t bucket_count_ = 1;
     FaceCounts total_;
-    std::optional<std::vector<std::vector<BoundaryFace>>> faces_;
+    bool keeps_faces_ = false;
+    std::vector<std::vector<BoundaryFace>> faces_; ///< by bucket
 };
 
 } // namespace

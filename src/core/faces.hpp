@@ -25,7 +25,7 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets);
 
 struct FaceSurveyOptions {
     std::uint64_t memory = std::uint64_t{1} << 30; ///< bytes that it should not take more of
-    bool wide = false; ///< point numbers of 64 bits, even where 32 would do
+    bool wide = false;                             ///< point numbers of 64 bits, even where 32 would do
 };
 
 struct FaceSurvey {
@@ -35,12 +35,14 @@ struct FaceSurvey {
 
 /// Counts repeated tets and boundary faces of a checked grid of any size.
 ///
-/// Tets are dealt by their two lowest points into buckets that fit a processor's cache, where they and their faces are
-/// hashed. Where all buckets together take more than `memory`, so many at a time as fit.
+/// Sums of hashes (face_sums.hpp) say at which points faces may be unbalanced or tets repeated, unless they take more
+/// than `memory`. The tets there are dealt by their two lowest points into buckets that fit a processor's cache, where
+/// they and their faces are counted in tables. Where all buckets together take more than `memory`, so many at a time as
+/// fit.
 ///
-/// Guarantees   the same counts for any thread count and any options
-/// Cost         three passes over the cells for each time, each tet and face hashed once or twice; 16 to 32 bytes a tet
-///              (twice that from 2^31 points on)
+/// Guarantees   the same counts for any thread count and any options, but for sums that are 0 by chance: 2^-64 a point
+/// Cost         a pass over the cells and 17 bytes a point for the sums; two passes for each time, and up to 32 bytes
+///              for each tet at the points that are left (twice that from 2^31 points on): few beside the boundary
 /// Errors       cancelled
 Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
                                 const FaceSurveyOptions& options, const Progress& progress);

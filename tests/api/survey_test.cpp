@@ -14,6 +14,7 @@
 
 #include "core/faces.hpp"
 #include "core/mixed_faces.hpp"
+#include "core/parallel.hpp"
 #include "support/random_grid.hpp"
 
 namespace isotet::test {
@@ -233,8 +234,9 @@ TEST(Survey, AgreesWithPackingOnNastyGrids) {
     }
 }
 
-/// Boundary faces by a plain map over the stored tets.
-std::uint64_t boundary_faces_by_map(const Grid& grid, const core::CellReader& cells, bool mostly_negative) {
+/// How often the stored tets use each face as its points ascend, less how often mirrored: by a plain map.
+std::map<std::array<std::uint64_t, 3>, int> balance_by_map(const Grid& grid, const core::CellReader& cells,
+                                                           bool mostly_negative) {
     const core::Orienter orienter(grid.points, mostly_negative);
     core::Orienter::Counts counts;
     std::set<std::set<std::uint64_t>> seen;
@@ -256,6 +258,11 @@ std::uint64_t boundary_faces_by_map(const Grid& grid, const core::CellReader& ce
             }
         }
     }
+    return balance;
+}
+
+std::uint64_t boundary_faces_by_map(const Grid& grid, const core::CellReader& cells, bool mostly_negative) {
+    const auto balance = balance_by_map(grid, cells, mostly_negative);
     return std::uint64_t(
         std::count_if(balance.begin(), balance.end(), [](const auto& face) { return face.second != 0; }));
 }
@@ -282,6 +289,45 @@ TEST(Survey, CountsFacesAlikeWithAnyMemoryAndWidth) {
                 EXPECT_EQ(faces.repeated, repeated) << "seed " << seed << ", memory " << memory;
             }
     }
+}
+
+TEST(Survey, FindsTheSameFacesWithAnyMemoryWidthAndThreads) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        NastyGrid g = nasty_grid(seed, {.side = 9, .missing = 0.1, .inverted = 0.1, .mirrored = 0.3, .repeated = 0.2});
+        if (seed == 4) g.grid = make_grid({.shape = "mixed", .side = 7, .fields = {}}).value();
+        if (seed % 2) g.grid.points = rounded(g.grid.points);
+        const core::CellReader cells = core::CellReader::open(g.grid).value();
+        const core::TetSurvey tets = core::survey_tets(g.grid, cells);
+        std::map<std::array<std::uint64_t, 3>, int> expected = balance_by_map(g.grid, cells, tets.mostly_negative());
+        std::erase_if(expected, [](const auto& face) { return face.second == 0; });
+        for (const std::uint64_t memory : {std::uint64_t{1} << 30, std::uint64_t{0}})
+            for (const bool wide : {false, true})
+                for (const int threads : {1, 2, 5}) {
+                    std::vector<core::BoundaryFace> faces;
+                    core::with_threads(threads, [&] {
+                        faces = core::find_boundary_faces(g.grid, cells, tets, {memory, wide}, {}).value();
+                    });
+                    ASSERT_EQ(faces.size(), expected.size()) << "seed " << seed << ", memory " << memory;
+                    EXPECT_TRUE(std::ranges::equal(faces, expected,
+                                                   [](const auto& face, const auto& other) {
+                                                       return face.points == other.first &&
+                                                              face.mirrored == (other.second < 0);
+                                                   }))
+                        << "seed " << seed << ", memory " << memory << ", " << threads << " threads";
+                }
+    }
+}
+
+TEST(Survey, FindsThatEveryTetIsRepeated) {
+    const Grid once = make_grid({.shape = "kuhn", .side = 6, .fields = {}}).value();
+    const auto corners = once.cells.connectivity.as<std::int32_t>();
+    std::vector<std::int32_t> twice(corners.begin(), corners.end());
+    twice.insert(twice.end(), corners.begin(), corners.end());
+    Grid grid = once;
+    grid.cells.connectivity = Array::own(std::move(twice), once.cells.connectivity.components());
+    const GridReport report = survey(grid).value();
+    EXPECT_EQ(report.repeated_tets, 6u * 6 * 6 * 6);
+    EXPECT_EQ(report.boundary_faces, 6u * 6 * 6 * 2);
 }
 
 } // namespace

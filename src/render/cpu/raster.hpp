@@ -21,11 +21,14 @@ struct TileFrame {
 
 /// Samples of a pixel, bit `row * samples + column` each.
 using SampleMask = std::uint64_t;
-inline SampleMask first_samples(std::int64_t count) { return count >= 64 ? ~SampleMask{0} : (SampleMask{1} << count) - 1; }
+inline SampleMask first_samples(std::int64_t count) {
+    return count >= 64 ? ~SampleMask{0} : (SampleMask{1} << count) - 1;
+}
 
 /// An edge of a triangle that lies to its right: `at(x, y)` of a sample is not negative inside.
 struct FixedEdge {
     std::int64_t constant, per_x, per_y;
+    double inverse; ///< of per_x, rounded; 0 where that is 0
 
     FixedEdge() = default;
     FixedEdge(std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by) {
@@ -34,6 +37,7 @@ struct FixedEdge {
         constant = dy * ax - dx * ay - (owns_samples_on_it ? 0 : 1);
         per_x = -dy * fixed_one;
         per_y = dx * fixed_one;
+        inverse = per_x == 0 ? 0 : 1 / static_cast<double>(per_x);
     }
     std::int64_t at(std::int64_t x, std::int64_t y) const { return constant + per_x * x + per_y * y; }
 };
@@ -50,7 +54,9 @@ public:
             std::swap(x[1], x[2]);
             std::swap(y[1], y[2]);
         }
-        const auto lowest = [](std::int64_t at) { return std::max<std::int64_t>((at + fixed_one - 1) >> fixed_bits, 0); };
+        const auto lowest = [](std::int64_t at) {
+            return std::max<std::int64_t>((at + fixed_one - 1) >> fixed_bits, 0);
+        };
         first_x_ = lowest(std::min({x[0], x[1], x[2]}));
         first_y_ = lowest(std::min({y[0], y[1], y[2]}));
         last_x_ = std::min<std::int64_t>(std::max({x[0], x[1], x[2]}) >> fixed_bits, frame.width * frame.samples - 1);
@@ -75,47 +81,28 @@ private:
         std::int64_t begin = 0, end = 0; ///< samples
     };
 
-    /// The samples of a row that are inside all edges: few are tried one by one.
-    Span span_of(std::int64_t y) const { return last_x_ - first_x_ < 12 ? tried_span(y) : computed_span(y); }
-
-    Span tried_span(std::int64_t y) const {
-        std::int64_t a = edges_[0].at(first_x_, y), b = edges_[1].at(first_x_, y), c = edges_[2].at(first_x_, y);
-        std::int64_t x = first_x_;
-        const auto next = [&] {
-            ++x;
-            a += edges_[0].per_x;
-            b += edges_[1].per_x;
-            c += edges_[2].per_x;
-        };
-        while (x <= last_x_ && (a | b | c) < 0) next();
-        const std::int64_t begin = x;
-        while (x <= last_x_ && (a | b | c) >= 0) next();
-        return begin == x ? Span{} : Span{begin, x};
-    }
-
-    Span computed_span(std::int64_t y) const {
+    /// The samples of a row that are inside all edges. An estimate of where each edge crosses it is less than one
+    /// sample off within the tile; then exact tests.
+    Span span_of(std::int64_t y) const {
         std::int64_t begin = first_x_, end = last_x_ + 1;
         for (const FixedEdge& edge : edges_) {
             const std::int64_t at_0 = edge.constant + edge.per_y * y;
-            if (edge.per_x == 0) {
-                if (at_0 < 0) return {};
-                continue;
-            }
-            // An estimate, then the exact place.
-            const double crossing = -static_cast<double>(at_0) / static_cast<double>(edge.per_x);
-            const double limited =
-                std::clamp(crossing, static_cast<double>(begin) - 1, static_cast<double>(end) + 1);
-            auto x = static_cast<std::int64_t>(limited);
+            const auto is_inside = [&](std::int64_t x) { return at_0 + edge.per_x * x >= 0; };
+            const double crossing = -static_cast<double>(at_0) * edge.inverse;
+            const auto limited = [&](double x) {
+                return static_cast<std::int64_t>(
+                    std::min(std::max(x, static_cast<double>(begin)), static_cast<double>(end)));
+            };
             if (edge.per_x > 0) {
-                x = std::clamp(x, begin, end);
-                while (x > begin && at_0 + edge.per_x * (x - 1) >= 0) --x;
-                while (x < end && at_0 + edge.per_x * x < 0) ++x;
+                std::int64_t x = limited(crossing);
+                x += !is_inside(x);
+                x += !is_inside(x);
                 begin = x;
-            } else {
-                x = std::clamp(x, begin, end);
-                while (x < end && at_0 + edge.per_x * x >= 0) ++x;
-                while (x > begin && at_0 + edge.per_x * (x - 1) < 0) --x;
-                end = x;
+            } else if (edge.per_x < 0) {
+                const std::int64_t x = limited(crossing + 1);
+                end = x > begin && !is_inside(x - 1) ? x - 1 : x + (x < end && is_inside(x));
+            } else if (at_0 < 0) {
+                return {};
             }
             if (begin >= end) return {};
         }
@@ -124,7 +111,8 @@ private:
 
     template <class Emit>
     void pixel_row(std::int64_t row, const Emit& emit) const {
-        const std::int64_t s = frame_.samples, first = std::max(row * s, first_y_), last = std::min(row * s + s - 1, last_y_);
+        const std::int64_t s = frame_.samples, first = std::max(row * s, first_y_),
+                           last = std::min(row * s + s - 1, last_y_);
         std::array<Span, 8> spans;
         std::int64_t begin = INT64_MAX, end = 0, full_begin = 0, full_end = INT64_MAX;
         for (std::int64_t y = first; y <= last; ++y) {
@@ -168,8 +156,7 @@ struct DepthPlane {
     float lower = 0, upper = 0;
 
     DepthPlane(const FixedPoint& a, const FixedPoint& b, const FixedPoint& c, const TileFrame& frame)
-        : lower(std::min({a.depth, b.depth, c.depth})),
-          upper(std::max({a.depth, b.depth, c.depth})) {
+        : lower(std::min({a.depth, b.depth, c.depth})), upper(std::max({a.depth, b.depth, c.depth})) {
         const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
         const double doubled_area = bx * cy - cx * by;
         const double b_depth = double{b.depth} - a.depth, c_depth = double{c.depth} - a.depth;

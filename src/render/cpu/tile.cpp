@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 #include "render/cpu/clip.hpp"
@@ -32,7 +33,14 @@ Tile::Tile(const TileScene& scene)
 
 void Tile::draw(std::size_t number, std::span<const BinEntry> entries, Picture& picture) {
     start(number);
-    for (const BinEntry& entry : entries) add(entry);
+    bool measured = false;
+    for (const BinEntry& entry : entries) {
+        if (!measured && scene_.sheets[entry.sheet].translucent) {
+            measure_opaque();
+            measured = true;
+        }
+        add(entry);
+    }
     const auto s = static_cast<std::int64_t>(scene_.screen.samples);
     for (std::int32_t y = 0; y < frame_.height; ++y) {
         for (std::int32_t x = 0; x < frame_.width; ++x) {
@@ -58,6 +66,7 @@ void Tile::start(std::size_t number) {
               static_cast<std::int32_t>(tiling.samples)};
     const std::size_t pixels = static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height);
     facets_.clear();
+    farthest_ = INFINITY;
     fragments_.clear();
     depths_.assign(pixels * count_, INFINITY);
     owners_.assign(pixels * count_, 0);
@@ -74,6 +83,7 @@ void Tile::add(const BinEntry& entry) {
 
 void Tile::add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoint& a, const FixedPoint& b,
                      const FixedPoint& c) {
+    if (sheet.translucent && std::min({a.depth, b.depth, c.depth}) >= farthest_) return;
     const TileCover samples(a, b, c, frame_);
     const auto number = static_cast<std::uint32_t>(facets_.size());
     const double middle = 0.5 * (scene_.screen.samples - 1);
@@ -86,6 +96,17 @@ void Tile::add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoin
               static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x), depth,
               mask);
     });
+}
+
+/// What is translucent need not be compared sample by sample where all of it is in front of the opaque, or behind.
+void Tile::measure_opaque() {
+    ranges_.resize(covered_.size());
+    farthest_ = 0;
+    for (std::size_t pixel = 0; pixel < ranges_.size(); ++pixel) {
+        const auto [nearest, farthest] = std::ranges::minmax(std::span(depths_).subspan(pixel * count_, count_));
+        ranges_[pixel] = {nearest, farthest};
+        farthest_ = std::max(farthest_, farthest);
+    }
 }
 
 /// The samples of a mask that lie in front of what is opaque.
@@ -102,9 +123,12 @@ SampleMask Tile::in_front(const DepthPlane& plane, std::size_t pixel, float dept
 
 void Tile::cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask) {
     const Facet& one = facets_[facet];
-    if (covered_[pixel]) mask = in_front(one.depth, pixel, depth, mask);
+    const bool translucent = one.sheet->translucent;
+    if (translucent && one.depth.lower >= ranges_[pixel].farthest) return;
+    const bool all_in_front = translucent && one.depth.upper < ranges_[pixel].nearest;
+    if (covered_[pixel] && !all_in_front) mask = in_front(one.depth, pixel, depth, mask);
     if (mask == 0) return;
-    if (one.sheet->translucent) {
+    if (translucent) {
         fragments_.push_back({facet, heads_[pixel], mask});
         heads_[pixel] = static_cast<std::uint32_t>(fragments_.size());
         return;

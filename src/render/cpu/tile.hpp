@@ -3,6 +3,7 @@
 // the mean of the samples of each pixel.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,9 +46,13 @@ private:
         std::uint32_t facet, next; ///< next: 1 + the fragment, or 0
         SampleMask mask;
     };
+    struct DepthRange {
+        float nearest, farthest;
+    };
     /// A fragment in front of the others, or behind them.
     struct Layer {
-        float depth, per_x, per_y, lower, upper, reach; ///< at the middle of the pixel; a sample; how far samples differ
+        float depth, per_x, per_y, lower, upper; ///< at the middle of the pixel; a sample
+        float reach;                             ///< how far samples differ
         SampleMask mask;
         Shade shade;
     };
@@ -66,6 +71,7 @@ private:
     void add(const BinEntry& entry);
     void add_facet(const Sheet& sheet, std::uint32_t triangle, const FixedPoint& a, const FixedPoint& b,
                    const FixedPoint& c);
+    void measure_opaque();
     void cover(std::uint32_t facet, std::size_t pixel, float depth, SampleMask mask);
     SampleMask in_front(const DepthPlane& plane, std::size_t pixel, float depth, SampleMask mask) const;
     Shade shade_of(const Facet& facet, std::int32_t x, std::int32_t y, SampleMask mask) const;
@@ -83,6 +89,8 @@ private:
     std::vector<Facet> facets_;
     std::vector<Fragment> fragments_;
     std::vector<float> depths_;         ///< of the nearest opaque facet a sample
+    std::vector<DepthRange> ranges_;    ///< of the depths of a pixel, once all that is opaque is there
+    float farthest_ = INFINITY;         ///< of all
     std::vector<std::uint32_t> owners_; ///< 1 + that facet, or 0
     std::vector<std::uint32_t> heads_;  ///< 1 + the last fragment of a pixel, or 0
     std::vector<std::uint8_t> covered_; ///< whether a pixel has anything opaque
