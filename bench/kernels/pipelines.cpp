@@ -5,7 +5,6 @@
 
 #include "all_shaders.hpp"
 #include "render/kernels/scene.h"
-#include "vulkan/kernels/shared/layout.h"
 
 namespace isotet::bench {
 
@@ -29,15 +28,15 @@ void add_engine(std::vector<Pipeline>& all) {
     for (const std::uint32_t others : {0u, 1u})
         add_compute(all, shaders::count, others ? "native cells" : "tets", {others});
     add_compute(all, shaders::scan);
-    for (const std::uint32_t room : {vulkan::layout::few_edges, vulkan::layout::max_edges})
+    for (const std::uint32_t many : {0u, 1u})
         for (std::uint32_t bits = 0; bits < 16; ++bits) {
             const std::uint32_t others = bits >> 3, ends = bits & 1, normals = bits >> 1 & 1, sources = bits >> 2 & 1;
             std::string variant = others ? "native cells" : "tets";
             append(variant, ends, "ends");
             append(variant, normals, "normals");
             append(variant, sources, "sources");
-            append(variant, room > vulkan::layout::few_edges, "many edges");
-            add_compute(all, shaders::emit, std::move(variant), {room, ends, normals, sources, others});
+            append(variant, many, "many edges");
+            add_compute(all, shaders::emit, std::move(variant), {many, ends, normals, sources, others});
         }
     for (const ShaderCode* code : {&shaders::ranges, &shaders::face_normals, &shaders::lowest_triangles,
                                    &shaders::missing_normals, &shaders::fields, &shaders::self_test})

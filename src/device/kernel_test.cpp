@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -13,6 +14,7 @@
 #include <isotet/pack.hpp>
 
 #include "vulkan/context.hpp"
+#include "vulkan/engine/kernel_hash.hpp"
 
 namespace isotet {
 
@@ -54,7 +56,7 @@ Result<void> test_on(const Device& device, const SmallGrid& small) {
                     device.info().name, small.cells, device.info().driver)};
 }
 
-/// A file beside the cache of compiled kernels says that this build's kernels were right with this driver.
+/// A file beside the cache of compiled kernels, with the hash of those kernels that were right with this driver.
 std::filesystem::path note_of(const Device& device) {
     std::filesystem::path note = device.context()->pipeline_cache().file();
     if (!note.empty()) note += ".tested";
@@ -65,11 +67,13 @@ std::filesystem::path note_of(const Device& device) {
 
 Result<void> test_kernels_once(const Device& device) {
     const std::filesystem::path note = note_of(device);
-    std::error_code failed;
-    if (!note.empty() && std::filesystem::exists(note, failed)) return {};
+    const std::string hash = fmt::format("{:016x}", vulkan::kernel_hash());
+    std::string noted;
+    if (!note.empty() && std::ifstream(note) >> noted && noted == hash) return {};
     if (Result<void> done = test_kernels(device); !done || note.empty()) return done;
+    std::error_code failed;
     std::filesystem::create_directories(note.parent_path(), failed);
-    std::ofstream(note).put('1'); // where that fails, the next start tests again
+    std::ofstream(note) << hash; // where that fails, the next start tests again
     return {};
 }
 

@@ -12,7 +12,7 @@ namespace isotet {
 /// Errors   no_device when a surface differs, with the name of the device; those of DeviceGrid
 ISOTET_API Result<void> test_kernels(const Device& device);
 
-/// The same, where this build's kernels have not been found right with this driver before.
+/// The same, where these very kernels have not been found right with this driver before.
 ISOTET_API Result<void> test_kernels_once(const Device& device);
 
 } // namespace isotet

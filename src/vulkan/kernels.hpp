@@ -44,6 +44,8 @@ public:
     /// Errors   machine when the driver cannot build it; out_of_memory
     Result<const Kernel*> get(const ShaderCode& code, std::span<const std::uint32_t> constants = {});
 
+    std::size_t count() const noexcept { return made_.size(); } ///< made so far
+
 private:
     struct Made {
         const std::uint32_t* code;

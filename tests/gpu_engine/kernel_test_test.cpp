@@ -1,9 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "device/kernel_test.hpp"
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "gpu_engine/engines.hpp"
+#include "support/temporary_folder.hpp"
+#include "vulkan/engine/kernel_hash.hpp"
 
 namespace isotet::test {
 namespace {
@@ -44,6 +52,43 @@ TEST_F(KernelTest, RefusesADeviceThatMiscompilesByName) {
     EXPECT_EQ(tested.error().code, ErrorCode::no_device);
     EXPECT_NE(tested.error().message.find("the device " + context().info().name + " is not used"), std::string::npos)
         << tested.error().message;
+}
+
+TEST_F(KernelTest, IsRunAgainWhenTheNoteNamesOtherKernels) {
+    const TemporaryFolder folder;
+    vulkan::Settings settings = watched();
+    settings.cache_folder = folder.file("cache");
+    reopen(settings);
+    const std::filesystem::path note = context().pipeline_cache().file().string() + ".tested";
+    ASSERT_TRUE(test_kernels_once(device()));
+    const auto noted = [&] {
+        std::ifstream in(note);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    const std::string right = noted();
+    EXPECT_EQ(right, fmt::format("{:016x}", vulkan::kernel_hash()));
+    const auto kernels_made = [&] {
+        const std::size_t before = context().kernels().count();
+        EXPECT_TRUE(test_kernels_once(device()));
+        return context().kernels().count() - before;
+    };
+    reopen(settings);
+    EXPECT_EQ(kernels_made(), 0u) << "no kernel is made";
+    std::ofstream(note) << "1";
+    EXPECT_GT(kernels_made(), 0u);
+    EXPECT_EQ(noted(), right);
+}
+
+TEST(KernelHash, IsAnotherForAnotherWordOrName) {
+    const std::uint32_t words[] = {1, 2, 3}, others[] = {1, 2, 4};
+    const vulkan::ShaderCode a{"a", words}, same{"a", words}, other_words{"a", others}, other_name{"b", words};
+    const auto hash = [](const vulkan::ShaderCode& code) {
+        const vulkan::ShaderCode* const one[] = {&code};
+        return vulkan::hash_of(one);
+    };
+    EXPECT_EQ(hash(a), hash(same));
+    EXPECT_NE(hash(a), hash(other_words));
+    EXPECT_NE(hash(a), hash(other_name));
 }
 
 } // namespace

@@ -27,8 +27,8 @@ constexpr std::uint64_t arguments_in(std::size_t list) { return list + offsetof(
 
 } // namespace
 
-Result<const Kernel*> Passes::emit_kernel(Context& context, std::uint32_t edge_room) const {
-    const std::uint32_t constants[] = {edge_room, parts_.ends, parts_.normals == Normals::gradient, parts_.sources,
+Result<const Kernel*> Passes::emit_kernel(Context& context, bool many_edges) const {
+    const std::uint32_t constants[] = {many_edges, parts_.ends, parts_.normals == Normals::gradient, parts_.sources,
                                        resident_.sizes().with_others};
     return context.kernels().get(engine::emit, constants);
 }
@@ -44,7 +44,7 @@ Result<Passes> Passes::make(Context& context, const Resident& resident, const Su
     const std::uint32_t count_constants[] = {resident.sizes().with_others};
     keep(passes.count_, context.kernels().get(engine::count, count_constants));
     keep(passes.scan_, context.kernels().get(engine::scan));
-    keep(passes.emit_few_, passes.emit_kernel(context, layout::few_edges));
+    keep(passes.emit_few_, passes.emit_kernel(context, false));
     if (parts.normals == Normals::face) keep(passes.face_normals_, context.kernels().get(engine::face_normals));
     if (parts.normals == Normals::gradient) {
         keep(passes.lowest_triangles_, context.kernels().get(engine::lowest_triangles));
@@ -56,7 +56,7 @@ Result<Passes> Passes::make(Context& context, const Resident& resident, const Su
 }
 
 Result<void> Passes::make_emit_many(Context& context) {
-    auto kernel = emit_kernel(context, layout::max_edges);
+    auto kernel = emit_kernel(context, true);
     if (!kernel) return std::move(kernel).error();
     emit_many_ = *kernel;
     return {};

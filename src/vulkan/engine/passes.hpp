@@ -60,7 +60,7 @@ private:
     Passes(const Resident& resident, const SurfaceParts& parts) : resident_(resident), parts_(parts) {}
     void normals(Recorder& recorder, const Task& task) const;
     void fields(Recorder& recorder, const Task& task) const;
-    Result<const Kernel*> emit_kernel(Context& context, std::uint32_t edge_room) const;
+    Result<const Kernel*> emit_kernel(Context& context, bool many_edges) const;
 
     const Resident& resident_;
     SurfaceParts parts_;

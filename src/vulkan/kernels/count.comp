@@ -157,7 +157,7 @@ void main() {
     if (special) tell_tied(number);
     barrier();
     if (self != 0u) return;
-    const bool many = edge_sum > few_edges || seam_sum > few_seams;
+    const bool many = edge_sum > few_edges;
     add_to_counts(number, edge_sum - seam_sum + fresh_sum, 0u, triangle_sum, many ? many_edges_flag : 0u);
     if (many) OutputAt(push.surface).surface.many_edges = 1u;
     if (tied_points != 0u) atomicAdd(OutputAt(push.surface).surface.tied_points, tied_points);

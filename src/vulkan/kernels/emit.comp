@@ -10,8 +10,7 @@
 #include "shared/groups.glsl"
 #include "shared/lists.glsl"
 
-layout(constant_id = 0) const uint edge_room = 1024; ///< few_edges or max_edges: which of the two lists is worked through
-const uint seam_room = edge_room > few_edges ? edge_room : few_seams;
+layout(constant_id = 0) const bool many_edges = false; ///< which list is worked through: clusters of more than few_edges
 layout(constant_id = 1) const bool with_ends = false;
 layout(constant_id = 2) const bool with_normals = false;
 layout(constant_id = 3) const bool with_sources = false;
@@ -24,14 +23,19 @@ layout(push_constant, scalar) uniform Push {
 };
 
 shared uint points[max_cluster_points]; ///< page-local numbers of local points
-shared uint tied_numbers[max_cluster_points]; ///< of the vertices at tied points
 shared uint edge_count;
-shared uint seam_bits[edge_room / 32u];       ///< by rank of an active edge: it is a seam
-shared uint seam_ranks[edge_room / 32u];
-/// By rank: the first active edges, lower + 256 * higher, until vertices are written; then vertices on active seams.
-shared uint seam_numbers[seam_room];
+// The window: active edges of ranks from window_begin on, few_edges at most. Where there are many edges, one after the other.
+shared uint edge_numbers[few_edges];      ///< lower + 256 * higher; then the vertex on the edge
+shared uint seam_bits[few_edges / 32u];   ///< the edge is a seam
+shared uint seam_ranks[few_edges / 32u];
 shared uint triangle_bits[3u * max_cluster_groups]; ///< by place in hit_group, a bit a cell: of its number of triangles
-// sums_before: active edges before each row of the matrix + 65536 * triangles before each place in hit_group
+// sums_before: by row of the matrix, the active edges before it (12 bits), and how many of its own are in words 0 to 2, in words 0
+// and 1, in word 0 (7, 7, 6 bits).
+// Half of the matrix has no edges, because lower < higher: of rows 32 to 63 word 0 holds the triangles before each place in
+// hit_group, of rows 64 to 127 words 0 and 1 the numbers of the vertices at tied points.
+
+uint window_begin = 0u;
+uint seams_before_window = 0u;
 
 Tables tables;
 Start start;
@@ -106,46 +110,49 @@ void cut_cells(bool special) {
     }
 }
 
-uint edges_before_row(uint row) { return sums_before[row] & 0xffffu; }
-uint triangles_before(uint place) { return sums_before[place] >> 16; }
+uint edges_before_row(uint row) { return sums_before[row] & 0xfffu; }
+uint triangles_before(uint place) { return matrix[4u * (32u + place)]; }
 
-/// Ranks of active edges by row, and the first triangle of each hit group.
+/// Ranks of active edges by row, and the first triangle of each hit group. A barrier must follow, though not before list_edges().
 void rank_edges() {
     const uint self = gl_LocalInvocationIndex;
-    uint sum = 0u;
-    for (uint i = 0u; i < 4u; ++i) sum += bitCount(matrix[4u * self + i]);
+    const uint one = bitCount(matrix[4u * self]), two = one + bitCount(matrix[4u * self + 1u]),
+               three = two + bitCount(matrix[4u * self + 2u]);
+    uint sum = three + bitCount(matrix[4u * self + 3u]);
     if (self < max_cluster_groups) sum += triangles_in(self, 0xffffffffu) << 16;
     find_sums_before(sum);
+    const uint before = sums_before[self];
+    if (self < max_cluster_groups) matrix[4u * (32u + self)] = before >> 16;
+    if (self == workgroup_size - 1u) edge_count = before + sum & 0xffffu;
+    sums_before[self] = before & 0xfffu | three << 12 | two << 19 | one << 26;
+}
+
+/// The words of a row before this one have no edges.
+uint first_word(uint row) { return row / 32u; }
+
+/// Where a rank lies in the window; few_edges or more: outside.
+uint in_window(uint rank) { return rank - window_begin; }
+
+/// Lists the edges of the window, and forgets the seams of the one before. A barrier must follow.
+void list_edges() {
+    const uint self = gl_LocalInvocationIndex;
+    if (self < few_edges / 32u) seam_bits[self] = 0u;
     uint rank = edges_before_row(self);
-    for (uint i = 0u; i < 4u; ++i)
-        for (uint bits = matrix[4u * self + i]; bits != 0u && rank < seam_room; bits &= bits - 1u)
-            seam_numbers[rank++] = self + (32u * i + findLSB(bits) << 8);
-    if (self == workgroup_size - 1u) edge_count = (sums_before[self] + sum) & 0xffffu;
+    for (uint i = first_word(self); i < 4u; ++i)
+        for (uint bits = matrix[4u * self + i]; bits != 0u; bits &= bits - 1u) {
+            const uint place = in_window(rank++);
+            if (!many_edges || place < few_edges) edge_numbers[place] = self + (32u * i + findLSB(bits) << 8);
+        }
 }
 
 uint rank_of(uvec2 edge) {
-    uint rank = edges_before_row(edge.x);
-    for (uint word = 0u; word < edge.y / 32u; ++word) rank += bitCount(matrix[4u * edge.x + word]);
-    return rank + bitCount(matrix[matrix_word(edge)] & (1u << edge.y % 32u) - 1u);
+    const uint row = sums_before[edge.x], word = edge.y / 32u;
+    const uint in_words = word == 0u ? 0u : row >> 33u - 7u * word & 127u;
+    return (row & 0xfffu) + in_words + bitCount(matrix[4u * edge.x + word] & (1u << edge.y % 32u) - 1u);
 }
 
-/// (lower, higher) of the active edge with this rank.
-uvec2 edge_at(uint rank) {
-    if (rank < seam_room) return uvec2(seam_numbers[rank] & 0xffu, seam_numbers[rank] >> 8);
-    uint row = 0u; // the last one that begins at or before it: empty rows begin where the next one does
-    for (uint step = max_cluster_points / 2u; step != 0u; step /= 2u)
-        if (edges_before_row(row + step) <= rank) row += step;
-    uint left = rank - edges_before_row(row), word = 0u, bits = matrix[4u * row];
-    while (left >= bitCount(bits)) {
-        left -= bitCount(bits);
-        bits = matrix[4u * row + ++word];
-    }
-    for (; left != 0u; --left) bits &= bits - 1u;
-    return uvec2(row, 32u * word + findLSB(bits));
-}
-
-bool is_seam(uint rank) { return (seam_bits[rank / 32u] >> rank % 32u & 1u) != 0u; }
-uint seams_before(uint rank) { return seam_ranks[rank / 32u] + bitCount(seam_bits[rank / 32u] & (1u << rank % 32u) - 1u); }
+/// Where the number of the vertex at a tied point stands.
+uint tied_at(uint point) { return 4u * (64u + point % 64u) + point / 64u; }
 
 bool is_masked(uint bit) { return (Words(tables.masks).at[cluster.first_mask + bit / 32u] >> bit % 32u & 1u) != 0u; }
 
@@ -154,62 +161,62 @@ void number_tied() {
     const uint self = gl_LocalInvocationIndex;
     if (self >= local_points() || !is_in(tied, self)) return;
     if (self >= ghost_points) {
-        tied_numbers[self] = start.vertex + bits_before(cluster.first_mask, self - ghost_points);
+        matrix[tied_at(self)] = start.vertex + bits_before(cluster.first_mask, self - ghost_points);
         return;
     }
     const Neighbour neighbour = neighbour_of(self, 0u);
-    tied_numbers[self] = Starts(tables.starts).at[neighbour.cluster].vertex +
-                         bits_before(Clusters(tables.clusters).at[neighbour.cluster].first_mask,
-                                     place_in_owner(tables, neighbour, self));
+    matrix[tied_at(self)] = Starts(tables.starts).at[neighbour.cluster].vertex +
+                            bits_before(Clusters(tables.clusters).at[neighbour.cluster].first_mask,
+                                        place_in_owner(tables, neighbour, self));
 }
 
 uint own_seam_number(uint k) { return start.seam_vertex + bits_before(cluster.first_mask + tied_words, k); }
 
-void mark_seam(uvec2 edge) {
-    if (!is_crossed(edge)) return;
-    const uint rank = rank_of(edge);
-    atomicOr(seam_bits[rank / 32u], 1u << rank % 32u);
-}
-
-void mark_seams() {
-    for (uint k = gl_LocalInvocationIndex; k < own_seams; k += workgroup_size) mark_seam(own_seam(k));
-    for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) mark_seam(ghost_seam(k).xy);
+void set_seam_number(uint place, uint number) {
+    edge_numbers[place] = number;
+    atomicOr(seam_bits[place / 32u], 1u << place % 32u);
 }
 
 void number_seams() {
     for (uint k = gl_LocalInvocationIndex; k < own_seams; k += workgroup_size) {
         const uvec2 edge = own_seam(k);
-        if (is_crossed(edge)) seam_numbers[seams_before(rank_of(edge))] = own_seam_number(k);
+        if (!is_crossed(edge)) continue;
+        const uint place = in_window(rank_of(edge));
+        if (!many_edges || place < few_edges) set_seam_number(place, own_seam_number(k));
     }
     for (uint k = gl_LocalInvocationIndex; k < ghost_seams; k += workgroup_size) {
         const uvec3 seam = ghost_seam(k);
         if (!is_crossed(seam.xy)) continue;
+        const uint place = in_window(rank_of(seam.xy));
+        if (many_edges && place >= few_edges) continue;
         const uint owner = neighbour_of(k, 16u).cluster;
-        seam_numbers[seams_before(rank_of(seam.xy))] =
-            Starts(tables.starts).at[owner].seam_vertex +
-            bits_before(Clusters(tables.clusters).at[owner].first_mask + tied_words, seam.z);
+        set_seam_number(place, Starts(tables.starts).at[owner].seam_vertex +
+                                   bits_before(Clusters(tables.clusters).at[owner].first_mask + tied_words, seam.z));
     }
 }
 
 void rank_seams() {
     const uint self = gl_LocalInvocationIndex;
-    if (self >= edge_room / 32u) return;
-    uint rank = 0u;
+    if (self >= few_edges / 32u) return;
+    uint rank = seams_before_window;
     [[dont_unroll]] for (uint word = 0u; word < self; ++word) rank += bitCount(seam_bits[word]);
     seam_ranks[self] = rank;
 }
 
-/// Writes all own vertices: of inner edges, whose numbers are found here, by rank; of own seams that the mask has, though
-/// perhaps only others cross them; of tied own points that the mask has.
+/// Writes own vertices: of the window's inner edges, whose numbers are found here, by rank; with the first window those of own
+/// seams that the mask has, though perhaps only others cross them, and of tied own points that the mask has.
 void write_vertices(uint first_inner, bool special) {
-    const uint edges = edge_count, items = edges + own_seams + (special ? own_points : 0u);
+    const uint edges = many_edges ? min(edge_count - window_begin, few_edges) : edge_count;
+    const uint items = window_begin != 0u ? edges : edges + own_seams + (special ? own_points : 0u);
     for (uint item = gl_LocalInvocationIndex; item < items; item += workgroup_size) {
         uint number;
         uvec2 ends; // local points
         if (item < edges) {
-            if (is_seam(item)) continue;
-            number = first_inner + item - seams_before(item);
-            ends = edge_at(item);
+            const uint bits = seam_bits[item / 32u], bit = 1u << item % 32u;
+            if ((bits & bit) != 0u) continue;
+            number = first_inner + window_begin + item - (seam_ranks[item / 32u] + bitCount(bits & bit - 1u));
+            ends = uvec2(edge_numbers[item] & 0xffu, edge_numbers[item] >> 8);
+            edge_numbers[item] = number;
         } else if (item < edges + own_seams) {
             const uint k = item - edges;
             if (!is_masked(32u * tied_words + k)) continue;
@@ -219,7 +226,7 @@ void write_vertices(uint first_inner, bool special) {
             const uint place = item - edges - own_seams;
             if (!is_masked(place)) continue;
             ends = uvec2(ghost_points + place);
-            number = tied_numbers[ends.x];
+            number = matrix[tied_at(ends.x)];
         }
         float t = 0.0;
         if (ends.x != ends.y) {
@@ -230,15 +237,23 @@ void write_vertices(uint first_inner, bool special) {
     }
 }
 
-uint number_of(uint first_inner, Cell cell, uint polygon, uint k) {
+const uint outside = 0xffffffffu; ///< the number of no vertex
+
+uint number_of(Cell cell, uint polygon, uint k) {
     const uvec2 ends = polygon_edge(polygon, k);
     const uint a = corner_of(cell, ends.x), b = corner_of(cell, ends.y);
-    if ((cell.tied >> ends.x & 1u) != 0u) return tied_numbers[a];
-    const uint rank = rank_of(ascending(a, b)), seams = seams_before(rank);
-    return is_seam(rank) ? seam_numbers[seams] : first_inner + rank - seams;
+    if ((cell.tied >> ends.x & 1u) != 0u) return matrix[tied_at(a)];
+    const uint place = in_window(rank_of(ascending(a, b)));
+    return many_edges && place >= few_edges ? outside : edge_numbers[place];
 }
 
-void write_triangles(uint first_inner, bool special) {
+/// Writes those corners of a triangle that the window has.
+void write_triangle(uint at, uvec3 corners) {
+    for (uint i = 0u; i < 3u; ++i)
+        if (!many_edges || corners[i] != outside) triangle_out.at[3u * at + i] = corners[i];
+}
+
+void write_triangles(bool special) {
     const uint self = gl_LocalInvocationIndex;
     const uint hits = bitCount(hit_groups);
     for (uint place = self / group_size; place < hits; place += workgroup_size / group_size) {
@@ -249,13 +264,14 @@ void write_triangles(uint first_inner, bool special) {
         for (uint i = 0u; i < polygon_count(tables, cell); ++i) {
             const uint polygon = polygon_of(tables, cell, i);
             uint numbers[4];
-            for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(first_inner, cell, polygon, k);
+            for (uint k = 0u; k < 4u; ++k) numbers[k] = number_of(cell, polygon, k);
             for (uint t = 0u; t < triangles_of(polygon); ++t) {
-                const uint a = numbers[0], b = numbers[1u + t], c = numbers[2u + t];
-                if (a == b || b == c || c == a) continue; // only with tied corners
-                triangle_out.at[3u * at] = a;
-                triangle_out.at[3u * at + 1u] = b;
-                triangle_out.at[3u * at + 2u] = c;
+                const uvec3 corners = uvec3(numbers[0], numbers[1u + t], numbers[2u + t]);
+                // Only with tied corners.
+                if (many_edges ? !is_kept(cell, polygon, t)
+                               : corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
+                    continue;
+                write_triangle(at, corners);
                 if (with_sources) source_out.at[at] = group_size * (page.first_group + cluster.first_group) + cell.word;
                 ++at;
             }
@@ -263,20 +279,32 @@ void write_triangles(uint first_inner, bool special) {
     }
 }
 
+/// Vertices and triangles of the edges from window_begin on. All invocations must call it.
+void write_window(uint first_inner, bool special) {
+    list_edges();
+    barrier();
+    if (special && window_begin == 0u) number_tied();
+    number_seams();
+    barrier();
+    rank_seams();
+    barrier();
+    write_vertices(first_inner, special);
+    barrier();
+    write_triangles(special);
+}
+
 void main() {
     tables = TablesAt(push.tables).tables;
     surface = OutputAt(push.surface).surface;
     const uint self = gl_LocalInvocationIndex;
     const uint place = group_index();
-    const bool many = edge_room > few_edges;
-    if (surface.overflow != 0u || place >= list_head(tables, many ? many_edges_list : few_edges_list).head.count) return;
-    const uint number = Words(tables.emitted).at[many ? tables.cluster_count - 1u - place : place];
+    if (surface.overflow != 0u || place >= list_head(tables, many_edges ? many_edges_list : few_edges_list).head.count) return;
+    const uint number = Words(tables.emitted).at[many_edges ? tables.cluster_count - 1u - place : place];
     open_cluster(tables, number);
     if (push.batch != 0u && page.batch != push.batch) return;
     open_output(number);
 
     clear_cut();
-    for (uint word = self; word < edge_room / 32u; word += workgroup_size) seam_bits[word] = 0u;
     for (uint i = self; i < 3u * max_cluster_groups; i += workgroup_size) triangle_bits[i] = 0u;
     barrier();
     load_points();
@@ -286,16 +314,13 @@ void main() {
     cut_cells(special);
     barrier();
     rank_edges();
-    barrier();
-    if (special) number_tied();
-    mark_seams();
-    barrier();
-    rank_seams();
-    barrier();
     const uint first_inner = own_seam_number(own_seams);
-    write_vertices(first_inner, special);
-    barrier();
-    number_seams();
-    barrier();
-    write_triangles(first_inner, special);
+    for (;;) {
+        write_window(first_inner, special);
+        if (!many_edges || edge_count - window_begin <= few_edges) return;
+        const uint last = few_edges / 32u - 1u;
+        seams_before_window = seam_ranks[last] + bitCount(seam_bits[last]);
+        window_begin += few_edges;
+        barrier();
+    }
 }

@@ -40,9 +40,7 @@ ISOTET_CONSTANT matrix_words = 512u;         ///< a bit for every pair of local 
 ISOTET_CONSTANT tied_words = 4u;             ///< of a cluster's masks, before those of its own seams
 ISOTET_CONSTANT segment_clusters = 128u;     ///< a workgroup of select and scan
 ISOTET_CONSTANT block_segments = 128u;
-ISOTET_CONSTANT few_edges = 1024u;           ///< active edges of a cluster that the smaller emit kernel has room for
-ISOTET_CONSTANT few_seams = 256u;            ///< active seams, likewise
-ISOTET_CONSTANT max_edges = 4096u;          ///< active edges that a cluster can have: 64 points below, 64 above
+ISOTET_CONSTANT few_edges = 448u;            ///< active edges of a cluster that emit works through at once
 
 /// Marching tetrahedra by which corners are above (core/case_table.hpp): a polygon's four active edges, each corner above
 /// + 8 * corner below, in 6 bits; then the number of its triangles. engine/layout.hpp checks them against the table.
