@@ -50,6 +50,8 @@ public:
                 fmt::format("has the class {}, which is no field of cells or points", in_quotes(header->type)));
         if (auto read = entries(scanner, Level::top, false, nullptr); !read) return read.error();
         if (!field_.inside) return scanner.fail("has no internalField");
+        if (!has_boundary_ && header->type.starts_with("vol") && !header->type.ends_with("::Internal"))
+            return scanner.fail("has no boundaryField");
         return std::move(field_);
     }
 
@@ -78,7 +80,10 @@ private:
 
     Result<void> top_entry(Scanner& scanner, const std::string& key) {
         const bool internal_only = field_.header.type.ends_with("::Internal");
-        if (key == "boundaryField" && scanner.take('{')) return entries(scanner, Level::boundary, true, nullptr);
+        if (key == "boundaryField" && scanner.take('{')) {
+            has_boundary_ = true;
+            return entries(scanner, Level::boundary, true, nullptr);
+        }
         if (key == "internalField" || (internal_only && key == "value")) {
             variables_.insert_or_assign("internalField", scanner);
             auto values = values_of(scanner, "internalField", 0);
@@ -209,6 +214,7 @@ private:
     std::size_t most_;
     bool allow_outside_;
     FieldFile field_;
+    bool has_boundary_ = false;
     std::map<std::string, Scanner> variables_; ///< each behind its name
     int includes_ = 0, nesting_ = 0;
 };

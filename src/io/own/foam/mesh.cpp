@@ -86,6 +86,7 @@ std::vector<std::string> group_names(Scanner& scanner) {
     while (scanner.peek() != '(' && scanner.peek() != ';' && !scanner.at_end()) static_cast<void>(scanner.token());
     if (!scanner.take('(')) return names;
     while (scanner.peek() != ')' && !scanner.at_end()) names.emplace_back(scanner.token());
+    static_cast<void>(scanner.take(')'));
     return names;
 }
 
