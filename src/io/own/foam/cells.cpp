@@ -57,10 +57,15 @@ struct ShortLoop {
     }
     /// The same for both windings.
     ShortLoop unwound() const {
-        ShortLoop loop = *this;
-        loop.rotate();
-        if (loop.points[count - 1] < loop.points[1])
-            std::reverse(loop.points.begin() + 1, loop.points.begin() + static_cast<std::ptrdiff_t>(count));
+        std::size_t low = 0;
+        for (std::size_t k = 1; k < count; ++k) low = points[k] < points[low] ? k : low;
+        const std::size_t after = low + 1 == count ? 0 : low + 1, before = (low == 0 ? count : low) - 1;
+        const bool forward = points[after] < points[before];
+        ShortLoop loop{{points[low]}, count};
+        for (std::size_t k = 1, at = forward ? after : before; k < count; ++k) {
+            loop.points[k] = points[at];
+            at = forward ? (at + 1 == count ? 0 : at + 1) : (at == 0 ? count : at) - 1;
+        }
         return loop;
     }
 };
@@ -69,18 +74,19 @@ struct CellShape {
     std::uint8_t type;
     std::size_t corners, base; ///< points of the base
     bool base_outward;         ///< the base's loop, by the right hand, points out of the cell
-    std::vector<std::vector<std::uint8_t>> faces;
+    std::size_t face_count;
+    std::array<std::array<std::uint8_t, 4>, 6> faces; ///< a triangle ends in `none`
+
+    static constexpr std::uint8_t none = 255;
 };
 
-const std::array<CellShape, 4>& cell_shapes() {
-    static const std::array<CellShape, 4> shapes = {{
-        {10, 4, 3, false, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}}},
-        {14, 5, 4, false, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}},
-        {13, 6, 3, true, {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}},
-        {12, 8, 4, false, {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}},
-    }};
-    return shapes;
-}
+constexpr std::uint8_t none = CellShape::none;
+constexpr std::array<CellShape, 4> cell_shapes = {{
+    {10, 4, 3, false, 4, {{{0, 1, 3, none}, {1, 2, 3, none}, {2, 0, 3, none}, {0, 2, 1, none}}}},
+    {14, 5, 4, false, 5, {{{0, 3, 2, 1}, {0, 1, 4, none}, {1, 2, 4, none}, {2, 3, 4, none}, {3, 0, 4, none}}}},
+    {13, 6, 3, true, 5, {{{0, 1, 2, none}, {3, 5, 4, none}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}}}},
+    {12, 8, 4, false, 6, {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}}},
+}};
 
 /// What a cell becomes.
 struct BuiltCell {
@@ -96,11 +102,16 @@ public:
         const auto faces = faces_.of(cell);
         const CellShape* shape = shape_of(faces);
         if (!shape) return {};
-        std::array<ShortLoop, 6> loops; // outward
-        for (std::size_t i = 0; i < faces.size(); ++i) loops[i] = outward(cell, faces[i]);
+        std::array<ShortLoop, 6> loops, unwound; // outward; and canonical
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            loops[i] = outward(cell, faces[i]);
+            unwound[i] = loops[i].unwound();
+        }
         BuiltCell built{shape->type, {}};
         const std::span all(loops.data(), faces.size());
-        if (!place_corners(*shape, all, built.corners) || !has_faces(*shape, built.corners, all)) return {};
+        const std::span canonical(unwound.data(), faces.size());
+        if (!place_corners(*shape, all, canonical, built.corners) || !has_faces(*shape, built.corners, canonical))
+            return {};
         return built;
     }
 
@@ -132,9 +143,9 @@ private:
             if (points != 3 && points != 4) return nullptr;
             triangles += points == 3;
         }
-        if (faces.size() == 4) return triangles == 4 ? &cell_shapes()[0] : nullptr;
-        if (faces.size() == 5) return triangles == 4 ? &cell_shapes()[1] : triangles == 2 ? &cell_shapes()[2] : nullptr;
-        return triangles == 0 ? &cell_shapes()[3] : nullptr;
+        if (faces.size() == 4) return triangles == 4 ? &cell_shapes[0] : nullptr;
+        if (faces.size() == 5) return triangles == 4 ? &cell_shapes[1] : triangles == 2 ? &cell_shapes[2] : nullptr;
+        return triangles == 0 ? &cell_shapes[3] : nullptr;
     }
 
     ShortLoop outward(std::size_t cell, std::int32_t face) const {
@@ -146,10 +157,13 @@ private:
 
     /// Corners of the lowest base, then the one above each: a neighbour in a side face that is not in the base.
     static bool place_corners(const CellShape& shape, std::span<const ShortLoop> loops,
-                              std::array<std::int32_t, 8>& corners) {
-        const ShortLoop* base = nullptr;
-        for (const ShortLoop& loop : loops)
-            if (loop.count == shape.base && (!base || loop.unwound().points < base->unwound().points)) base = &loop;
+                              std::span<const ShortLoop> unwound, std::array<std::int32_t, 8>& corners) {
+        const ShortLoop *base = nullptr, *lowest = nullptr;
+        for (std::size_t i = 0; i < loops.size(); ++i)
+            if (loops[i].count == shape.base && (!lowest || unwound[i].points < lowest->points)) {
+                base = &loops[i];
+                lowest = &unwound[i];
+            }
         if (!base) return false;
         ShortLoop bottom = *base;
         if (!shape.base_outward) bottom.reverse();
@@ -167,18 +181,17 @@ private:
     }
 
     static bool has_faces(const CellShape& shape, const std::array<std::int32_t, 8>& corners,
-                          std::span<const ShortLoop> loops) {
+                          std::span<const ShortLoop> unwound) {
         for (std::size_t i = 0; i < shape.corners; ++i)
             for (std::size_t k = 0; k < i; ++k)
                 if (corners[i] == corners[k]) return false;
-        std::array<ShortLoop, 6> unwound;
-        for (std::size_t i = 0; i < loops.size(); ++i) unwound[i] = loops[i].unwound();
-        const auto end = unwound.begin() + static_cast<std::ptrdiff_t>(loops.size());
-        return std::ranges::all_of(shape.faces, [&](const std::vector<std::uint8_t>& face) {
+        for (std::size_t i = 0; i < shape.face_count; ++i) {
             ShortLoop loop;
-            for (const std::uint8_t corner : face) loop.points[loop.count++] = corners[corner];
-            return std::find(unwound.begin(), end, loop.unwound()) != end;
-        });
+            for (const std::uint8_t corner : shape.faces[i])
+                if (corner != none) loop.points[loop.count++] = corners[corner];
+            if (std::ranges::find(unwound, loop.unwound()) == unwound.end()) return false;
+        }
+        return true;
     }
 
     const Mesh& mesh_;
@@ -186,7 +199,7 @@ private:
 };
 
 std::size_t corner_count(std::uint8_t type) {
-    for (const CellShape& shape : cell_shapes())
+    for (const CellShape& shape : cell_shapes)
         if (shape.type == type) return shape.corners;
     return 0;
 }
@@ -205,8 +218,11 @@ Cells cells_of(const Mesh& mesh) {
     const CellBuilder builder(mesh, faces);
     std::vector<std::uint8_t> types(mesh.cells);
     std::vector<std::int64_t> corners(mesh.cells), stream(mesh.cells);
+    std::vector<std::array<std::int32_t, 8>> built(mesh.cells);
     core::parallel_each(mesh.cells, cells_per_task, [&](std::size_t cell) {
-        types[cell] = builder.build(cell).type;
+        const BuiltCell known = builder.build(cell);
+        types[cell] = known.type;
+        built[cell] = known.corners;
         corners[cell] = static_cast<std::int64_t>(corner_count(types[cell]));
         if (types[cell] != polyhedron) return;
         corners[cell] = static_cast<std::int64_t>(builder.points_of(cell).size());
@@ -221,7 +237,7 @@ Cells cells_of(const Mesh& mesh) {
     core::parallel_each(mesh.cells, cells_per_task, [&](std::size_t cell) {
         std::int32_t* to = connectivity.data() + offsets[cell];
         if (types[cell] != polyhedron) {
-            std::copy_n(builder.build(cell).corners.begin(), corner_count(types[cell]), to);
+            std::copy_n(built[cell].begin(), corner_count(types[cell]), to);
             return;
         }
         std::ranges::copy(builder.points_of(cell), to);
