@@ -17,6 +17,7 @@
 #include <isotet/grid.hpp>
 
 #include "io/own/file_kind.hpp"
+#include "io/own/read_openfoam.hpp"
 #include "io/own/text_scanner.hpp"
 
 namespace isotet {
@@ -152,9 +153,11 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
     const auto head = read_head(path);
     if (!head) return head.error();
     const std::string extension = extension_of(path);
+    const bool is_case = head->folder && is_openfoam_case(path);
     const GridReader* best = nullptr;
     int best_score = 0;
     for (const GridReader* reader : readers) {
+        if (is_case && reader->format.name == "openfoam") return reader;
         const int recognized = reader->recognizes(head->bytes, extension);
         const auto& extensions = reader->format.extensions;
         const bool named = std::find(extensions.begin(), extensions.end(), extension) != extensions.end();

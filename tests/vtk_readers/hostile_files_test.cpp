@@ -115,16 +115,6 @@ TEST_F(HostileHdf5, ASoundFileWithLinksInItsFolderIsRead) {
     EXPECT_EQ(result->info.files.size(), 2U) << "both are protected from being overwritten";
 }
 
-TEST_F(HostileFile, OpenfoamIncludesNothingFromOutside) {
-    ASSERT_TRUE(reader_confinement().files) << "this system has no Landlock";
-    const std::string secret = folder_.write("secret", "startTime 0;\n");
-    folder_.write(
-        "case/system/controlDict",
-        "FoamFile\n{\n version 2.0;\n format ascii;\n class dictionary;\n object controlDict;\n}\n#include \"" +
-            secret + "\"\nendTime 1;\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval 1;\n");
-    EXPECT_NE(message_of(folder_.write("case/a.foam", "")), "read");
-}
-
 TEST_F(HostileFile, AnAdfFileThatIsCutShortIsAnError) {
     const std::string whole = content_of((source_folder() / "data/cgns/wall_distance_adf.cgns").string());
     for (const std::size_t length : {whole.size() / 4, whole.size() / 2, whole.size() * 3 / 4, whole.size() - 4096})

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// AVS UCD, EnSight Gold, OpenFOAM and VTKHDF.
+// AVS UCD, EnSight Gold and VTKHDF.
 #include <algorithm>
 #include <filesystem>
 
@@ -189,60 +189,6 @@ TEST(ReadEnsight, RefusesFilesOutsideItsFolder) {
         ASSERT_FALSE(result);
         EXPECT_NE(result.error().message.find("only files below"), std::string::npos) << result.error().message;
     }
-}
-
-std::string foam(const std::string& kind, const std::string& object, const std::string& body) {
-    return "FoamFile\n{\n    version 2.0;\n    format ascii;\n    class " + kind + ";\n    object " + object +
-           ";\n}\n" + body;
-}
-
-/// Two hexahedra side by side.
-void write_foam_case(const TemporaryFolder& folder) {
-    folder.write("system/controlDict",
-                 foam("dictionary", "controlDict",
-                      "application x;\nstartFrom startTime;\nstartTime 0;\nendTime 1;\ndeltaT 1;\n"
-                      "writeControl timeStep;\nwriteInterval 1;\ntimeFormat general;\n"));
-    folder.write("constant/polyMesh/points",
-                 foam("vectorField", "points",
-                      "12\n(\n(0 0 0)\n(1 0 0)\n(2 0 0)\n(0 1 0)\n(1 1 0)\n(2 1 0)\n(0 0 1)\n(1 0 1)\n(2 0 1)\n"
-                      "(0 1 1)\n(1 1 1)\n(2 1 1)\n)\n"));
-    folder.write("constant/polyMesh/faces",
-                 foam("faceList", "faces",
-                      "11\n(\n4(1 4 10 7)\n4(0 6 9 3)\n4(2 5 11 8)\n4(0 1 7 6)\n4(1 2 8 7)\n4(3 9 10 4)\n4(4 10 11 5)\n"
-                      "4(0 3 4 1)\n4(1 4 5 2)\n4(6 7 10 9)\n4(7 8 11 10)\n)\n"));
-    folder.write("constant/polyMesh/owner", foam("labelList", "owner", "11\n(\n0\n0\n1\n0\n1\n0\n1\n0\n1\n0\n1\n)\n"));
-    folder.write("constant/polyMesh/neighbour", foam("labelList", "neighbour", "1\n(\n1\n)\n"));
-    folder.write("constant/polyMesh/boundary",
-                 foam("polyBoundaryMesh", "boundary",
-                      "1\n(\nwalls\n{\n    type wall;\n    nFaces 10;\n    startFace 1;\n}\n)\n"));
-    folder.write("1/p", foam("volScalarField", "p",
-                             "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar>\n2\n(\n3\n4\n)\n;\n"
-                             "boundaryField\n{\n    walls\n    {\n        type zeroGradient;\n    }\n}\n"));
-    folder.write("case.foam", "// names the case\n");
-}
-
-TEST(ReadOpenfoam, GivesCellsAndNoMadeUpPointFields) {
-    const TemporaryFolder folder;
-    write_foam_case(folder);
-    const auto result = read(folder.file("case.foam"));
-    ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(result->info.format, "openfoam");
-    EXPECT_EQ(result->grid.points.tuples(), 12u);
-    EXPECT_EQ(result->grid.cells.count(), 2u);
-    EXPECT_EQ(result->grid.cells.uniform_type, CellType::hexahedron);
-    EXPECT_TRUE(result->grid.point_fields.empty());
-    ASSERT_EQ(result->grid.cell_fields.size(), 1u);
-    EXPECT_EQ(result->grid.cell_fields[0].name, "p");
-    EXPECT_EQ(result->grid.cell_fields[0].values.at(1), 4);
-}
-
-TEST(ReadOpenfoam, TakesAnEmptyMarker) {
-    const TemporaryFolder folder;
-    write_foam_case(folder);
-    folder.write("empty.foam", "");
-    const auto result = read(folder.file("empty.foam"));
-    ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(result->grid.cells.count(), 2u);
 }
 
 TEST(ReadVtkhdf, GivesPointsCellsAndFields) {

@@ -15,6 +15,7 @@
 #include "io/own/read_legacy_vtk.hpp"
 #include "io/own/read_medit.hpp"
 #include "io/own/read_medit_parts.hpp"
+#include "io/own/read_openfoam.hpp"
 #include "io/own/read_tetgen.hpp"
 #include "io/own/read_vtk_xml.hpp"
 #include "io/own/text_scanner.hpp"
@@ -176,6 +177,7 @@ std::span<const GridReader> own_readers() {
     static const std::vector<GridReader> readers = [] {
         std::vector<GridReader> all = vtk_xml_readers();
         all.push_back(legacy_vtk_reader());
+        all.push_back(openfoam_reader());
         all.insert(all.end(), {
                                   GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh,
                                              inspect_gmsh_file, read_gmsh_file},

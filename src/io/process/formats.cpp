@@ -61,10 +61,6 @@ int recognizes_ensight(Head head, std::string_view extension) {
     if (has(head, "FORMAT") && has(head, "type:") && has(head, "ensight")) return 2;
     return extension == ".case" || extension == ".encas" ? 1 : 0;
 }
-int recognizes_openfoam(Head head, std::string_view extension) {
-    if (has(head, "FoamFile") && has(head, "controlDict")) return 2;
-    return extension == ".foam" || extension == ".openfoam" ? 1 : 0;
-}
 int recognizes_ucd(Head head, std::string_view extension) {
     if (extension != ".inp") return 0; // Abaqus uses the name, too
     return starts_with_numbers(head, 5) || head.starts_with("\x07") ? 2 : 0;
@@ -94,13 +90,12 @@ struct Named {
 };
 
 const auto& table() {
-    static const std::array<Named, 7> formats = {{
+    static const std::array<Named, 6> formats = {{
         {"exodus", recognizes_exodus, "Exodus II", {".e", ".ex2", ".exo", ".exii", ".g", ".gen"}},
         {"cgns", recognizes_cgns, "CGNS", {".cgns"}},
         {"vtkhdf", recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
         {"xdmf", recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
         {"ensight", recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},
-        {"openfoam", recognizes_openfoam, "OpenFOAM case", {".foam", ".openfoam"}},
         {"ucd", recognizes_ucd, "AVS UCD", {".inp"}},
     }};
     return formats;

@@ -30,14 +30,11 @@ Result<Descriptor> memory_file(const char* name, std::string_view content) {
     return file;
 }
 
-/// The folder of the file, of an OpenFOAM case that its controlDict stands for the folder of the case; the file itself,
-/// too, where its name is a link to another place.
+/// The folder of the file; the file itself, too, where its name is a link to another place.
 std::vector<std::string> readable_places(const Request& request) {
     if (request.options.allow_outside) return {"/"};
     std::error_code error;
-    fs::path folder = fs::path(request.path).parent_path();
-    if (request.format == "openfoam" && fs::path(request.path).filename() == "controlDict")
-        folder = folder.parent_path();
+    const fs::path folder = fs::path(request.path).parent_path();
     std::vector<std::string> places{fs::weakly_canonical(folder, error).string()};
     const fs::path file = fs::canonical(request.path, error);
     const fs::path inside = file.lexically_relative(places[0]);

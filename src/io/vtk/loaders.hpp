@@ -16,7 +16,6 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth);
-Result<Loaded> load_openfoam(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_ucd(const std::string& path, const ReadOptions& options, Depth depth);
 Result<Loaded> load_xdmf(const std::string& path, const ReadOptions& options, Depth depth);
 

@@ -1,0 +1,93 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Words, entries and lists of OpenFOAM's files, ASCII and binary.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/export.hpp>
+#include <isotet/result.hpp>
+
+#include "io/own/foam/case_files.hpp"
+
+namespace isotet::io::foam {
+
+/// What FoamFile { ... } says. `single`: the file states that its numbers are float32.
+struct Header {
+    std::string type; ///< "volScalarField"
+    bool binary = false, single = false;
+    std::size_t label_bytes = 4, scalar_bytes = 8;
+};
+
+/// Lists of point numbers, one after another.
+struct Faces {
+    std::vector<std::uint64_t> begins{0}; ///< one more than there are faces
+    std::vector<std::int32_t> points;
+
+    std::size_t count() const noexcept { return begins.size() - 1; }
+};
+
+/// A cursor over a file. Every error says which file, what was read, and where.
+///
+/// Guarantees   no memory is taken for a count before the bytes behind it are known to be there
+class ISOTET_API Scanner {
+public:
+    explicit Scanner(CaseText file) : file_(std::move(file)), text_(file_.text) {}
+
+    /// Reads FoamFile { ... } and applies it to what follows.
+    Result<Header> header();
+    const Header& format() const noexcept { return header_; }
+    /// For a file without a header of its own, which another one includes.
+    void use(const Header& header) { header_ = header; }
+    /// True when the first word is FoamFile.
+    bool is_foam() const;
+
+    bool at_end();
+    /// The next character that is neither space nor comment; '\0' at the end.
+    char peek();
+    /// Takes it, if it is `c`.
+    bool take(char c);
+    Result<void> expect(char c, std::string_view what);
+    /// A word, a string with its quotes, or one of ( ) { } [ ] ; alone. Empty at the end.
+    std::string_view token();
+    /// Behind a keyword: goes behind the ';' of its entry, or its whole { }.
+    Result<void> skip_entry();
+
+    /// A list of whole numbers below 2^31, or -1.
+    ///
+    /// `repeated`   as many as N{x} may stand for
+    Result<std::vector<std::int32_t>> labels(std::string_view what, std::size_t repeated);
+    /// A list of tuples. `repeated` as above, in tuples.
+    Result<std::vector<double>> tuples(std::size_t components, std::string_view what, std::size_t repeated);
+    /// One tuple: a number, or numbers in parentheses.
+    Result<std::vector<double>> tuple(std::size_t components, std::string_view what);
+    Result<Faces> faces();
+    Result<std::uint64_t> count(std::string_view what);
+
+    const CaseText& file() const noexcept { return file_; }
+    Error fail(std::string_view what) const;
+
+private:
+    template <class Read>
+    Result<void> list(std::string_view what, std::size_t item_bytes, std::size_t repeated, const Read& read);
+    bool number(double& value);
+    bool number(std::int64_t& value);
+    bool tuple_here(std::size_t components, std::vector<double>& to);
+    Result<void> face_here(Faces& faces);
+    Result<Faces> compact_faces();
+    bool skip_binary_list(std::string_view type);
+    void skip_space();
+
+    CaseText file_;
+    std::string_view text_;
+    std::size_t at_ = 0;
+    Header header_;
+};
+
+/// Tuples of a field class or a list type ("volVectorField", "vector"): how many numbers; 0 where it is none of both.
+std::size_t components_of(std::string_view type);
+
+} // namespace isotet::io::foam
