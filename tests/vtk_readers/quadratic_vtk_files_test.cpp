@@ -125,6 +125,10 @@ TEST(QuadraticFiles, OfCgnsHaveTheirNodesWhereCgnsPutsThem) {
         const auto result = read(path);
         ASSERT_TRUE(result) << cell.type << ": " << result.error().message;
         expect_exact(result->grid, result->grid.point_fields.at(0).values, cell.corners, cell.type);
+        const std::string whole = content_of(path);
+        const auto cut = read(folder.write("cut.cgns", whole.substr(0, whole.size() - 4096)));
+        ASSERT_FALSE(cut) << cell.type;
+        EXPECT_NE(cut.error().message.find("cut short"), std::string::npos) << cut.error().message;
     }
 }
 
