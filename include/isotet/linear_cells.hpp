@@ -49,7 +49,7 @@ struct RefinedPoints {
 /// What became of quadratic cells.
 struct RefinementReport {
     std::uint64_t curved_cells = 0;     ///< cells of degree 2 and above that were handled
-    std::uint64_t unknown_cells = 0;    ///< cells of degree 3 and above, and of Bezier kinds: left out
+    std::uint64_t unknown_cells = 0;    ///< pyramids of degree 3 and above, cells above degree 10: left out
     std::uint64_t left_out = 0;         ///< all cells that were left out, those of two dimensions too
     std::uint64_t quadratic_tets = 0;   ///< what all cells are split into
     std::uint64_t not_finite = 0;       ///< of these: dropped, for a node without a finite value
@@ -72,6 +72,8 @@ struct LinearizeReport {
     std::uint64_t folded = 0; ///< centred ones where no point was found that sees all faces
     std::uint64_t open = 0;   ///< polyhedra left out: some edge is not in two faces, or the faces are not one shell
     std::uint64_t cells = 0;  ///< linear cells that polyhedra became
+    std::uint64_t high_degree = 0;       ///< Lagrange cells of degree 3 and above, and Bezier cells, that were split
+    std::uint64_t high_degree_parts = 0; ///< cells of degree 2 that these became
 
     /// Sentences for the user, what was split and what was left out.
     ISOTET_API std::vector<std::string> notes() const;
@@ -127,7 +129,8 @@ ISOTET_API bool has_curved_cells(const Cells& cells);
 ///   open            left out: type 0 (empty), without corners
 ///
 /// Where some cells are quadratic, all cells become tets, each edge with a node bisected once, and cells that cannot be
-/// contoured are gone: VTK's types 24 to 27, 29, 31 to 33, 37, and 71 to 74 of order 1 and 2. Others of degree 2 and above
+/// contoured are gone: VTK's types 24 to 27, 29, 31 to 33, 37, and 71 to 74 of order 1 and 2. Those of 71 to 73 up to degree
+/// 10, and 78 to 80 (Bezier), are quadratic cells on their lattice first, with derived points. Others of degree 2 and above
 /// are left out.
 ///
 /// Faces may be wound in any way and stand in any order: the result is the same.

@@ -38,7 +38,8 @@ Surface join_all(std::vector<Extraction>&& extractions, const std::vector<double
 
 ContourOptions contour_options(std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                                std::string_view precision, std::optional<std::string_view> method,
-                               std::uint64_t surfaces, bool split_cells, const Frame* frame) {
+                               std::uint64_t surfaces, bool split_cells, const Frame* frame,
+                               const std::optional<RefineOptions>& refine) {
     ContourOptions options;
     if (method) options.method = choice("method", *method, words_of_method);
     options.surfaces = surfaces;
@@ -49,6 +50,18 @@ ContourOptions contour_options(std::string_view normals, bool edge_ends, bool so
     options.source_cells = source_cells;
     options.split_cells = split_cells;
     if (frame) options.frame = *frame;
+    options.refine = refine;
+    return options;
+}
+
+/// Nothing asked for: nothing.
+std::optional<RefineOptions> refine_options(std::optional<double> tolerance, std::optional<double> relative_tolerance,
+                                            double geometry_tolerance) {
+    if (!tolerance && !relative_tolerance) return std::nullopt;
+    RefineOptions options;
+    options.tolerance = tolerance.value_or(0);
+    options.relative_tolerance = relative_tolerance.value_or(0);
+    options.geometry_tolerance = geometry_tolerance;
     return options;
 }
 
@@ -104,6 +117,9 @@ nb::tuple extracted_out(Extracted&& extracted) {
     how["pack_seconds"] = extracted.how.pack_seconds;
     how["extract_seconds"] = extracted.how.extract_seconds;
     how["notes"] = extracted.how.notes;
+    const RefinementReport& refinement = extracted.how.refinement;
+    how["field_bound"] = refinement.curved_cells > 0 && refinement.refined ? nb::object(nb::float_(refinement.field_bound))
+                                                                         : nb::object(nb::none());
     how["vertex_counts"] = extracted.vertex_counts;
     return nb::make_tuple(std::move(extracted.surface), how);
 }
@@ -114,12 +130,15 @@ void add_sessions(nb::module_& module) {
             "__init__",
             [](ContourOptions* self, std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces,
-               bool split_cells, const Frame* frame) {
-                new (self) ContourOptions(contour_options(normals, edge_ends, source_cells, ties, precision, method,
-                                                          surfaces, split_cells, frame));
+               bool split_cells, const Frame* frame, std::optional<double> tolerance,
+               std::optional<double> relative_tolerance, double geometry_tolerance) {
+                new (self) ContourOptions(
+                    contour_options(normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells,
+                                    frame, refine_options(tolerance, relative_tolerance, geometry_tolerance)));
             },
             "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a,
-            "split_cells"_a = false, "frame"_a.none() = nb::none());
+            "split_cells"_a = false, "frame"_a.none() = nb::none(), "tolerance"_a.none() = nb::none(),
+            "relative_tolerance"_a.none() = nb::none(), "geometry_tolerance"_a = 0.0);
 
     nb::class_<Contour>(module, "Contour")
         .def(

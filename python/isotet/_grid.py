@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _isotet
-from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in
+from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in, tolerances_in
 from ._pieces import Frame
 from ._surface import Surface, call_options
 
@@ -135,7 +135,8 @@ class Grid:
                 fields: Mapping[str, Any] | Iterable[str] | None = None,
                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
-                split_cells: bool = False, frame: Frame | None = None, threads: int = 0,
+                split_cells: bool = False, frame: Frame | None = None, tolerance: float | str | None = None,
+                geometry_tolerance: float = 0.0, threads: int = 0,
                 progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
 
@@ -161,6 +162,12 @@ class Grid:
             Hexahedra, wedges and pyramids are split into tets, which gives more and smaller triangles.
         frame
             The grid is a piece of one with this frame: its surface is a part of the surface of the whole, bit for bit.
+        tolerance
+            Curved cells are refined until the field is within this of their quadratic one: a number in its unit, or "0.1%" of its
+            range; `Surface.field_bound` is what was reached. None: they are split at their nodes, without a bound.
+        geometry_tolerance
+            With `tolerance`: the tets are at most this far from the curved cells. 0: edges leave them by a hundredth of their
+            length at most.
         threads
             At most so many; 0: all.
         progress
@@ -171,7 +178,8 @@ class Grid:
         values = isovalues_in(isovalues)
         call = call_options(threads, progress)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
-                                         split_cells, frame and frame._frame)  # fmt: skip
+                                         split_cells, frame and frame._frame,
+                                         *tolerances_in(tolerance, geometry_tolerance))  # fmt: skip
         session = _isotet.Contour(self._grid, self._field(field, call, frame is not None), self._carried(fields, "fields"),
                                   self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
@@ -310,8 +318,9 @@ class Contour:
     It extracts directly, and packs the grid when so many surfaces were asked for that this pays; `set` finds out what is the
     same as before.
 
-    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells, frame
-        As for `Grid.contour`.
+    grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells, frame, tolerance,
+    geometry_tolerance
+        As for `Grid.contour`. With a tolerance curved cells are refined for each isovalue, field and step again.
     surfaces
         How many surfaces will be asked for in all; 0: not known.
 
@@ -324,20 +333,22 @@ class Contour:
     'field'
     """
 
-    __slots__ = ("_session", "_options", "__weakref__")
+    __slots__ = ("_session", "_options", "_tolerances", "__weakref__")
 
     def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
                  edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
                  method: str | None = None, split_cells: bool = False, surfaces: int = 0,
-                 frame: Frame | None = None):  # fmt: skip
+                 frame: Frame | None = None, tolerance: float | str | None = None,
+                 geometry_tolerance: float = 0.0):  # fmt: skip
         call = call_options(0, None)
+        self._tolerances = tolerances_in(tolerance, geometry_tolerance)
         self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
         self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None), grid._carried(fields, "fields"),
                                         grid._carried(cell_fields, "cell_fields"), self._options_with(frame),
                                         call)  # fmt: skip
 
     def _options_with(self, frame: Frame | None) -> _isotet.ContourOptions:
-        return _isotet.ContourOptions(*self._options, frame and frame._frame)
+        return _isotet.ContourOptions(*self._options, frame and frame._frame, *self._tolerances)
 
     def set(self, grid: Grid, field=None, *, fields=None, cell_fields=None, frame: Frame | None = None, threads: int = 0,
             progress: Progress | None = None) -> str:  # fmt: skip
@@ -378,7 +389,8 @@ class Contour:
 def contour(points, cells, values, isovalues: float | Sequence[float], *, offsets=None, types=None, normals: str = "none",
             fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
             edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
-            method: str | None = None, split_cells: bool = False, frame: Frame | None = None, threads: int = 0,
+            method: str | None = None, split_cells: bool = False, frame: Frame | None = None,
+            tolerance: float | str | None = None, geometry_tolerance: float = 0.0, threads: int = 0,
             progress: Progress | None = None) -> Surface:  # fmt: skip
     """The surface on which values at the points of a grid, linear in each tetrahedron, equal an isovalue.
 
@@ -404,7 +416,8 @@ def contour(points, cells, values, isovalues: float | Sequence[float], *, offset
     grid = Grid(points, cells, offsets=offsets, types=types)
     return grid.contour(isovalues, values, normals=normals, fields=fields, cell_fields=cell_fields, edge_ends=edge_ends,
                         source_cells=source_cells, ties=ties, precision=precision, method=method,
-                        split_cells=split_cells, frame=frame, threads=threads, progress=progress)  # fmt: skip
+                        split_cells=split_cells, frame=frame, tolerance=tolerance, geometry_tolerance=geometry_tolerance,
+                        threads=threads, progress=progress)  # fmt: skip
 
 
 def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients: bool = False, source_cells: bool = False,

@@ -126,6 +126,11 @@ class Surface:
         return self._how.get("notes", [])
 
     @property
+    def field_bound(self) -> float | None:
+        """With `tolerance`, where there are curved cells: how far the field is at most from their quadratic one. Else None."""
+        return self._how.get("field_bound")
+
+    @property
     def method(self) -> str | None:
         """"direct" or "clusters": how the surface was made. Both give the same one, in another order."""
         return self._how.get("method")

@@ -115,6 +115,24 @@ ReadOptions with_displacement(ReadOptions options) {
     return options;
 }
 
+/// Bezier cells with weights are rational: their values are no weighted sums with fixed weights.
+Result<void> check_bezier(const ReadResult& result) {
+    constexpr std::uint8_t first_bezier = 75, last_bezier = 81;
+    constexpr std::string_view name = "RationalWeights";
+    if (std::ranges::none_of(result.info.fields, [&](const FieldInfo& field) {
+            return field.name == name && field.association == Association::point;
+        }))
+        return {};
+    const Array& types = result.grid.cells.types;
+    for (std::size_t cell = 0; cell < types.tuples(); ++cell)
+        if (types.at(cell) >= first_bezier && types.at(cell) <= last_bezier)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("cell {} is a rational Bezier cell (there is a point field "
+                                     "'{}'), but only those without weights are handled",
+                                     cell, name)};
+    return {};
+}
+
 Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
@@ -134,6 +152,7 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
         return error;
     };
     if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
+    if (auto checked = check_bezier(*result); !checked) return in_file(checked.error());
     if (options.displace.empty()) return result;
     if (auto displaced = displace(options.displace, *result); !displaced) return displaced.error();
     if (!wanted(options, Association::point, options.displace)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "core/cell_kind.hpp"
 #include "core/cells.hpp"
+#include "core/node_order.hpp"
 
 namespace isotet::linear {
 
@@ -94,6 +96,30 @@ constexpr std::optional<NodeLayout> layout_of(std::uint8_t type, std::uint64_t n
     case 74: return nodes == 5 ? with({pyramid, 5, 0, 0, false}) : with({pyramid, 14, 8, 1, false});
     default: return std::nullopt;
     }
+}
+
+/// A cell that is split into cells of degree 2 first.
+struct HighDegree {
+    core::CellKind kind;
+    unsigned degree;
+    bool bezier; ///< its nodes are control points
+
+    auto operator<=>(const HighDegree&) const = default;
+};
+
+/// Lagrange cells of degree 3 to core::max_degree, Bezier cells from degree 1 on. Pyramids have no order of nodes that
+/// programs agree on.
+constexpr std::optional<HighDegree> high_degree_of(std::uint8_t type, std::uint64_t nodes) {
+    constexpr std::uint8_t first_bezier = 78;
+    constexpr std::array<core::CellKind, 3> kinds{core::CellKind::tetrahedron, core::CellKind::hexahedron,
+                                                  core::CellKind::wedge};
+    const bool bezier = type >= first_bezier;
+    const std::uint8_t first = bezier ? first_bezier : first_lagrange;
+    if (type < first || type - first > 2) return std::nullopt;
+    const core::CellKind kind = kinds[static_cast<std::size_t>(type - first)];
+    const unsigned degree = core::degree_of(kind, nodes);
+    if (degree < (bezier ? 1U : 3U)) return std::nullopt;
+    return HighDegree{kind, degree, bezier};
 }
 
 /// The number of nodes of a type that has only one; 0 for others.

@@ -13,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "linear/by_numbers.hpp"
 #include "linear/curved_kinds.hpp"
+#include "linear/high_degree.hpp"
 #include "linear/parts.hpp"
 #include "linear/polyhedron.hpp"
 #include "linear/quadratic.hpp"
@@ -44,6 +45,20 @@ Error nothing_left(const Grid& grid, const LinearizeReport& report) {
                     grid.points.tuples(), grid.cells.count(), report.open, report.polyhedra));
 }
 
+Result<void> check_high_degree(const Grid& grid, const core::CellReader& cells, const Progress& progress) {
+    std::atomic<std::size_t> lowest{cells.count()};
+    core::parallel_pieces(cells.count(), 1 << 12, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t cell = begin; cell < end && cell < lowest.load(std::memory_order_relaxed); ++cell) {
+            if (!high_degree_of(cells.type(cell), cells.corners(cell))) continue;
+            if (fault_of_high_degree(grid, cells, cell).empty()) continue;
+            std::size_t seen = lowest.load(std::memory_order_relaxed);
+            while (cell < seen && !lowest.compare_exchange_weak(seen, cell, std::memory_order_relaxed)) {}
+        }
+    });
+    if (lowest.load() < cells.count()) return invalid_data(fault_of_high_degree(grid, cells, lowest.load()));
+    return {};
+}
+
 /// Where numbers decide, they are the indices of points.
 Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
@@ -52,17 +67,23 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
     if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
     const auto faces = core::FaceReader::open(grid.cells);
     if (!faces) return faces.error();
+    const bool high_degree = has_high_degree(*cells);
+    if (high_degree)
+        if (auto sound = check_high_degree(grid, *cells, progress); !sound) return sound.error();
     progress("linearize", 0.1);
 
     std::vector<Parts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
     core::parallel_pieces(blocks.size(), 4, progress, [&](std::size_t begin, std::size_t end) {
         PolyhedronSplitter splitter(grid, *cells, *faces, options);
+        HighDegreeSplitter by_degree(*cells);
         std::vector<std::uint64_t> corners;
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
                 if (cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell))
                     splitter.split(cell, blocks[b]);
+                else if (const auto what = high_degree_of(cells->type(cell), cells->corners(cell)))
+                    by_degree.split(cell, *what, blocks[b]);
                 else keep_cell(*cells, cell, corners, blocks[b]);
             }
         }
@@ -71,6 +92,7 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
     progress("linearize", 0.8);
     LinearGrid out = joined(blocks, grid.points.tuples());
     out.user_cells = cells->count();
+    if (high_degree) merge_rows(out);
     const auto types = out.grid.cells.types.as<std::uint8_t>();
     if (std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
         return nothing_left(grid, out.report);
@@ -85,9 +107,10 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
 
 Result<LinearGrid> split_polyhedra(const Grid& user, const LinearizeOptions& options, const Progress& progress) {
     const Grid grid{user.points, user.cells, {}, {}, user.point_numbers};
-    if (!has_polyhedra(grid.cells)) {
-        const auto cells = core::CellReader::open(grid);
-        if (!cells) return cells.error();
+    const auto cells = core::CellReader::open(grid);
+    if (!cells) return cells.error();
+    const bool high_degree = has_curved_cells(grid.cells) && has_high_degree(*cells);
+    if (!has_polyhedra(grid.cells) && !high_degree) {
         LinearGrid same;
         same.grid = grid;
         same.user_points = grid.points.tuples();

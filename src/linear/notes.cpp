@@ -16,6 +16,11 @@ std::vector<std::string> LinearizeReport::notes() const {
             "{} polyhedra have no point that sees all their faces: the surface may be folded there", folded));
     if (open > 0)
         out.push_back(fmt::format("{} of {} polyhedra were left out: their faces do not close", open, polyhedra));
+    if (high_degree > 0)
+        out.push_back(
+            fmt::format("{} cells of degree 3 and above or Bezier kinds were split into {} cells of degree 2 on "
+                        "their own lattice: bounds are against these (docs/cells.md)",
+                        high_degree, high_degree_parts));
     return out;
 }
 

@@ -38,6 +38,8 @@ void add(LinearizeReport& sum, const LinearizeReport& part) {
     sum.folded += part.folded;
     sum.open += part.open;
     sum.cells += part.cells;
+    sum.high_degree += part.high_degree;
+    sum.high_degree_parts += part.high_degree_parts;
 }
 
 template <class Index>

@@ -129,6 +129,7 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     if (!made) return made.error();
     progress("refine", 0.9);
     LinearGrid& out = *made;
+    report.curved_cells += before.report.high_degree - before.report.high_degree_parts; // the user's cells
     report.points = out.refined.count();
     report.refined = field != nullptr;
     report.tolerance = tolerance;

@@ -20,8 +20,9 @@ namespace {
 /// The linear type with the same corners; the type itself where it is none of ours.
 std::uint8_t type_of_corners(std::uint8_t type, std::uint64_t nodes) {
     const auto layout = linear::layout_of(type, nodes);
-    if (!layout) return type;
-    switch (layout->kind) {
+    const auto high = linear::high_degree_of(type, nodes);
+    if (!layout && !high) return type;
+    switch (layout ? layout->kind : high->kind) {
     case core::CellKind::tetrahedron: return static_cast<std::uint8_t>(CellType::tetrahedron);
     case core::CellKind::pyramid: return static_cast<std::uint8_t>(CellType::pyramid);
     case core::CellKind::wedge: return static_cast<std::uint8_t>(CellType::wedge);
@@ -49,8 +50,9 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
         out.push_back(fmt::format("{} of {} quadratic tets were left out: a node has no finite value",
                                   report.not_finite, report.quadratic_tets));
     if (report.unknown_cells > 0)
-        out.push_back(fmt::format("{} curved cells were left out: degree 3 and above and Bezier cells are not handled",
-                                  report.unknown_cells));
+        out.push_back(fmt::format(
+            "{} curved cells were left out: pyramids of degree 3 and above and cells above degree 10 are not handled",
+            report.unknown_cells));
     return out;
 }
 
@@ -109,8 +111,10 @@ FieldReport CurvedInput::field() const {
     std::vector<bool> seen(cells.points());
     for (std::size_t cell = 0; cell < cells.count(); ++cell) {
         const auto layout = linear::layout_of(cells.type(cell), cells.corners(cell));
-        const std::uint64_t nodes =
-            layout ? layout->nodes : static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
+        const bool high = linear::high_degree_of(cells.type(cell), cells.corners(cell)).has_value();
+        const std::uint64_t nodes = high     ? cells.corners(cell)
+                                    : layout ? layout->nodes
+                                             : static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
         for (std::uint64_t i = 0; i < nodes; ++i) {
             const std::uint64_t at = cells.first(cell) + i;
             if (at >= cells.connectivity_size()) break;

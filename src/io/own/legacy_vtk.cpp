@@ -373,6 +373,7 @@ private:
         };
         if (count > size) return does_not_fit(size);
         cells.count = count;
+        cells.interleaved = true;
         if (take_regular(cells, numbers)) return {};
         core::Buffer<std::int32_t> corners(numbers.size());
         core::Buffer<std::int64_t> offsets(static_cast<std::size_t>(count) + 1);

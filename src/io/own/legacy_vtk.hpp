@@ -24,6 +24,7 @@ struct LegacyCells {
     Array offsets;             ///< where the corners of each cell begin, and those of the last one end; or empty:
     std::uint64_t corners = 0; ///< so many of each cell
     std::uint64_t count = 0;
+    bool interleaved = false; ///< as before version 5.1
 
     /// Calls visit(corners) for each cell; offsets have been checked.
     void each(const std::function<void(std::span<const std::uint64_t>)>& visit) const;

@@ -75,6 +75,7 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
         return broken(section, fmt::format("states {} elements, but element {} is broken or missing at {}", count,
                                            done + 1, source.where()));
     };
+    std::vector<std::uint64_t> points;
     for (std::int64_t done = 0; done < count;) {
         ElementBlock block;
         if (!read_block_header(source, block)) return missing(done);
@@ -96,7 +97,7 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
                 if (t == 0) physical = tag;
                 if (t == 1) geometrical = tag;
             }
-            mesh.cells.start(type->vtk_type, type->nodes);
+            points.clear();
             for (std::uint32_t n = 0; n < type->nodes; ++n) {
                 std::int64_t node = 0;
                 if (!source.number(node)) return missing(done);
@@ -105,8 +106,9 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
                     return broken(section,
                                   fmt::format("element {} has node {}, which is not among the nodes", number, node));
                 }
-                mesh.cells.corner(point);
+                points.push_back(point);
             }
+            add_element(mesh.cells, *type, points);
             if (wants.element_numbers) mesh.elements.add(number);
             if (wants.physical) mesh.physical.push_back(physical);
             if (wants.geometrical) mesh.geometrical.push_back(geometrical);

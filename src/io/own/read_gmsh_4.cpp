@@ -163,6 +163,7 @@ Result<void> read_elements_4(const Section& section, Source& source, const Wants
     const auto counts = read_counts(section, source, "element", 2, 0);
     if (!counts) return counts.error();
     mesh.cells.reserve(4 * static_cast<std::uint64_t>(counts->total));
+    std::vector<std::uint64_t> points;
     std::int64_t done = 0;
     for (std::int64_t index = 0; index < counts->blocks; ++index) {
         const auto block = read_block(section, source, *counts, index, done);
@@ -179,7 +180,7 @@ Result<void> read_elements_4(const Section& section, Source& source, const Wants
         for (std::int64_t i = 0; i < block->count; ++i, ++done) {
             std::int64_t number = 0, node = 0;
             bool whole = source.number(number);
-            mesh.cells.start(type->vtk_type, type->nodes);
+            points.clear();
             for (std::uint32_t n = 0; n < type->nodes; ++n) {
                 whole = whole && source.number(node);
                 if (!whole) {
@@ -191,8 +192,9 @@ Result<void> read_elements_4(const Section& section, Source& source, const Wants
                     return broken(section,
                                   fmt::format("element {} has node {}, which is not among the nodes", number, node));
                 }
-                mesh.cells.corner(point);
+                points.push_back(point);
             }
+            add_element(mesh.cells, *type, points);
             if (wants.element_numbers) mesh.elements.add(number);
             if (!pace.goes_on(source.position())) return Pace::cancelled();
         }

@@ -111,29 +111,4 @@ Result<const Section*> only_section(const File& file, std::string_view name) {
 
 std::string ByteSource::where() const { return fmt::format("byte {} of the section", reader_.position()); }
 
-std::optional<ElementType> element_type(std::int32_t number) {
-    struct Row {
-        std::int32_t number;
-        ElementType type;
-    };
-    // Gmsh's number; VTK's number (68 to 74: Lagrange cells of any order) and nodes.
-    static constexpr Row rows[] = {
-        {1, {3, 2}},     {2, {5, 3}},     {3, {9, 4}},      {4, {10, 4}},    {5, {12, 8}},    {6, {13, 6}},
-        {7, {14, 5}},    {8, {21, 3}},    {9, {22, 6}},     {10, {28, 9}},   {11, {24, 10}},  {12, {29, 27}},
-        {13, {32, 18}},  {14, {74, 14}},  {15, {1, 1}},     {16, {23, 8}},   {17, {25, 20}},  {18, {26, 15}},
-        {19, {27, 13}},  {20, {69, 9}},   {21, {69, 10}},   {22, {69, 12}},  {23, {69, 15}},  {24, {69, 15}},
-        {25, {69, 21}},  {26, {68, 4}},   {27, {68, 5}},    {28, {68, 6}},   {29, {71, 20}},  {30, {71, 35}},
-        {31, {71, 56}},  {36, {70, 16}},  {37, {70, 25}},   {38, {70, 36}},  {42, {69, 28}},  {43, {69, 36}},
-        {44, {69, 45}},  {45, {69, 55}},  {46, {69, 66}},   {47, {70, 49}},  {48, {70, 64}},  {49, {70, 81}},
-        {50, {70, 100}}, {51, {70, 121}}, {62, {68, 7}},    {63, {68, 8}},   {64, {68, 9}},   {65, {68, 10}},
-        {66, {68, 11}},  {71, {71, 84}},  {72, {71, 120}},  {73, {71, 165}}, {74, {71, 220}}, {75, {71, 286}},
-        {90, {73, 40}},  {91, {73, 75}},  {92, {72, 64}},   {93, {72, 125}}, {94, {72, 216}}, {95, {72, 343}},
-        {96, {72, 512}}, {97, {72, 729}}, {98, {72, 1000}}, {118, {74, 30}}, {119, {74, 55}},
-    };
-    const auto found =
-        std::find_if(std::begin(rows), std::end(rows), [&](const Row& row) { return row.number == number; });
-    if (found == std::end(rows)) return std::nullopt;
-    return found->type;
-}
-
 } // namespace isotet::io::gmsh

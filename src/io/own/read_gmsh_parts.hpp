@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +30,7 @@ struct Section {
 };
 
 struct File {
-    bool version_4 = false;       ///< 4.1; else 2.0 to 2.2
+    bool version_4 = false; ///< 4.1; else 2.0 to 2.2
     bool binary = false;
     bool swapped = false;         ///< binary, in the other byte order
     std::size_t number_bytes = 4; ///< of a node or element number in $Nodes and $Elements, binary
@@ -48,8 +49,12 @@ Error broken(const Section& section, const std::string& message);
 struct ElementType {
     std::uint8_t vtk_type;
     std::uint32_t nodes;
+    std::span<const std::uint16_t> order; ///< for each node in VTK's order its position in the file; empty: the same
 };
 std::optional<ElementType> element_type(std::int32_t number);
+
+/// A cell of points in the order of the file.
+void add_element(CellList& cells, const ElementType& type, std::span<const std::uint64_t> points);
 
 /// What is wanted beside points and cells.
 struct Wants {
@@ -124,7 +129,8 @@ public:
 
     /// `number_bytes`   0: as in $Nodes and $Elements
     ByteSource(const File& file, const Section& section, std::size_t from = 0, std::size_t number_bytes = 0)
-        : reader_(section.body, file.swapped), start_(section.start),
+        : reader_(section.body, file.swapped),
+          start_(section.start),
           number_bytes_(number_bytes ? number_bytes : file.number_bytes) {
         reader_.seek(from);
     }

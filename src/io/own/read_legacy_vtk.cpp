@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "io/own/join.hpp"
 #include "io/own/legacy_vtk.hpp"
+#include "io/own/old_hexahedra.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/vtk_xml/load.hpp"
 
@@ -35,6 +36,7 @@ Result<Cells> cells_of(const LegacyFile& file) {
     cells.connectivity = list.connectivity;
     cells.types = file.cell_types;
     cells.offsets = list.offsets.empty() ? offsets_of(list) : list.offsets;
+    if (list.interleaved) reorder_old_hexahedra(cells);
     vtk_xml::simplify(cells);
     return cells;
 }

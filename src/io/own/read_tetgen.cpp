@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/own/read_tetgen.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -170,6 +171,30 @@ Result<void> read_nodes(RecordFile& file, const NodeHeader& header, const ReadOp
     return {};
 }
 
+/// Where TetGen has the nodes of a tetrahedron of ten that VTK numbers 4 to 9; other programs write VTK's order.
+constexpr std::array<std::uint8_t, 6> tetgen_order{6, 7, 9, 5, 8, 4}, same_order{4, 5, 6, 7, 8, 9};
+
+/// How far the nodes are from the middles of their edges: the sum of the squares.
+double distance_from_middles(const Array& points, const std::array<std::uint64_t, 10>& tet,
+                             const std::array<std::uint8_t, 6>& order) {
+    static constexpr std::array<std::array<std::uint8_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+    double sum = 0;
+    for (std::size_t e = 0; e < 6; ++e)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double middle = (points.at(tet[edges[e][0]], k) + points.at(tet[edges[e][1]], k)) / 2;
+            const double distance = points.at(tet[order[e]], k) - middle;
+            sum += distance * distance;
+        }
+    return sum;
+}
+
+/// The nodes of ten stand in the order in which they are nearer to the middles of edges, TetGen's where both fit.
+void add_quadratic_tet(CellList& cells, const Array& points, const std::array<std::uint64_t, 10>& tet) {
+    const bool same = distance_from_middles(points, tet, same_order) < distance_from_middles(points, tet, tetgen_order);
+    for (std::size_t i = 0; i < 4; ++i) cells.corner(tet[i]);
+    for (const std::uint8_t node : same ? same_order : tetgen_order) cells.corner(tet[node]);
+}
+
 Result<void> read_elements(RecordFile& file, const ElementHeader& header, const ReadOptions& options,
                            const NumberMap& points, std::size_t start, Pace& pace, Grid& grid) {
     constexpr std::uint8_t tetrahedron = 10, quadratic_tetrahedron = 24;
@@ -181,6 +206,7 @@ Result<void> read_elements(RecordFile& file, const ElementHeader& header, const 
         std::int64_t number = 0;
         if (!line.number_of_line(number)) return file.broken_record(header.count, i);
         cells.start(header.nodes == 4 ? tetrahedron : quadratic_tetrahedron, static_cast<std::uint32_t>(header.nodes));
+        std::array<std::uint64_t, 10> tet{};
         for (std::int64_t k = 0; k < header.nodes; ++k) {
             std::int64_t corner = 0;
             if (!line.number_of_line(corner)) return file.broken_record(header.count, i);
@@ -189,8 +215,11 @@ Result<void> read_elements(RecordFile& file, const ElementHeader& header, const 
                 return file.broken(
                     fmt::format("has tet {} with point {}, which is not in the .node file", number, corner));
             }
-            cells.corner(point);
+            tet[static_cast<std::size_t>(k)] = point;
         }
+        if (header.nodes == 10) add_quadratic_tet(cells, grid.points, tet);
+        else
+            for (std::size_t k = 0; k < 4; ++k) cells.corner(tet[k]);
         if (!attributes.read(line)) return file.broken_record(header.count, i);
         if (!pace.goes_on(start + line.position())) return Pace::cancelled();
     }

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // CGNS in ADF or HDF5; zones are pieces. VTK glues VelocityX, VelocityY and VelocityZ into Velocity; here they come
 // apart again, so that fields have the names of the file.
+#include <algorithm>
 #include <array>
 
 #include <fmt/core.h>
@@ -79,6 +80,19 @@ void choose_bases(vtkCGNSReader& reader, const ReadOptions& options, Depth depth
                                 count, escaped(reader.GetBaseArrayName(0)), others));
 }
 
+/// VTK takes PYRA_14 for its pyramid of 13 nodes: the node in the base makes it a Lagrange pyramid.
+void name_pyramids(Cells& cells) {
+    constexpr std::uint8_t pyramid_13 = 27, lagrange_pyramid = 74;
+    if (cells.types.empty()) return;
+    const auto types = cells.types.as<std::uint8_t>();
+    if (std::ranges::find(types, pyramid_13) == types.end()) return;
+    std::vector<std::uint8_t> named(types.begin(), types.end());
+    for (std::size_t cell = 0; cell < named.size(); ++cell)
+        if (named[cell] == pyramid_13 && cells.offsets.at(cell + 1) - cells.offsets.at(cell) == 14)
+            named[cell] = lagrange_pyramid;
+    cells.types = Array::own(std::move(named));
+}
+
 } // namespace
 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
@@ -104,6 +118,7 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
     if (auto set = MarkedMemory::check(path, *loaded); !set) return set.error();
     loaded->info.fields = unglued(loaded->info.fields);
     for (Piece& piece : loaded->pieces) {
+        name_pyramids(piece.grid.cells);
         piece.grid.point_fields = unglued(std::move(piece.grid.point_fields), options, Association::point);
         piece.grid.cell_fields = unglued(std::move(piece.grid.cell_fields), options, Association::cell);
     }

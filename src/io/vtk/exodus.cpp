@@ -2,6 +2,8 @@
 // Exodus II: the blocks of a file share their nodes; the files of a parallel run ("name.4.0" to "name.4.3") are joined
 // by the global numbers of their nodes.
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -38,6 +40,21 @@ bool is_uniform(const std::vector<ExodusFile::Block>& blocks, std::uint8_t& type
     return type != 0;
 }
 
+/// For each node in VTK's order its position in Exodus's; empty: the same. Upright edges come before those of the top, and the
+/// hexahedron's centre before its faces.
+std::span<const std::uint8_t> node_order(std::uint8_t type) {
+    static constexpr std::array<std::uint8_t, 27> hexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
+                                                             18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
+    static constexpr std::array<std::uint8_t, 18> wedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
+    switch (type) {
+    case 25: return std::span(hexahedron).first(20);
+    case 29: return hexahedron;
+    case 26: return std::span(wedge).first(15);
+    case 32: return wedge;
+    default: return {};
+    }
+}
+
 /// Node numbers of the file, from 1, to point numbers from 0, appended.
 Result<void> append_corners(const std::vector<std::int64_t>& nodes, const ExodusFile::Block& block,
                             std::uint64_t points, std::vector<std::int64_t>& connectivity) {
@@ -48,6 +65,11 @@ Result<void> append_corners(const std::vector<std::int64_t>& nodes, const Exodus
                                      block.id, nodes[i], points)};
         connectivity.push_back(nodes[i] - 1);
     }
+    const auto order = node_order(cell_type_of_element(block.topology, block.corners));
+    if (order.size() != block.corners) return {};
+    for (std::size_t first = 0; first + order.size() <= nodes.size(); first += order.size())
+        for (std::size_t i = 0; i < order.size(); ++i)
+            connectivity[connectivity.size() - nodes.size() + first + i] = nodes[first + order[i]] - 1;
     return {};
 }
 

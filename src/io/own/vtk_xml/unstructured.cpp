@@ -13,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "io/own/face_streams.hpp"
 #include "io/own/narrow_indices.hpp"
+#include "io/own/old_hexahedra.hpp"
 #include "io/own/surface_scalars.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/vtk_xml/load.hpp"
@@ -86,10 +87,17 @@ public:
         if (!connectivity) return connectivity.error();
         cells.connectivity = std::move(*connectivity);
         if (auto read = read_faces(cells); !read) return read.error();
+        if (is_of_vtk_8()) reorder_old_hexahedra(cells);
         return cells;
     }
 
 private:
+    bool is_of_vtk_8() const {
+        TextScanner version(document_.tree.child("VTKFile").attribute("version").as_string("2.1"));
+        double number = 2.1;
+        return version.number(number) && number < 2.1;
+    }
+
     bool has(std::string_view name) const {
         return std::ranges::find(section_.arrays, name, &DataArray::name) != section_.arrays.end();
     }

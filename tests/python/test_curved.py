@@ -1,0 +1,52 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Curved cells, refined to a tolerance."""
+
+import numpy as np
+import pytest
+
+import isotet
+
+MIDDLES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+
+
+def ball():
+    """Two quadratic tetrahedra with the squared distance from a point."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], float)
+    points, known, cells = [*corners], {}, []
+    for tet in ([0, 1, 2, 3], [1, 2, 3, 4]):
+        nodes = list(tet)
+        for a, b in MIDDLES:
+            pair = tuple(sorted((tet[a], tet[b])))
+            if pair not in known:
+                known[pair] = len(points)
+                points.append((corners[pair[0]] + corners[pair[1]]) / 2)
+            nodes.append(known[pair])
+        cells += nodes
+    points = np.array(points)
+    return isotet.Grid(points, cells, offsets=[0, 10, 20], types=[24, 24], fields={"d": (points**2).sum(axis=1)})
+
+
+@pytest.mark.parametrize(("tolerance", "least"), [(0.01, 0.01), ("0.5%", 0.015)])
+def test_surfaces_keep_a_tolerance(tolerance, least):
+    grid = ball()
+    session = isotet.Contour(grid, "d", tolerance=tolerance)
+    for surface in (grid.contour(0.5, "d", tolerance=tolerance), session.contour(0.5)):
+        assert 0 < surface.field_bound <= least
+        assert np.abs((surface.points.astype(float) ** 2).sum(axis=1) - 0.5).max() <= least + 1e-6
+        assert len(surface.triangles) > len(grid.contour(0.5, "d").triangles)
+
+
+def test_without_a_tolerance_there_is_no_bound():
+    assert ball().contour(0.5, "d").field_bound is None
+    assert isotet.make("kuhn", 4, ["sphere"]).contour(0.5, tolerance=0.1).field_bound is None
+
+
+@pytest.mark.parametrize("tolerance", ["1", "1%%", -1.0, 0.0, float("nan")])
+def test_wrong_tolerances_are_told(tolerance):
+    with pytest.raises(ValueError, match="tolerance"):
+        ball().contour(0.5, "d", tolerance=tolerance)
+
+
+def test_a_geometry_tolerance_alone_is_an_error():
+    with pytest.raises(ValueError, match="geometry_tolerance"):
+        ball().contour(0.5, "d", geometry_tolerance=0.1)
