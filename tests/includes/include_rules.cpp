@@ -69,7 +69,7 @@ const std::vector<LibraryRule>& library_rules() {
         {"nlohmann_json", {"nlohmann/"}, {"apps/", "bench/", "src/view/", "tests/"}},
         {"Boost", {"boost/"}, {"src/view/server.cpp", "tests/view/"}},
         {"libwebp", {"webp/"}, {"src/io/own/", "tests/"}},
-        {"libdeflate", {"libdeflate.h"}, {"src/io/own/"}},
+        {"libdeflate", {"libdeflate.h"}, {"src/io/own/", "tests/"}},
         {"liblz4", {"lz4"}, {"src/io/own/"}},
         {"liblzma", {"lzma"}, {"src/io/own/"}},
         {"GoogleTest", {"gtest/", "gmock/"}, {"tests/"}},
