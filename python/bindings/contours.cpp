@@ -118,8 +118,9 @@ nb::tuple extracted_out(Extracted&& extracted) {
     how["extract_seconds"] = extracted.how.extract_seconds;
     how["notes"] = extracted.how.notes;
     const RefinementReport& refinement = extracted.how.refinement;
-    how["field_bound"] = refinement.curved_cells > 0 && refinement.refined ? nb::object(nb::float_(refinement.field_bound))
-                                                                         : nb::object(nb::none());
+    how["field_bound"] = refinement.curved_cells > 0 && refinement.refined
+                             ? nb::object(nb::float_(refinement.field_bound))
+                             : nb::object(nb::none());
     how["vertex_counts"] = extracted.vertex_counts;
     return nb::make_tuple(std::move(extracted.surface), how);
 }

@@ -80,16 +80,21 @@ void choose_bases(vtkCGNSReader& reader, const ReadOptions& options, Depth depth
                                 count, escaped(reader.GetBaseArrayName(0)), others));
 }
 
-/// VTK takes PYRA_14 for its pyramid of 13 nodes: the node in the base makes it a Lagrange pyramid.
+/// VTK takes PYRA_14 for its pyramid of 13 nodes, and does not know PYRA_13, the only element of so many nodes. With the node
+/// in the base it is a Lagrange pyramid.
 void name_pyramids(Cells& cells) {
-    constexpr std::uint8_t pyramid_13 = 27, lagrange_pyramid = 74;
+    constexpr std::uint8_t empty = 0, pyramid_13 = 27, lagrange_pyramid = 74;
     if (cells.types.empty()) return;
     const auto types = cells.types.as<std::uint8_t>();
-    if (std::ranges::find(types, pyramid_13) == types.end()) return;
+    const auto may_be_pyramid = [&](std::uint8_t type) { return type == empty || type == pyramid_13; };
+    if (std::ranges::none_of(types, may_be_pyramid)) return;
     std::vector<std::uint8_t> named(types.begin(), types.end());
-    for (std::size_t cell = 0; cell < named.size(); ++cell)
-        if (named[cell] == pyramid_13 && cells.offsets.at(cell + 1) - cells.offsets.at(cell) == 14)
-            named[cell] = lagrange_pyramid;
+    for (std::size_t cell = 0; cell < named.size(); ++cell) {
+        if (!may_be_pyramid(named[cell])) continue;
+        const double nodes = cells.offsets.at(cell + 1) - cells.offsets.at(cell);
+        if (nodes == 13) named[cell] = pyramid_13;
+        else if (nodes == 14 && named[cell] == pyramid_13) named[cell] = lagrange_pyramid;
+    }
     cells.types = Array::own(std::move(named));
 }
 
