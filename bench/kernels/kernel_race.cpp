@@ -100,7 +100,7 @@ void open(Contestant& one, const std::string& device, const PackedGrid& packed, 
     making = &one;
     one.context = vulkan::Context::open({device, 0}, settings).value();
     one.grid = DeviceGrid::upload(Device(one.context), packed).value();
-    for (const double isovalue : isovalues) { // kernels are made, arrays grow
+    for (const double isovalue : isovalues) { // kernels are made, arrays grow; at 0 there are ties
         one.grid->extract(isovalue, one.surface).value();
         one.same = one.same && same_as_cpu(one, packed, isovalue);
     }
@@ -167,7 +167,7 @@ int main(int count, char** words) {
         make_grid({.shape = words[3], .side = static_cast<std::uint64_t>(std::atoi(words[4])), .fields = {"gyroid"}})
             .value();
     const PackedGrid packed = pack(grid, find_field(grid, "gyroid").value()).value();
-    const std::vector<double> isovalues{0.1, 0.3};
+    const std::vector<double> isovalues{0.0, 0.1};
     for (Contestant& one : all) open(one, words[1], packed, isovalues);
     race(all, isovalues, rounds);
     for (Contestant& one : all) print_times(one);
