@@ -174,12 +174,12 @@ std::string face_list(const std::vector<std::vector<std::int64_t>>& faces, const
         for (const auto& face : faces) out += fmt::format("{}({})\n", face.size(), fmt::join(face, " "));
         return out + ")\n";
     }
-    std::vector<std::int64_t> begins{0}, points;
+    std::vector<std::int64_t> begins{0}, corners;
     for (const auto& face : faces) {
-        points.insert(points.end(), face.begin(), face.end());
-        begins.push_back(static_cast<std::int64_t>(points.size()));
+        corners.insert(corners.end(), face.begin(), face.end());
+        begins.push_back(static_cast<std::int64_t>(corners.size()));
     }
-    return label_list(begins, style) + label_list(points, style);
+    return label_list(begins, style) + label_list(corners, style);
 }
 
 std::vector<double> tuple_at(double value, std::size_t components) {
