@@ -66,7 +66,7 @@ TEST_F(Program, InfoChartsAreaAndVolumeAgainstTheIsovalue) {
     EXPECT_NEAR(chart["volume"].get<double>(), 8, 1e-5);
     ASSERT_EQ(chart["isovalues"].size(), 5u);
     const double radius = chart["isovalues"][2];
-    EXPECT_NEAR(chart["area"][2].get<double>(), 4 * 3.14159265 * radius * radius, 0.05);
+    EXPECT_NEAR(chart["area"][2].get<double>(), 4 * 3.14159265 * radius * radius, 0.1);
     const std::string table = isotet({"info", "make:kuhn:16:sphere", "--chart", "4"}).out;
     EXPECT_NE(table.find("volume below"), std::string::npos) << table;
     EXPECT_FALSE(json_of({"info", "make:kuhn:3"}).contains("chart"));
