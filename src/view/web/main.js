@@ -235,10 +235,10 @@ function measureLine(next) {
   line = line === null ? next.bytes / took : 0.7 * line + 0.3 * next.bytes / took;
 }
 
-/** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 0.6 s for one that rests. In few steps. */
+/** Triangles of a surface that are drawn in time: 40 ms for a hand that moves, 1.5 s for one that rests. In few steps. */
 let speed = null, lastMost = 0; // triangles a ms
 function mostTriangles(moving) {
-  const [ms, least, limit] = moving ? [40, 30000, 600000] : [600, 150000, 8e6];
+  const [ms, least, limit] = moving ? [40, 30000, 600000] : [1500, 150000, 8e6];
   const parts = Math.max(1, frame?.surfaces.length || 1); // share the time
   const sent_in_time = line === null ? Infinity : line * (moving ? 100 : 2000) / (14 * parts); // 14 bytes a triangle
   const most = Math.max(least, Math.min(limit, speed === null ? 100000 : speed * ms / parts, sent_in_time));
