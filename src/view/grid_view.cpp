@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -18,10 +17,6 @@
 namespace isotet::view {
 
 namespace {
-
-double seconds_of(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void offer(const std::vector<Field>& fields, Association association, std::vector<OfferedField>& offered) {
     constexpr std::size_t max_components = 9;
@@ -41,12 +36,6 @@ const Field* find_named(const std::vector<Field>& fields, const std::string& nam
     return found == fields.end() ? nullptr : &*found;
 }
 
-/// A cell field that colours triangles as they are: not averaged to the points.
-const Field* whole_cell_field(const Grid& grid, const std::string& name) {
-    const Field* cells = find_named(grid.cell_fields, name);
-    return cells && cells->values.components() == 1 && !find_named(grid.point_fields, name) ? cells : nullptr;
-}
-
 /// The ends of a colour map over all values; on a logarithmic scale of those above 0.
 ValueRange range_of_values(const Array& values, bool logarithmic) {
     ValueRange range{INFINITY, -INFINITY};
@@ -64,23 +53,6 @@ ValueRange range_of_values(const Array& values, bool logarithmic) {
     return {value - half, value + half};
 }
 
-/// Of what colours a surface.
-std::string color_key(const ViewState& state) {
-    if (state.color_by.empty()) return "|";
-    std::string key = fmt::format("|{}|{}", state.color_by, state.logarithmic);
-    if (state.range) key += fmt::format("|{}|{}", state.range->lower, state.range->upper);
-    return key;
-}
-
-std::string mesh_key(const ViewState& state, double isovalue, std::size_t step) {
-    return fmt::format("{}|{}|{}", isovalue, state.field, step) + color_key(state);
-}
-
-std::string slice_key(const ViewState& state, const Plane& plane, std::size_t step) {
-    return fmt::format("slice|{},{},{}|{}|{}", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset, step) +
-           color_key(state);
-}
-
 bool same_values(const Array& a, const Array& b) {
     return a.type() == b.type() && a.size() == b.size() &&
            (a.data() == b.data() || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
@@ -92,19 +64,12 @@ bool same_cells(const Grid& a, const Grid& b) {
            same_values(a.cells.offsets, b.cells.offsets) && same_values(a.cells.connectivity, b.cells.connectivity);
 }
 
-/// Triangles of a surface above which a preview is sent.
-std::uint64_t limit_of(const ShowMessage& message, const GridViewOptions& options) {
-    constexpr std::uint64_t least = 10'000;
-    const std::uint64_t own = message.moving ? options.preview_triangles : options.max_triangles;
-    return std::clamp<std::uint64_t>(message.most.value_or(own), std::min<std::uint64_t>(least, own),
-                                     options.max_triangles);
-}
-
-bool holds(const std::vector<std::string>& keys, const std::string& key) {
-    return std::ranges::find(keys, key) != keys.end();
-}
-
 } // namespace
+
+const Field* whole_cell_field(const Grid& grid, const std::string& name) {
+    const Field* cells = find_named(grid.cell_fields, name);
+    return cells && cells->values.components() == 1 && !find_named(grid.point_fields, name) ? cells : nullptr;
+}
 
 std::vector<OfferedField> offered_fields(const Grid& grid) {
     std::vector<OfferedField> offered;
@@ -291,20 +256,6 @@ Result<ExtractOptions> GridView::carried_fields(const std::string& color_by, con
     return options;
 }
 
-Result<std::shared_ptr<const Mesh>> GridView::packed_mesh_at(const ViewState& state, double isovalue,
-                                                             const std::string& key, Making& making, const Run& run) {
-    if (auto kept = kept_mesh(key)) return kept;
-    const Result<PointField> field = field_of(state.field, run);
-    if (!field) return field.error();
-    const Result<ExtractOptions> options = carried_fields(state.color_by, run);
-    if (!options) return options.error();
-    const auto start = std::chrono::steady_clock::now();
-    const Result<Surface> surface = lean_->isosurface(*field, isovalue, *options, run);
-    if (!surface) return surface.error();
-    making.facts.extract_seconds += seconds_of(start);
-    return keep(key, *surface, making.facts.scale, making.facts, run);
-}
-
 Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run& run) {
     const bool packed = is_packed_.load(std::memory_order_acquire);
     Source& source = packed ? packed_ : direct_;
@@ -327,249 +278,6 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     source.color_by = state.color_by;
     source.step = step_;
     return &source;
-}
-
-std::shared_ptr<const Mesh> GridView::kept_mesh(const std::string& key) {
-    const auto kept = std::ranges::find(kept_, key, &Kept::key);
-    if (kept == kept_.end()) return nullptr;
-    kept->used = true;
-    return kept->mesh;
-}
-
-Result<std::shared_ptr<const Mesh>> GridView::keep(const std::string& key, const Surface& surface,
-                                                   const std::optional<ColorScale>& scale, FrameFacts& facts,
-                                                   const Run& run) {
-    const auto coding = std::chrono::steady_clock::now();
-    std::optional<SurfaceColors> colors;
-    if (scale && !surface.point_fields.empty())
-        colors = SurfaceColors{surface.point_fields.front().values, Association::point, *scale};
-    else if (scale && !surface.cell_fields.empty())
-        colors = SurfaceColors{surface.cell_fields.front().values, Association::cell, *scale};
-    Result<Mesh> mesh = mesh_of(surface, colors ? &*colors : nullptr, run);
-    if (!mesh) return mesh.error();
-    facts.mesh_seconds += seconds_of(coding);
-    kept_.push_back({key, std::make_shared<const Mesh>(*std::move(mesh)), true});
-    return kept_.back().mesh;
-}
-
-Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double isovalue, const std::string& key,
-                                                      const std::optional<ColorScale>& scale, FrameFacts& facts,
-                                                      const Run& run) {
-    if (auto kept = kept_mesh(key)) return kept;
-    const auto start = std::chrono::steady_clock::now();
-    Result<ContourResult> extracted = source.contour->extract(isovalue, run);
-    if (!extracted) return extracted.error();
-    facts.extract_seconds += seconds_of(start);
-    facts.method = name_of(extracted->method);
-    facts.notes.insert(facts.notes.end(), extracted->notes.begin(), extracted->notes.end());
-    return keep(key, extracted->surfaces.front().surface, scale, facts, run);
-}
-
-std::optional<ColorField> GridView::color_field(const ViewState& state, const ColorScale& scale, const Run& run) {
-    ColorField colors{state.color_by, {}, Association::point, scale, false, {}};
-    if (const Field* cells = whole_cell_field(grid_, state.color_by)) {
-        colors.values = cells->values;
-        colors.association = Association::cell;
-        return colors;
-    }
-    const Result<PointField> field = field_of(state.color_by, run);
-    if (!field) return std::nullopt; // scale_of() has told it
-    colors.values = field->values;
-    return colors;
-}
-
-Result<std::shared_ptr<const Mesh>> GridView::slice_at(const ViewState& state, const Plane& plane,
-                                                       const std::string& key, const std::optional<ColorScale>& scale,
-                                                       FrameFacts& facts, const Run& run) {
-    if (auto kept = kept_mesh(key)) return kept;
-    const auto cut = [&]() -> Result<Surface> {
-        if (is_packed_.load(std::memory_order_acquire) && lean_) {
-            const Result<ExtractOptions> options = carried_fields(state.color_by, run);
-            if (!options) return options.error();
-            return lean_->slice(grid_.points, plane, *options, run);
-        }
-        const std::optional<ColorField> colors = scale ? color_field(state, *scale, run) : std::nullopt;
-        return slice_of(grid_, plane, colors ? &*colors : nullptr, run);
-    };
-    const auto start = std::chrono::steady_clock::now();
-    const Result<Surface> slice = cut();
-    if (!slice) return slice.error();
-    facts.extract_seconds += seconds_of(start);
-    return keep(key, *slice, scale, facts, run);
-}
-
-/// Sends the mesh, or a preview of it, unless the page has it.
-void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh, const std::vector<std::string>& known,
-                   Making& making) {
-    surface.triangles = mesh->triangle_count();
-    const bool has_it_in_full = holds(known, surface.key);
-    if (!has_it_in_full && surface.triangles > making.most && !mesh->flat) {
-        making.facts.preview = true;
-        surface.key += fmt::format("|{}", making.most);
-        if (!holds(known, surface.key)) {
-            const auto coding = std::chrono::steady_clock::now();
-            making.meshes.push_back(std::make_shared<const Mesh>(preview_of(*mesh, making.most)));
-            making.facts.mesh_seconds += seconds_of(coding);
-            surface.mesh = making.meshes.back().get();
-        }
-    } else if (!has_it_in_full) {
-        making.meshes.push_back(mesh);
-        surface.mesh = mesh.get();
-    }
-    making.keys.push_back(surface.key);
-    making.surfaces.push_back(std::move(surface));
-}
-
-Result<void> GridView::add_isosurfaces(const ViewState& state, const std::vector<std::string>& known, Making& making,
-                                       const Run& run) {
-    const bool lean = is_packed_.load(std::memory_order_acquire) && lean_;
-    if (lean) direct_.contour.reset();
-    Result<Source*> source = lean ? Result<Source*>(nullptr) : source_for(state, run);
-    if (!source) return source.error();
-    std::vector<std::shared_ptr<const Mesh>> meshes;
-    std::vector<double> values; // each once
-    std::vector<Box> boxes;
-    for (const double isovalue : state.isovalues) {
-        const std::string key = mesh_key(state, isovalue, step_);
-        auto mesh = lean ? packed_mesh_at(state, isovalue, key, making, run)
-                         : mesh_at(**source, isovalue, key, making.facts.scale, making.facts, run);
-        if (!mesh) return mesh.error();
-        meshes.push_back(*mesh);
-        if (std::ranges::find(values, isovalue) != values.end()) continue;
-        values.push_back(isovalue);
-        boxes.push_back((*mesh)->box);
-    }
-    SceneLook look;
-    look.map = state.map;
-    look.opacity = state.opacity;
-    const std::vector<SurfaceLook> looks = looks_of(values, boxes, look);
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const double isovalue = state.isovalues[i];
-        const auto which = static_cast<std::size_t>(std::ranges::find(values, isovalue) - values.begin());
-        FrameSurface surface;
-        surface.key = mesh_key(state, isovalue, step_);
-        surface.isovalue = isovalue;
-        surface.color = looks[which].color;
-        surface.opacity = looks[which].opacity;
-        add(std::move(surface), meshes[i], known, making);
-    }
-    if (making.facts.method.empty())
-        making.facts.method = name_of(lean ? Method::clusters : (*source)->contour->method());
-    return {};
-}
-
-Result<void> GridView::add_slices(const ViewState& state, const std::vector<std::string>& known, Making& making,
-                                  const Run& run) {
-    for (const Plane& plane : state.slices) {
-        FrameSurface surface;
-        surface.key = slice_key(state, plane, step_);
-        surface.kind = "slice";
-        surface.color = looks_of(std::span(&plane.offset, 1), {}, {}).front().color; // as IsosurfaceScene
-        auto mesh = slice_at(state, plane, surface.key, making.facts.scale, making.facts, run);
-        if (!mesh) return mesh.error();
-        add(std::move(surface), *mesh, known, making);
-    }
-    return {};
-}
-
-void GridView::add_boundary(const ViewState& state, const std::vector<std::string>& known, Making& making) {
-    if (state.boundary <= 0) return;
-    std::unique_lock lock(boundary_mutex_);
-    const std::shared_ptr<const Mesh> boundary = boundary_;
-    lock.unlock();
-    if (!boundary) return;
-    FrameSurface surface;
-    surface.key = fmt::format("boundary|{}", static_cast<const void*>(boundary.get()));
-    surface.kind = "boundary";
-    surface.color = {0.62F, 0.66F, 0.70F, 1};
-    surface.opacity = state.boundary;
-    add(std::move(surface), boundary, known, making);
-}
-
-Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, std::vector<std::string>& known,
-                              const Run& run) {
-    const ViewState& state = message.state;
-    if (Result<void> there = go_to_step(message, run); !there) return there.error();
-    if (message.picture) return picture_frame(message, wait_seconds, known, run);
-    scene_.reset();
-    Result<std::optional<ColorScale>> scale = scale_of(state, run);
-    if (!scale) return scale.error();
-    for (Kept& kept : kept_) kept.used = false;
-    Making making;
-    making.most = limit_of(message, options_);
-    making.facts.number = message.number;
-    making.facts.wait_seconds = wait_seconds;
-    making.facts.scale = *scale;
-    making.facts.step = step_;
-    if (Result<void> added = add_isosurfaces(state, known, making, run); !added) return added.error();
-    if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
-    add_boundary(state, known, making);
-    std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });
-    Frame frame{frame_bytes(making.facts, making.surfaces), making.facts.preview};
-    known = std::move(making.keys);
-    return frame;
-}
-
-Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
-    const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
-    ExtractOptions with_all;
-    with_all.source_cells = true;
-    with_all.point_fields = grid_.point_fields;
-    with_all.cell_fields = grid_.cell_fields;
-    const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
-    if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
-    PointField field;
-    if (plane) field = {"height", heights_over(grid_.points, *plane), false, {}};
-    else if (Result<PointField> found = field_of(message.state.field, run); found) field = *std::move(found);
-    else return found.error();
-    const double isovalue = plane ? plane->offset : message.state.isovalues.front();
-    if (packed) return lean_->isosurface(field, isovalue, with_all, run);
-    ContourOptions options;
-    options.method = Method::direct;
-    options.source_cells = true;
-    Result<Contour> contour =
-        Contour::create({grid_, std::move(field), grid_.point_fields, grid_.cell_fields}, options);
-    if (!contour) return contour.error();
-    Result<ContourResult> extracted = contour->extract(isovalue, run);
-    if (!extracted) return extracted.error();
-    return std::move(extracted->surfaces.front().surface);
-}
-
-Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) {
-    std::optional<Picked> first;
-    double nearest = INFINITY;
-    const auto look = [&](const PickMessage& one, std::span<const Plane> clips) -> Result<void> {
-        const Result<Surface> surface = surface_of_pick(one, run);
-        if (!surface) return surface.error();
-        const auto along = first_on_ray(*surface, message.point, *message.ray, clips);
-        if (!along || *along >= nearest) return {};
-        nearest = *along;
-        std::array<double, 3> place = message.point;
-        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += nearest * (*message.ray)[axis];
-        first = nearest_on(*surface, place);
-        if (first && !one.slice) first->isovalue = one.state.isovalues.front();
-        return {};
-    };
-    PickMessage one = message;
-    for (const double isovalue : message.state.isovalues) {
-        one.state.isovalues = {isovalue};
-        if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
-    }
-    for (std::size_t i = 0; i < message.state.slices.size(); ++i) {
-        one.slice = i;
-        if (Result<void> ok = look(one, {}); !ok) return ok.error();
-    }
-    if (!first) return Error{ErrorCode::cancelled, "the ray meets nothing"}; // a page is told nothing
-    return *std::move(first);
-}
-
-Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
-    if (message.ray) return pick_along(message, run);
-    const Result<Surface> surface = surface_of_pick(message, run);
-    if (!surface) return surface.error();
-    std::optional<Picked> picked = nearest_on(*surface, message.point);
-    if (!picked) return Error{ErrorCode::invalid_data, "the surface has no triangle here"};
-    return *std::move(picked);
 }
 
 Result<Chart> GridView::chart(const std::string& field, const Run& run) {

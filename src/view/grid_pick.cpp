@@ -1,0 +1,73 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The point of a surface that a page asks about.
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "view/grid_view.hpp"
+
+namespace isotet::view {
+
+Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run& run) {
+    const bool packed = is_packed_.load(std::memory_order_acquire) && lean_;
+    ExtractOptions with_all;
+    with_all.source_cells = true;
+    with_all.point_fields = grid_.point_fields;
+    with_all.cell_fields = grid_.cell_fields;
+    const Plane* plane = message.slice ? &message.state.slices[*message.slice] : nullptr;
+    if (packed && plane) return lean_->slice(grid_.points, *plane, with_all, run);
+    PointField field;
+    if (plane) field = {"height", heights_over(grid_.points, *plane), false, {}};
+    else if (Result<PointField> found = field_of(message.state.field, run); found) field = *std::move(found);
+    else return found.error();
+    const double isovalue = plane ? plane->offset : message.state.isovalues.front();
+    if (packed) return lean_->isosurface(field, isovalue, with_all, run);
+    ContourOptions options;
+    options.method = Method::direct;
+    options.source_cells = true;
+    Result<Contour> contour =
+        Contour::create({grid_, std::move(field), grid_.point_fields, grid_.cell_fields}, options);
+    if (!contour) return contour.error();
+    Result<ContourResult> extracted = contour->extract(isovalue, run);
+    if (!extracted) return extracted.error();
+    return std::move(extracted->surfaces.front().surface);
+}
+
+Result<Picked> GridView::pick_along(const PickMessage& message, const Run& run) {
+    std::optional<Picked> first;
+    double nearest = INFINITY;
+    const auto look = [&](const PickMessage& one, std::span<const Plane> clips) -> Result<void> {
+        const Result<Surface> surface = surface_of_pick(one, run);
+        if (!surface) return surface.error();
+        const auto along = first_on_ray(*surface, message.point, *message.ray, clips);
+        if (!along || *along >= nearest) return {};
+        nearest = *along;
+        std::array<double, 3> place = message.point;
+        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += nearest * (*message.ray)[axis];
+        first = nearest_on(*surface, place);
+        if (first && !one.slice) first->isovalue = one.state.isovalues.front();
+        return {};
+    };
+    PickMessage one = message;
+    for (const double isovalue : message.state.isovalues) {
+        one.state.isovalues = {isovalue};
+        if (Result<void> ok = look(one, message.state.clips); !ok) return ok.error();
+    }
+    for (std::size_t i = 0; i < message.state.slices.size(); ++i) {
+        one.slice = i;
+        if (Result<void> ok = look(one, {}); !ok) return ok.error();
+    }
+    if (!first) return Error{ErrorCode::cancelled, "the ray meets nothing"}; // a page is told nothing
+    return *std::move(first);
+}
+
+Result<Picked> GridView::pick(const PickMessage& message, const Run& run) {
+    if (message.ray) return pick_along(message, run);
+    const Result<Surface> surface = surface_of_pick(message, run);
+    if (!surface) return surface.error();
+    std::optional<Picked> picked = nearest_on(*surface, message.point);
+    if (!picked) return Error{ErrorCode::invalid_data, "the surface has no triangle here"};
+    return *std::move(picked);
+}
+
+} // namespace isotet::view
