@@ -2,6 +2,8 @@
 // A packed grid without the arrays that it was made of: surfaces of any field, slices.
 #pragma once
 
+#include <utility>
+
 #include <isotet/extract.hpp>
 #include <isotet/isosurface_scene.hpp>
 #include <isotet/pack.hpp>
@@ -12,7 +14,7 @@ namespace isotet::view {
 class PackedSource {
 public:
     /// `packed`   of a grid of linear cells, for `field`, with source cells
-    PackedSource(PackedGrid packed, PointField field) : packed_(std::move(packed)), field_(std::move(field)) {}
+    PackedSource(const PackedGrid& packed, PointField field) : packed_(packed), field_(std::move(field)) {}
 
     /// `options`   fields that the surface carries
     /// Cost     where `field` is not that of the call before, PackedGrid::with_field(), too

@@ -56,8 +56,8 @@ Grid some_grid(Bytes& bytes) {
     std::vector<std::uint8_t> types;
     std::vector<std::int32_t> offsets{0}, connectivity;
     while (bytes.left() && types.size() < 200) {
-        static constexpr std::uint8_t kinds[] = {10, 10, 10, 10, 11, 12, 13, 14, 5, 24};
-        static constexpr int corners[] = {4, 4, 4, 4, 8, 8, 6, 5, 3, 10};
+        static constexpr std::uint8_t kinds[] = {10, 10, 10, 10, 11, 12, 13, 14, 5, 9};
+        static constexpr int corners[] = {4, 4, 4, 4, 8, 8, 6, 5, 3, 4};
         const std::size_t kind = bytes.next() % 10;
         types.push_back(kinds[kind]);
         for (int k = 0; k < corners[kind]; ++k) {

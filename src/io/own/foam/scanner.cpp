@@ -309,6 +309,7 @@ Result<std::vector<double>> Scanner::tuples(std::size_t components, std::string_
             return true;
         }
         out.resize(static_cast<std::size_t>(items) * components);
+        if (out.empty()) return true;
         if (header_.scalar_bytes == 8) std::memcpy(out.data(), bytes, out.size() * 8);
         else
             for (std::size_t i = 0; i < out.size(); ++i) out[i] = from_bytes<float>(bytes + 4 * i);
