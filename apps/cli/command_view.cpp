@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/field_statistics.hpp>
 #include <isotet/version.hpp>
 
 #include "browser.hpp"

@@ -18,19 +18,6 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 bool is_coordinate(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
 
-/// Whole numbers are numbers of something, of a region say, more often than measured. Up to 200,000 are looked at.
-bool holds_whole_numbers(const Array& values) {
-    if (!is_floating(values.type())) return true;
-    return values.visit([](auto scalars) {
-        const std::size_t step = std::max<std::size_t>(1, scalars.size() / 200'000);
-        for (std::size_t i = 0; i < scalars.size(); i += step) {
-            const auto value = static_cast<double>(scalars[i]);
-            if (std::isfinite(value) && value != std::floor(value)) return false;
-        }
-        return true;
-    });
-}
-
 std::vector<std::string> all_names(const GridSource& source) {
     std::vector<std::string> names = source.names(Association::point);
     add_names(names, source.names(Association::cell));
@@ -95,15 +82,6 @@ Result<PointField> find_chosen(const Grid& grid, const std::string& name, const 
     Result<PointField> field = find_field(grid, name, {prefer}, console.run());
     if (field) console.note(field->note);
     return field;
-}
-
-DefaultField default_field(const Grid& grid) {
-    Grid measured = grid;
-    for (std::vector<Field>* fields : {&measured.point_fields, &measured.cell_fields})
-        std::erase_if(*fields, [](const Field& field) { return holds_whole_numbers(field.values); });
-    const std::string name = most_varied_field(measured);
-    if (!name.empty()) return {name, false};
-    return {most_varied_field(grid), true};
 }
 
 Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,

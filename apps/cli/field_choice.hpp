@@ -42,14 +42,6 @@ void add_names(std::vector<std::string>& names, const std::vector<std::string>& 
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
                                Console& console);
 
-/// The field to show where none was named: most_varied_field() of those that are measured; `whole_numbers` where there is
-/// none but of whole numbers, of regions say.
-struct DefaultField {
-    std::string name; ///< empty: none varies
-    bool whole_numbers = false;
-};
-DefaultField default_field(const Grid& grid);
-
 /// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which the one
 /// that varies most is taken, with a note.
 ///

@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
+#include <isotet/color_field.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/levels.hpp>
 
 #include "field_choice.hpp"
 #include "output_names.hpp"
-#include "render_colors.hpp"
 #include "stopwatch.hpp"
 
 namespace isotet::cli {
@@ -31,6 +31,28 @@ Result<std::vector<double>> choose_levels(const RenderCommand& command, const Po
     if (!levels.empty()) return levels;
     return Error{ErrorCode::invalid_data,
                  fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
+}
+
+/// The scale that is asked for.
+Result<ColorOptions> color_options(const RenderCommand& command) {
+    ColorOptions options{command.scale, {}};
+    if (command.range.empty()) return options;
+    if (command.range.size() != 2 || !(command.range[0] < command.range[1]))
+        return usage_error("--range takes two numbers, the smaller one first, such as 0,100");
+    options.range = ValueRange{command.range[0], command.range[1]};
+    return options;
+}
+
+/// A field of `from`, a grid or a surface, that colours.
+template <class From>
+Result<ColorField> colors_of(const From& from, const std::string& name, const RenderCommand& command,
+                             Console& console) {
+    const Result<ColorOptions> options = color_options(command);
+    if (!options) return options.error();
+    Result<FoundColors> found = find_colors(from, name, *options, console.run());
+    if (!found) return found.error();
+    console.notes(found->notes);
+    return std::move(found->field);
 }
 
 /// Points with their axes stretched.
@@ -118,7 +140,7 @@ Result<RenderInput> RenderSource::take_surface(const std::optional<Device>& devi
     input.read_seconds = surface_seconds_;
     Contents contents;
     if (!command_.color_by.empty()) {
-        Result<ColorField> colors = colors_of(*surface_, command_, console);
+        Result<ColorField> colors = colors_of(*surface_, command_.color_by, command_, console);
         if (!colors) return colors.error();
         input.colors = contents.colors = *std::move(colors);
     }
@@ -145,8 +167,9 @@ Result<void> RenderSource::widen_range(const std::string& color, Console& consol
         Result<ColorField> colors = colors_of(*grid, color, command_, console);
         if (!colors) return colors.error();
         if (!colors->classes.empty()) return {};
-        const ValueRange one = range_of(colors->values, command_);
-        all = {std::min(all.lower, one.lower), std::max(all.upper, one.upper)};
+        const Result<ValueRange> one = colored_range(colors->values, command_.scale.logarithmic, console.run());
+        if (!one) return one.error();
+        all = {std::min(all.lower, one->lower), std::max(all.upper, one->upper)};
     }
     if (all.lower < all.upper) command_.range = {all.lower, all.upper};
     return {};

@@ -40,13 +40,17 @@ struct ValueRange {
 /// Cost   up to 200,000 values, spread evenly, are sorted
 ISOTET_API ValueRange typical_range(const Array& values);
 
+/// A field to begin with.
+struct DefaultField {
+    std::string name;           ///< for find_field(), "velocity:mag" of a vector; empty: none has two different values
+    bool whole_numbers = false; ///< it numbers something, regions say, more likely than it was measured
+};
+
 /// The field to show where none was named: the one whose values are spread most evenly over its range, by the entropy
 /// of a histogram of 64 bins. Scalars and vectors of three components are judged, vectors by their magnitude. Fields of
-/// whole numbers count half, because they are numbers of something more often than measured; missing values count
-/// against a field.
+/// whole numbers count only where no other field has two different values; missing values count against a field.
 ///
-/// Returns   a name for find_field(), "velocity:mag" of a vector; empty when no field has two different values
-/// Cost      up to 200,000 values of each field are looked at
-ISOTET_API std::string most_varied_field(const Grid& grid);
+/// Cost   up to 200,000 values of each field are looked at
+ISOTET_API DefaultField default_field(const Grid& grid);
 
 } // namespace isotet

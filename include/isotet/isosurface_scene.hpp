@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <isotet/camera.hpp>
+#include <isotet/color_field.hpp>
 #include <isotet/contour.hpp>
 #include <isotet/draw_tets.hpp>
 #include <isotet/export.hpp>
@@ -24,16 +25,6 @@
 #include <isotet/surface.hpp>
 
 namespace isotet {
-
-/// A field that colours surfaces.
-struct ColorField {
-    std::string name;
-    Array values; ///< a scalar for each point or cell of the grid; of a surface for each vertex or triangle
-    Association association = Association::point;
-    ColorScale scale;
-    bool has_no_data = false;              ///< some values are NaN: a legend shows their colour
-    std::vector<std::string> classes = {}; ///< names of scale.classes; `values` are then numbers of classes
-};
 
 /// A plane: normal . p = offset.
 struct Plane {

@@ -12,7 +12,7 @@
 
 #include <isotet/annotation.hpp>
 #include <isotet/draw.hpp>
-#include <isotet/field_statistics.hpp>
+#include <isotet/color_field.hpp>
 
 #include "arrays.hpp"
 #include "call.hpp"
@@ -51,26 +51,12 @@ std::optional<View> view_of(std::string_view name) { return parse_view(name); }
 std::optional<Color> color_of(std::string_view text) { return parse_color(text); }
 
 Result<ColorScale> scale_of(const RenderRequest& request, const Run& run) {
-    ColorScale scale;
-    scale.map = request.map;
-    if (request.range) {
-        scale.lower = request.range->first;
-        scale.upper = request.range->second;
-        return scale;
-    }
-    ValueRange range;
-    for (const SurfaceColors& colors : request.values) {
-        const auto statistics = statistics_of(colors.values, run);
-        if (!statistics) return statistics.error();
-        const ComponentStatistics& all = statistics->front();
-        if (!(all.lower <= all.upper)) continue;
-        const bool first = !(range.lower <= range.upper);
-        range.lower = first ? all.lower : std::min(range.lower, all.lower);
-        range.upper = first ? all.upper : std::max(range.upper, all.upper);
-    }
-    scale.lower = range.lower <= range.upper ? range.lower : 0;
-    scale.upper = range.lower < range.upper ? range.upper : scale.lower + 1;
-    return scale;
+    ColorOptions options;
+    options.scale.map = request.map;
+    if (request.range) options.range = ValueRange{request.range->first, request.range->second};
+    std::vector<Array> values;
+    for (const SurfaceColors& colors : request.values) values.push_back(colors.values);
+    return color_scale(values, options, run);
 }
 
 Result<void> set_normals(RenderRequest& request, const Run& run) {

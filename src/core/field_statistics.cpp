@@ -57,9 +57,7 @@ SampledValues sample_values(const Array& array) {
 }
 
 /// How much a field varies; 0: not at all.
-double variation_of(const Array& array) {
-    if (array.components() != 1 && array.components() != 3) return 0;
-    const SampledValues sample = sample_values(array);
+double variation_of(const SampledValues& sample) {
     if (sample.values.empty()) return 0;
     const auto [low, high] = std::minmax_element(sample.values.begin(), sample.values.end());
     if (!(*low < *high)) return 0;
@@ -72,8 +70,14 @@ double variation_of(const Array& array) {
     const auto count = static_cast<double>(sample.values.size());
     for (const double bin : bins)
         if (bin > 0) entropy -= bin / count * std::log(bin / count);
-    const bool whole = std::ranges::all_of(sample.values, [](double value) { return value == std::floor(value); });
-    return entropy * (whole ? 0.5 : 1) * count / static_cast<double>(sample.taken);
+    return entropy * count / static_cast<double>(sample.taken);
+}
+
+/// Not so for vectors, whose magnitudes are looked at.
+bool holds_whole_numbers(const Array& array, const SampledValues& sample) {
+    return !is_floating(array.type()) ||
+           (array.components() == 1 &&
+            std::ranges::all_of(sample.values, [](double value) { return value == std::floor(value); }));
 }
 
 } // namespace
@@ -111,18 +115,22 @@ ValueRange typical_range(const Array& array) {
     return range.lower < range.upper ? range : ValueRange{values.front(), values.back()};
 }
 
-std::string most_varied_field(const Grid& grid) {
-    std::string name;
+DefaultField default_field(const Grid& grid) {
+    DefaultField chosen;
     double most = 0;
     for (const auto* fields : {&grid.point_fields, &grid.cell_fields}) {
-        for (const Field& field : *fields) {
-            const double variation = variation_of(field.values);
-            if (variation <= most) continue;
+        for (const auto& [name, values] : *fields) {
+            if (values.components() != 1 && values.components() != 3) continue;
+            const SampledValues sample = sample_values(values);
+            const double variation = variation_of(sample);
+            const bool whole = holds_whole_numbers(values, sample);
+            const bool better = whole == chosen.whole_numbers || chosen.name.empty() ? variation > most : !whole;
+            if (variation == 0 || !better) continue;
             most = variation;
-            name = field.name + (field.values.components() == 3 ? ":mag" : "");
+            chosen = {name + (values.components() == 3 ? ":mag" : ""), whole};
         }
     }
-    return name;
+    return chosen;
 }
 
 } // namespace isotet

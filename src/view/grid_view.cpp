@@ -10,6 +10,7 @@
 #include <malloc.h>
 
 #include <isotet/boundary.hpp>
+#include <isotet/color_field.hpp>
 #include <isotet/field_statistics.hpp>
 #include <isotet/linear_cells.hpp>
 #include <isotet/memory.hpp>
@@ -31,28 +32,6 @@ void offer(const std::vector<Field>& fields, Association association, std::vecto
     }
 }
 
-const Field* find_named(const std::vector<Field>& fields, const std::string& name) {
-    const auto found = std::ranges::find(fields, name, &Field::name);
-    return found == fields.end() ? nullptr : &*found;
-}
-
-/// The ends of a colour map over all values; on a logarithmic scale of those above 0.
-ValueRange range_of_values(const Array& values, bool logarithmic) {
-    ValueRange range{INFINITY, -INFINITY};
-    values.visit([&](auto scalars) {
-        for (const auto scalar : scalars) {
-            const auto value = static_cast<double>(scalar);
-            if (!std::isfinite(value) || (logarithmic && value <= 0)) continue;
-            range.lower = std::min(range.lower, value);
-            range.upper = std::max(range.upper, value);
-        }
-    });
-    if (range.lower < range.upper) return range;
-    const double value = std::isfinite(range.lower) ? range.lower : logarithmic ? 1 : 0;
-    const double half = value == 0 ? 1 : std::abs(value) / 2;
-    return {value - half, value + half};
-}
-
 bool same_values(const Array& a, const Array& b) {
     return a.type() == b.type() && a.size() == b.size() &&
            (a.data() == b.data() || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
@@ -65,11 +44,6 @@ bool same_cells(const Grid& a, const Grid& b) {
 }
 
 } // namespace
-
-const Field* whole_cell_field(const Grid& grid, const std::string& name) {
-    const Field* cells = find_named(grid.cell_fields, name);
-    return cells && cells->values.components() == 1 && !find_named(grid.point_fields, name) ? cells : nullptr;
-}
 
 std::vector<OfferedField> offered_fields(const Grid& grid) {
     std::vector<OfferedField> offered;
@@ -117,7 +91,7 @@ Result<ContourInput> GridView::input_of(const std::string& field, const std::str
     if (!contoured) return contoured.error();
     ContourInput input{grid_, *std::move(contoured), {}, {}};
     if (color_by.empty()) return input;
-    if (const Field* cells = whole_cell_field(grid_, color_by)) {
+    if (const Field* cells = cell_colors(grid_, color_by)) {
         input.cell_fields = {*cells};
         return input;
     }
@@ -129,24 +103,20 @@ Result<ContourInput> GridView::input_of(const std::string& field, const std::str
 
 Result<std::optional<ColorScale>> GridView::scale_of(const ViewState& state, const Run& run) {
     if (state.color_by.empty()) return std::optional<ColorScale>();
-    if (state.logarithmic && state.range && state.range->lower <= 0)
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("the range of colours begins with {}, but a logarithmic scale takes positive numbers",
-                                 state.range->lower)};
     Array values;
-    if (const Field* cells = whole_cell_field(grid_, state.color_by)) values = cells->values;
+    if (const Field* cells = cell_colors(grid_, state.color_by)) values = cells->values;
     else {
         const Result<PointField> field = field_of(state.color_by, run);
         if (!field) return field.error();
         values = field->values;
     }
-    const ValueRange range = state.range ? *state.range : range_of_values(values, state.logarithmic);
-    ColorScale scale;
-    scale.map = state.map;
-    scale.lower = range.lower;
-    scale.upper = range.upper;
-    scale.logarithmic = state.logarithmic;
-    return std::optional(scale);
+    ColorOptions options;
+    options.scale.map = state.map;
+    options.scale.logarithmic = state.logarithmic;
+    options.range = state.range;
+    const Result<ColorScale> scale = color_scale({&values, 1}, options, run);
+    if (!scale) return scale.error();
+    return std::optional(*scale);
 }
 
 /// Another step takes the place of the grid; the sessions find out what is the same.
@@ -246,7 +216,7 @@ void GridView::rest() {
 Result<ExtractOptions> GridView::carried_fields(const std::string& color_by, const Run& run) {
     ExtractOptions options;
     if (color_by.empty()) return options;
-    if (const Field* cells = whole_cell_field(grid_, color_by)) {
+    if (const Field* cells = cell_colors(grid_, color_by)) {
         options.cell_fields = {*cells};
         return options;
     }

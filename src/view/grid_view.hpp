@@ -31,9 +31,6 @@ struct OfferedField {
 /// Scalar fields, components and magnitudes of vectors; the coordinates where there is no field.
 std::vector<OfferedField> offered_fields(const Grid& grid);
 
-/// A cell field that colours triangles as they are: not averaged to the points. Null where the name is of something else.
-const Field* whole_cell_field(const Grid& grid, const std::string& name);
-
 struct GridViewOptions {
     std::size_t preview_triangles = 150'000; ///< of a surface while a hand moves
     std::size_t max_triangles = 8'000'000; ///< of a surface that a page is sent; larger ones are previews of that size

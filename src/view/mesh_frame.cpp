@@ -99,7 +99,7 @@ Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double iso
 
 std::optional<ColorField> GridView::color_field(const ViewState& state, const ColorScale& scale, const Run& run) {
     ColorField colors{state.color_by, {}, Association::point, scale, false, {}};
-    if (const Field* cells = whole_cell_field(grid_, state.color_by)) {
+    if (const Field* cells = cell_colors(grid_, state.color_by)) {
         colors.values = cells->values;
         colors.association = Association::cell;
         return colors;

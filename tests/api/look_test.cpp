@@ -56,15 +56,19 @@ TEST(TypicalRange, LeavesOutRareValues) {
     EXPECT_GT(none.lower, none.upper);
 }
 
-TEST(MostVariedField, IsSpreadAndNoConstant) {
+TEST(DefaultField, IsSpreadAndNoConstant) {
     Grid grid;
-    EXPECT_EQ(most_varied_field(grid), "");
+    EXPECT_EQ(default_field(grid).name, "");
     grid.point_fields = {field("constant", {1, 1, 1, 1, 1, 1}), field("ids", {0, 1, 2, 3, 4, 5})};
-    EXPECT_EQ(most_varied_field(grid), "ids");
-    grid.point_fields.push_back(field("p", {0.1, 1.1, 2.1, 3.1, 4.1, 5.1}));
-    EXPECT_EQ(most_varied_field(grid), "p") << "whole numbers count half";
+    EXPECT_EQ(default_field(grid).name, "ids");
+    EXPECT_TRUE(default_field(grid).whole_numbers);
+    grid.point_fields.push_back(field("p", {0.1, 0.1, 0.1, 0.1, 4.1, 4.1}));
+    EXPECT_EQ(default_field(grid).name, "p") << "measured values come before whole numbers, however these vary";
+    EXPECT_FALSE(default_field(grid).whole_numbers);
+    std::swap(grid.point_fields[1], grid.point_fields[2]);
+    EXPECT_EQ(default_field(grid).name, "p") << "in either order";
     grid.point_fields = {field("v", {1, 0, 0, 0, 2, 0, 0, 0, 3.5}, 3)};
-    EXPECT_EQ(most_varied_field(grid), "v:mag");
+    EXPECT_EQ(default_field(grid).name, "v:mag");
 }
 
 TEST(CellCounts, AreByType) {

@@ -62,7 +62,8 @@ TEST_F(Render, ColoursAndSaysWhatTheColoursMean) {
     words.insert(words.end(), {"--log", "-q"});
     const RunResult run = isotet(words);
     EXPECT_EQ(run.status, 2);
-    EXPECT_TRUE(is_one_error(run, "--range begins with -0.5, but --log takes positive numbers only"));
+    EXPECT_TRUE(is_one_error(
+        run, "the range of colours begins with -0.5, but a logarithmic scale takes positive numbers only"));
 }
 
 TEST_F(Render, SaysWhatItCannotShow) {
