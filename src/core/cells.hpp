@@ -77,6 +77,7 @@ public:
 
     std::size_t count() const { return count_; }
     bool only_tets() const { return only_tets_; }
+    bool has_types() const { return types_ != nullptr; } ///< else all cells are of one
     std::uint8_t type(std::size_t cell) const { return types_ ? types_[cell] : uniform_type_; }
     std::uint64_t first(std::size_t cell) const { return has_offsets_ ? offsets_[cell] : cell * uniform_corners_; }
     std::uint64_t corner(std::uint64_t position) const { return connectivity_[position]; }

@@ -42,6 +42,57 @@ TEST(CellsOnce, GiveTheSameBytesWhateverTypeTheirNumbersHave) {
     }
 }
 
+/// The cells of a mixed grid, all of a kind one after another, with a triangle in the middle where one is wanted.
+Grid by_kind(const Grid& mixed, bool with_triangle) {
+    std::vector<std::int64_t> connectivity, offsets{0};
+    std::vector<std::uint8_t> types;
+    const auto add = [&](std::uint8_t type, std::size_t from, std::size_t count) {
+        for (std::size_t k = 0; k < count; ++k)
+            connectivity.push_back(static_cast<std::int64_t>(mixed.cells.connectivity.at(from + k)));
+        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+        types.push_back(type);
+    };
+    for (const int type : {12, 10, 13, 14}) {
+        for (std::size_t cell = 0; cell < mixed.cells.count(); ++cell) {
+            if (mixed.cells.types.at(cell) != type) continue;
+            const auto from = static_cast<std::size_t>(mixed.cells.offsets.at(cell));
+            add(static_cast<std::uint8_t>(type), from,
+                static_cast<std::size_t>(mixed.cells.offsets.at(cell + 1)) - from);
+            if (with_triangle && types.size() == 1500) add(5, 0, 3);
+        }
+    }
+    Grid grid = mixed;
+    grid.cells.connectivity = Array::own(std::move(connectivity));
+    grid.cells.offsets = Array::own(std::move(offsets));
+    grid.cells.types = Array::own(std::move(types));
+    return grid;
+}
+
+TEST(CellsOnce, OfOneKindInARowAreTakenTogetherWithoutADifference) {
+    const Grid mixed = made_grid("mixed", 16, {"integer", "gyroid"});
+    for (const bool with_triangle : {false, true}) {
+        const Grid grid = by_kind(mixed, with_triangle);
+        ASSERT_GT(grid.cells.count(), 8000u);
+        for (const std::size_t field : {0, 1}) {
+            std::string expected;
+            for (const auto& [corners, offsets] :
+                 {std::pair{as_type<std::int64_t>(grid.cells.connectivity), as_type<std::uint32_t>(grid.cells.offsets)},
+                  {as_type<std::int32_t>(grid.cells.connectivity), as_type<std::int64_t>(grid.cells.offsets)},
+                  {as_type<std::uint64_t>(grid.cells.connectivity), as_type<std::int32_t>(grid.cells.offsets)}}) {
+                Grid written = grid;
+                written.cells.connectivity = corners;
+                written.cells.offsets = offsets;
+                const DirectExtraction found = extract_on_both(written, point_field(written, field), {0.5, 1},
+                                                               with_everything(Ties::merge, Precision::float32));
+                ASSERT_GT(found.surfaces[0].surface.triangle_count(), 1000u);
+                const std::string bytes = bytes_of(found.surfaces[0].surface) + bytes_of(found.surfaces[1].surface);
+                if (expected.empty()) expected = bytes;
+                EXPECT_TRUE(bytes == expected);
+            }
+        }
+    }
+}
+
 TEST(ThreadsOnce, DoNotMatter) {
     const Grid shuffled = made_grid("shuffled", 24, {"gyroid"}), mixed = made_grid("mixed", 16, {"wavelet", "integer"});
     for (const auto& [grid, field, isovalue] :

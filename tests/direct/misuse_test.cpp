@@ -78,6 +78,35 @@ TEST(BrokenGridsOnce, NameTheFirstBrokenCellOfMany) {
     expect_refused_as_by_pack(grid);
 }
 
+TEST(BrokenGridsOnce, HaveABrokenCellAmongManyOfItsKind) {
+    const Grid hexahedra = made_grid("hex", 16, {"gyroid"});
+    const std::size_t cells = hexahedra.cells.count();
+    std::vector<std::int64_t> offsets, corners;
+    for (std::size_t cell = 0; cell <= cells; ++cell) offsets.push_back(static_cast<std::int64_t>(8 * cell));
+    for (std::size_t i = 0; i < 8 * cells; ++i)
+        corners.push_back(static_cast<std::int64_t>(hexahedra.cells.connectivity.at(i)));
+    const auto with = [&](auto&& change) {
+        Grid grid = hexahedra;
+        auto changed_offsets = offsets;
+        auto changed_corners = corners;
+        change(changed_offsets, changed_corners);
+        grid.cells.offsets = Array::own(std::move(changed_offsets));
+        grid.cells.connectivity = Array::own(std::move(changed_corners));
+        return grid;
+    };
+    for (const std::size_t cell :
+         {std::size_t{0}, std::size_t{1023}, std::size_t{1024}, std::size_t{3000}, cells - 1}) {
+        SCOPED_TRACE(cell);
+        expect_refused_as_by_pack(with([&](auto&, auto& numbers) { numbers[8 * cell + 5] = -1; }));
+        expect_refused_as_by_pack(with([&](auto&, auto& numbers) { numbers[8 * cell + 7] = std::int64_t{1} << 40; }));
+        expect_refused_as_by_pack(with([&](auto& starts, auto&) { starts[cell + 1] += 4; }));
+        expect_refused_as_by_pack(with([&](auto& starts, auto&) { starts[cell + 1] = -8; }));
+    }
+    expect_refused_as_by_pack(with([&](auto& starts, auto&) {
+        for (std::int64_t& start : starts) start += 8; // the last cell lies outside
+    }));
+}
+
 TEST(BrokenGridsOnce, HaveOffsetsThatFallOrLeadOutside) {
     for (const std::vector<std::int64_t>& offsets :
          {std::vector<std::int64_t>{0, 4, 2}, {0, 4, 9}, {0, 3, 8}, {-4, 4, 8}, {9, 4, 8}}) {

@@ -36,34 +36,37 @@ bool is_collapsed(const core::Tet& t) {
     return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
 }
 
-constexpr std::size_t tets_at_once =
+constexpr std::size_t cells_at_once =
     1 << 10; ///< few enough that their corners are still near when cut ones are fetched
 
-/// Adds up the flags of each tet's corners. False when a number has no flags, and so is no point; numbers that have
-/// none are masked before they are looked up.
-template <class Index>
-bool add_up_sides(const Sides& sides, const Index* corners, std::size_t tets, std::uint16_t* sums) {
+/// Adds up the flags of the corners of each cell, of which it has `n`. False when a number has no flags, and so is no
+/// point; numbers that have none are masked before they are looked up.
+template <std::size_t n, class Index>
+bool add_up_sides(const Sides& sides, const Index* corners, std::size_t cells, std::uint16_t* sums) {
     using Unsigned = std::make_unsigned_t<Index>; // a negative number becomes one that is too large
     const auto mask = static_cast<Unsigned>(std::min<std::uint64_t>(sides.mask(), std::numeric_limits<Index>::max()));
     std::uint64_t all = 0;
-    if constexpr (sizeof(Index) == 4) {
-        // Two corners at once: a tet is two words to load, check and mask.
+    if constexpr (sizeof(Index) == 4 && n % 2 == 0) {
+        // Two corners at once: half as many words to load, check and mask.
         const std::uint64_t both = mask * std::uint64_t{0x1'0000'0001};
-        for (std::size_t i = 0; i < tets; ++i) {
-            std::array<std::uint64_t, 2> words;
-            std::memcpy(words.data(), corners + 4 * i, sizeof words);
-            all |= words[0] | words[1];
-            const std::uint64_t p = words[0] & both, q = words[1] & both;
-            const unsigned sum = sides[static_cast<std::uint32_t>(p)] + sides[p >> 32] +
-                                 sides[static_cast<std::uint32_t>(q)] + sides[q >> 32];
+        for (std::size_t i = 0; i < cells; ++i) {
+            std::array<std::uint64_t, n / 2> words;
+            std::memcpy(words.data(), corners + n * i, sizeof words);
+            unsigned sum = 0;
+            for (const std::uint64_t word : words) {
+                all |= word;
+                const std::uint64_t pair = word & both;
+                sum += sides[static_cast<std::uint32_t>(pair)];
+                sum += sides[pair >> 32];
+            }
             sums[i] = static_cast<std::uint16_t>(sum);
         }
         return (all & ~both) == 0;
     } else {
-        for (std::size_t i = 0; i < tets; ++i) {
+        for (std::size_t i = 0; i < cells; ++i) {
             unsigned sum = 0;
-            for (std::size_t k = 0; k < 4; ++k) {
-                const auto corner = static_cast<Unsigned>(corners[4 * i + k]);
+            for (std::size_t k = 0; k < n; ++k) {
+                const auto corner = static_cast<Unsigned>(corners[n * i + k]);
                 all |= corner;
                 sum += sides[corner & mask];
             }
@@ -73,28 +76,43 @@ bool add_up_sides(const Sides& sides, const Index* corners, std::size_t tets, st
     }
 }
 
-/// Writes the places of tets with corners on both sides, or with one that needs attention; returns how many.
-std::size_t find_worth_looking(const std::array<std::uint16_t, tets_at_once>& sums, std::uint32_t* places) {
+/// Whether a cell of `n` corners whose flags add up to `sum` has some above and some below.
+template <std::size_t n>
+constexpr bool has_both_sides(unsigned sum) {
+    return sum % 16 % n != 0;
+}
+
+/// Writes the places of cells of `n` corners on both sides, or with one that needs attention; returns how many.
+template <std::size_t n>
+std::size_t find_worth_looking(const std::array<std::uint16_t, cells_at_once>& sums, std::uint32_t* places) {
     std::size_t found = 0;
 #if defined(__SSE2__)
-    const __m128i one = _mm_set1_epi8(1), two = _mm_set1_epi8(2), attention = _mm_set1_epi8(16);
-    for (std::uint32_t i = 0; i < tets_at_once; i += 16) {
+    const __m128i one = _mm_set1_epi8(1), most = _mm_set1_epi8(n - 2), attention = _mm_set1_epi8(16);
+    for (std::uint32_t i = 0; i < cells_at_once; i += 16) {
         const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i]));
         const __m128i high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i + 8]));
         const __m128i sum = _mm_packus_epi16(low, high); // 255 where it is more
         const __m128i less_one = _mm_sub_epi8(sum, one);
-        const __m128i both_sides = _mm_cmpeq_epi8(_mm_min_epu8(less_one, two), less_one); // 1, 2 or 3
+        const __m128i both_sides = _mm_cmpeq_epi8(_mm_min_epu8(less_one, most), less_one); // 1 to n - 1
         const __m128i worth = _mm_or_si128(both_sides, _mm_cmpeq_epi8(_mm_max_epu8(sum, attention), sum));
         for (auto bits = static_cast<unsigned>(_mm_movemask_epi8(worth)); bits; bits &= bits - 1)
             places[found++] = i + static_cast<std::uint32_t>(std::countr_zero(bits));
     }
 #else
-    for (std::uint32_t i = 0; i < tets_at_once; ++i) {
+    for (std::uint32_t i = 0; i < cells_at_once; ++i) {
         places[found] = i;
-        found += sums[i] % 4 != 0 || sums[i] >= 16;
+        found += has_both_sides<n>(sums[i]) || sums[i] >= 16;
     }
 #endif
     return found;
+}
+
+/// Whether all numbers of [begin, end) are `first`, `first` + step and so on.
+template <class Index>
+bool are_regular(const Index* begin, const Index* end, Index step) {
+    bool regular = true;
+    for (const Index* at = begin; at + 1 < end; ++at) regular &= at[1] - at[0] == step;
+    return regular;
 }
 
 /// The pass over one chunk of cells.
@@ -107,58 +125,99 @@ public:
     /// Cells that are nothing but four numbers, `corners` those of the first.
     template <class Index>
     void pass_tets(const Index* corners, std::size_t count) {
-        std::array<std::uint16_t, tets_at_once> sums;
-        std::array<std::uint32_t, tets_at_once> places;
-        for (std::size_t begin = 0; begin < count; begin += tets_at_once) {
-            const Index* const part = corners + 4 * begin;
-            const std::size_t size = std::min(tets_at_once, count - begin);
-            if (!add_up_sides(context_.sides, part, size, sums.data())) return broken();
-            std::fill(sums.begin() + static_cast<std::ptrdiff_t>(size), sums.end(), 0);
-            const std::size_t found = find_worth_looking(sums, places.data());
-            for (std::size_t i = 0; i < found; ++i) {
-                const std::uint32_t place = places[i];
-                const Index* const v = part + 4 * std::size_t{place};
-                const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]),
-                                               static_cast<Point>(v[2]), static_cast<Point>(v[3])};
-                if (sums[place] >= 16) [[unlikely]]
-                    look_at({tet[0], tet[1], tet[2], tet[3]});
-                if (sums[place] % 4 != 0) cutter_.add(tet, static_cast<std::uint32_t>(begin + place));
-            }
-            if (context_.broken.load(std::memory_order_relaxed)) return;
-        }
+        pass_like_cells<4>(corners, count, [&](std::size_t place, unsigned sum) {
+            const Index* const v = corners + 4 * place;
+            const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]), static_cast<Point>(v[2]),
+                                           static_cast<Point>(v[3])};
+            if (sum >= 16) [[unlikely]]
+                look_at({tet[0], tet[1], tet[2], tet[3]});
+            if (has_both_sides<4>(sum)) cutter_.add(tet, static_cast<std::uint32_t>(place));
+            return true;
+        });
     }
 
     /// Cells of any type, with offsets or not, `corners` those of the whole grid.
     template <class Index>
     void pass_cells(const Index* corners, std::size_t begin, std::size_t end) {
-        const std::uint64_t mask =
-            std::min<std::uint64_t>(context_.sides.mask(), std::numeric_limits<std::make_unsigned_t<Index>>::max());
-        const auto pass = [&](std::size_t cell, std::size_t first, std::size_t count) {
-            const bool dull = count == 8   ? is_dull<8>(corners + first, mask)
-                              : count == 6 ? is_dull<6>(corners + first, mask)
-                              : count == 5 ? is_dull<5>(corners + first, mask)
-                              : count == 4 ? is_dull<4>(corners + first, mask)
-                                           : false;
-            return dull || pass_cell(corners, cell, static_cast<std::uint32_t>(cell - begin));
-        };
-        if (!cells_.has_offsets()) {
-            const std::size_t count = corners_by_type[cells_.type(begin)];
-            for (std::size_t cell = begin; cell < end; ++cell)
-                if (!pass(cell, count * cell, count)) return broken();
-            return;
+        for (std::size_t first = begin; first < end && !is_broken(); first += cells_at_once) {
+            const std::size_t last = std::min(end, first + cells_at_once), count = corners_of_like_cells(first, last);
+            const auto pass = [&](std::size_t place, unsigned) {
+                return pass_cell(corners, first + place, static_cast<std::uint32_t>(first + place - begin));
+            };
+            const Index* const part = corners + (count ? cells_.first(first) : 0);
+            if (count == 8) pass_like_cells<8>(part, last - first, pass);
+            else if (count == 6) pass_like_cells<6>(part, last - first, pass);
+            else if (count == 5) pass_like_cells<5>(part, last - first, pass);
+            else if (count == 4) pass_like_cells<4>(part, last - first, pass);
+            else pass_unlike_cells(corners, begin, first, last);
         }
-        cells_.offsets().visit([&](const auto* offsets) {
-            for (std::size_t cell = begin; cell < end; ++cell) {
-                const std::uint64_t first = core::widened(offsets[cell]), last = core::widened(offsets[cell + 1]);
-                const std::size_t count = corners_by_type[cells_.type(cell)];
-                const bool fits = last - first == count && first < last && last <= cells_.connectivity_size();
-                if (!pass(cell, first, fits ? count : 0)) return broken();
-            }
-        });
     }
 
 private:
     void broken() { context_.broken.store(true, std::memory_order_relaxed); }
+    bool is_broken() const { return context_.broken.load(std::memory_order_relaxed); }
+
+    /// Cells of `n` corners that lie one after another, `corners` those of the first. Calls pass(place, sum) for those
+    /// that are worth a look, with the sum of their flags; false from it: the cell is broken.
+    template <std::size_t n, class Index, class Pass>
+    void pass_like_cells(const Index* corners, std::size_t count, const Pass& pass) {
+        std::array<std::uint16_t, cells_at_once> sums;
+        std::array<std::uint32_t, cells_at_once> places;
+        for (std::size_t begin = 0; begin < count; begin += cells_at_once) {
+            const std::size_t size = std::min(cells_at_once, count - begin);
+            if (!add_up_sides<n>(context_.sides, corners + n * begin, size, sums.data())) return broken();
+            std::fill(sums.begin() + static_cast<std::ptrdiff_t>(size), sums.end(), 0);
+            const std::size_t found = find_worth_looking<n>(sums, places.data());
+            for (std::size_t i = 0; i < found; ++i)
+                if (!pass(begin + places[i], sums[places[i]])) return broken();
+            if (is_broken()) return;
+        }
+    }
+
+    /// How many corners each of the cells [begin, end) has, if all have as many, lie one after another in the
+    /// connectivity, and are contoured; else 0.
+    std::size_t corners_of_like_cells(std::size_t begin, std::size_t end) const {
+        const std::size_t count = corners_by_type[cells_.type(begin)];
+        if (cells_.has_types()) {
+            unsigned different = 0;
+            for (std::size_t cell = begin; cell < end; ++cell) different |= cells_.type(cell) ^ cells_.type(begin);
+            if (different) return 0;
+        }
+        if (!cells_.has_offsets()) return count;
+        return cells_.offsets().visit([&](const auto* offsets) -> std::size_t {
+            using Offset = std::remove_cvref_t<decltype(offsets[0])>;
+            const bool regular = are_regular(offsets + begin, offsets + end + 1, static_cast<Offset>(count));
+            const std::uint64_t first = core::widened(offsets[begin]), last = core::widened(offsets[end]);
+            return regular && first < last && last <= cells_.connectivity_size() ? count : 0;
+        });
+    }
+
+    /// The cells [first, last) of a chunk that starts at `begin`, whatever they are.
+    template <class Index>
+    void pass_unlike_cells(const Index* corners, std::size_t begin, std::size_t first, std::size_t last) {
+        const std::uint64_t mask =
+            std::min<std::uint64_t>(context_.sides.mask(), std::numeric_limits<std::make_unsigned_t<Index>>::max());
+        const auto pass = [&](std::size_t cell) {
+            return pass_cell(corners, cell, static_cast<std::uint32_t>(cell - begin));
+        };
+        if (!cells_.has_offsets()) {
+            for (std::size_t cell = first; cell < last; ++cell)
+                if (!pass(cell)) return broken();
+            return;
+        }
+        cells_.offsets().visit([&](const auto* offsets) {
+            for (std::size_t cell = first; cell < last; ++cell) {
+                const std::uint64_t at = core::widened(offsets[cell]), end = core::widened(offsets[cell + 1]);
+                const std::size_t count = corners_by_type[cells_.type(cell)];
+                const bool fits = end - at == count && at < end && end <= cells_.connectivity_size();
+                const bool dull = fits && (count == 8   ? is_dull<8>(corners + at, mask)
+                                           : count == 6 ? is_dull<6>(corners + at, mask)
+                                           : count == 5 ? is_dull<5>(corners + at, mask)
+                                                        : is_dull<4>(corners + at, mask));
+                if (!dull && !pass(cell)) return broken();
+            }
+        });
+    }
 
     /// Whether all corners are points on the same side, with nothing else to them: nearly all cells. Only pass_cell()
     /// tells what is wrong with others.

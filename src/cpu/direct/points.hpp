@@ -22,8 +22,8 @@
 
 namespace isotet::cpu::direct {
 
-/// Flags of a point at one isovalue. Of the sum over the four corners of a tet the low four bits tell how many are
-/// above; from 16 on some corner needs attention.
+/// Flags of a point at one isovalue. Of the sum over the corners of a cell the low four bits tell how many are above; from
+/// 16 on some corner needs attention.
 namespace side {
 constexpr std::uint8_t above = 0x01;
 constexpr std::uint8_t watched = 0x10; ///< it matters whether a tet uses the point, and none was seen yet
@@ -107,7 +107,9 @@ enum class Watch : std::uint8_t {
 struct SidesFound {
     bool tied = false; ///< some point, used or not
     bool near = false; ///< some point holds the value that the field's type has nearest to the isovalue
+    std::vector<std::uint8_t> stretches = {}; ///< of side_grain points each: whether any is tied or near
 };
+constexpr std::size_t side_grain = 1 << 14;
 
 /// The flags of all points.
 /// `isovalue`  as the user gave it, and as stored
@@ -118,7 +120,7 @@ SidesFound find_sides(const ops::DirectInput& input, const PointSurvey& survey, 
 /// Counts tied points that were seen, and what else ExtractReport says of ties.
 template <class Real>
 void report_ties(const ops::DirectInput& input, const PointSurvey& survey, double isovalue,
-                 const core::StoredIsovalue<Real>& stored, SidesFound found, const Sides& sides,
+                 const core::StoredIsovalue<Real>& stored, const SidesFound& found, const Sides& sides,
                  ops::DirectSurface& surface);
 
 } // namespace isotet::cpu::direct

@@ -12,8 +12,6 @@ namespace isotet::cpu::direct {
 
 namespace {
 
-constexpr std::size_t side_grain = 1 << 14;
-
 /// The value that the field's type has nearest to the isovalue, where that is another one.
 std::optional<double> nearest_value(const Array& values, double isovalue) {
     const double nearest = snap(values, isovalue);
@@ -68,7 +66,7 @@ private:
             any_tied |= if_tied;
             any_near |= if_near;
         }
-        return {any_tied != 0, any_near != 0};
+        return {any_tied != 0, any_near != 0, {}};
     }
 
     static constexpr Number infinity = std::numeric_limits<Number>::infinity();
@@ -116,15 +114,21 @@ template <class Real>
 SidesFound find_sides(const ops::DirectInput& input, const PointSurvey& survey, double isovalue,
                       const core::StoredIsovalue<Real>& stored, Ties ties, Watch watch, Sides& sides) {
     const Array& values = input.field.values;
+    SidesFound all;
+    all.stretches.resize((values.tuples() + side_grain - 1) / side_grain);
     std::atomic<bool> tied{false}, near{false};
     values.visit([&]<class T>(std::span<const T> typed) {
         const SideFinder<Real, T> finder(survey.field, stored, nearest_value(values, isovalue), ties, watch);
-        core::parallel_ranges(values.tuples(), side_grain, [&](std::size_t begin, std::size_t end) {
+        core::parallel_each(all.stretches.size(), 1, [&](std::size_t stretch) {
+            const std::size_t begin = stretch * side_grain, end = std::min(typed.size(), begin + side_grain);
             const SidesFound found = finder.find(typed.data() + begin, end - begin, sides.flags().data() + begin);
+            all.stretches[stretch] = found.tied || found.near;
             if (found.tied) tied.store(true, std::memory_order_relaxed);
             if (found.near) near.store(true, std::memory_order_relaxed);
         });
     });
+    all.tied = tied;
+    all.near = near;
     if (watch == Watch::deciding) {
         for (std::size_t i = 0; i < survey.carried.size(); ++i)
             watch_field(input.carried[i].values, survey.carried[i], sides);
@@ -140,7 +144,7 @@ SidesFound find_sides(const ops::DirectInput& input, const PointSurvey& survey, 
     if (survey.has_unsound)
         add_flags(input.grid.points, sides,
                   [](const core::Point& p) { return is_sound(p) ? std::uint8_t{0} : side::unsound; });
-    return {tied, near};
+    return all;
 }
 
 template SidesFound find_sides<float>(const ops::DirectInput&, const PointSurvey&, double,
@@ -150,7 +154,7 @@ template SidesFound find_sides<double>(const ops::DirectInput&, const PointSurve
 
 template <class Real>
 void report_ties(const ops::DirectInput& input, const PointSurvey& survey, double isovalue,
-                 const core::StoredIsovalue<Real>& stored, SidesFound found, const Sides& sides,
+                 const core::StoredIsovalue<Real>& stored, const SidesFound& found, const Sides& sides,
                  ops::DirectSurface& surface) {
     surface.isovalue_stored = core::restore_value(stored.sum(), survey.field.storage);
     if (!found.tied && !found.near) return;
@@ -159,13 +163,17 @@ void report_ties(const ops::DirectInput& input, const PointSurvey& survey, doubl
     std::atomic<std::uint64_t> tied{0}, exact{0};
     std::atomic<bool> near{false};
     values.visit([&](auto typed) {
-        core::parallel_each(values.tuples(), side_grain, [&](std::size_t point) {
+        const auto look_at = [&](std::size_t point) {
             if (sides.is_unseen(point)) return;
             if (core::store_value<Real>(static_cast<double>(typed[point]), survey.field.storage) == stored.tied) {
                 tied.fetch_add(1, std::memory_order_relaxed);
                 if (core::equals_exactly(typed[point], isovalue)) exact.fetch_add(1, std::memory_order_relaxed);
             }
             if (nearest && core::equals_exactly(typed[point], *nearest)) near.store(true, std::memory_order_relaxed);
+        };
+        core::parallel_each(found.stretches.size(), 1, [&](std::size_t stretch) {
+            const std::size_t begin = stretch * side_grain, end = std::min(typed.size(), begin + side_grain);
+            for (std::size_t point = begin; point < end && found.stretches[stretch]; ++point) look_at(point);
         });
     });
     surface.raw.tied_points = tied;
@@ -174,8 +182,10 @@ void report_ties(const ops::DirectInput& input, const PointSurvey& survey, doubl
 }
 
 template void report_ties<float>(const ops::DirectInput&, const PointSurvey&, double,
-                                 const core::StoredIsovalue<float>&, SidesFound, const Sides&, ops::DirectSurface&);
+                                 const core::StoredIsovalue<float>&, const SidesFound&, const Sides&,
+                                 ops::DirectSurface&);
 template void report_ties<double>(const ops::DirectInput&, const PointSurvey&, double,
-                                  const core::StoredIsovalue<double>&, SidesFound, const Sides&, ops::DirectSurface&);
+                                  const core::StoredIsovalue<double>&, const SidesFound&, const Sides&,
+                                  ops::DirectSurface&);
 
 } // namespace isotet::cpu::direct
