@@ -40,20 +40,17 @@ uint seams_before_window = 0u;
 Tables tables;
 Start start;
 Output surface;
-Floats position_out, normal_out, weight_out;
-Words triangle_out, lowest_out, end_out, source_out;
+Address positions, normals, weights, triangles, lowest, vertex_ends, sources; ///< of the surface, from this cluster's first on
 
 void open_output(uint number) {
     start = Starts(tables.starts).at[number];
-    position_out = Floats(advance(surface.positions, start.vertex, 12u));
-    triangle_out = Words(advance(surface.triangles, start.triangle, 12u));
-    // What is not asked for is assigned all the same: SwiftShader cannot compile an address that no path assigns, and all others
-    // leave out what is not used.
-    normal_out = Floats(advance(surface.normals, start.vertex, 12u));
-    lowest_out = Words(advance(surface.lowest, start.vertex, 4u));
-    end_out = Words(advance(surface.ends, start.vertex, 8u));
-    weight_out = Floats(advance(surface.weights, start.vertex, 4u));
-    source_out = Words(advance(surface.sources, start.triangle, 4u));
+    positions = advance(surface.positions, start.vertex, 12u);
+    triangles = advance(surface.triangles, start.triangle, 12u);
+    normals = advance(surface.normals, start.vertex, 12u);
+    lowest = advance(surface.lowest, start.vertex, 4u);
+    vertex_ends = advance(surface.ends, start.vertex, 8u);
+    weights = advance(surface.weights, start.vertex, 4u);
+    sources = advance(surface.sources, start.triangle, 4u);
 }
 
 /// Bits before `bit` in a mask that begins at word `first`.
@@ -64,21 +61,21 @@ uint bits_before(uint first, uint bit) {
 }
 
 void write_normal(uint vertex, uint below, uint above_end, float t) {
-    const vec3 normal = vertex_normal(page_words.at[page.gradients + below], page_words.at[page.gradients + above_end], t);
-    for (uint axis = 0u; axis < 3u; ++axis) normal_out.at[3u * vertex + axis] = normal[axis];
+    const vec3 normal = vertex_normal(page_word(page.gradients + below), page_word(page.gradients + above_end), t);
+    for (uint axis = 0u; axis < 3u; ++axis) Floats(normals).at[3u * vertex + axis] = normal[axis];
     if (normal != vec3(0.0)) return;
-    lowest_out.at[vertex] = 0xffffffffu;
+    Words(lowest).at[vertex] = 0xffffffffu;
     OutputAt(push.surface).surface.missing_normals = 1u;
 }
 
 /// Writes the vertex between two local points. `vertex` counts this cluster's own.
 void write_vertex(uint vertex, uint below, uint above_end, float t) {
     const vec3 a = position_of(points[below]), b = position_of(points[above_end]);
-    for (uint axis = 0u; axis < 3u; ++axis) position_out.at[3u * vertex + axis] = interpolate(a[axis], b[axis], t);
+    for (uint axis = 0u; axis < 3u; ++axis) Floats(positions).at[3u * vertex + axis] = interpolate(a[axis], b[axis], t);
     if (with_ends) {
-        end_out.at[2u * vertex] = packed_point(points[below]);
-        end_out.at[2u * vertex + 1u] = packed_point(points[above_end]);
-        weight_out.at[vertex] = t;
+        Words(vertex_ends).at[2u * vertex] = packed_point(points[below]);
+        Words(vertex_ends).at[2u * vertex + 1u] = packed_point(points[above_end]);
+        Floats(weights).at[vertex] = t;
     }
     if (with_normals) write_normal(vertex, points[below], points[above_end], t);
 }
@@ -250,7 +247,7 @@ uint number_of(Cell cell, uint polygon, uint k) {
 /// Writes those corners of a triangle that the window has.
 void write_triangle(uint at, uvec3 corners) {
     for (uint i = 0u; i < 3u; ++i)
-        if (!many_edges || corners[i] != outside) triangle_out.at[3u * at + i] = corners[i];
+        if (!many_edges || corners[i] != outside) Words(triangles).at[3u * at + i] = corners[i];
 }
 
 void write_triangles(bool special) {
@@ -272,7 +269,7 @@ void write_triangles(bool special) {
                                : corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
                     continue;
                 write_triangle(at, corners);
-                if (with_sources) source_out.at[at] = group_size * (page.first_group + cluster.first_group) + cell.word;
+                if (with_sources) Words(sources).at[at] = group_size * (page.first_group + cluster.first_group) + cell.word;
                 ++at;
             }
         }

@@ -63,8 +63,8 @@ void find_group_ranges(uint groups) {
 void write_group_range(uint group) {
     const uint at = cluster.first_group + group;
     const uint word = page.group_ranges + at / 2u, shift = 16u * (at % 2u);
-    atomicAnd(page_words.at[word], ~(0xffffu << shift));
-    atomicOr(page_words.at[word], (group_lower[group] | group_upper[group] << 8) << shift);
+    atomicAnd(Words(page.data).at[word], ~(0xffffu << shift));
+    atomicOr(Words(page.data).at[word], (group_lower[group] | group_upper[group] << 8) << shift);
 }
 
 void write_cluster(Tables tables, uint number, Range range) {

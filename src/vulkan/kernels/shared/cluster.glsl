@@ -8,7 +8,6 @@
 // The cluster at hand; the same in all invocations.
 Cluster cluster;
 Page page;
-Words page_words;
 uint own_points, ghost_points, neighbour_count, own_seams, ghost_seams;
 uvec4 kind_counts; ///< tets, pyramids, wedges, hexahedra
 uvec4 kind_ends;   ///< the group behind the last one of each
@@ -17,7 +16,6 @@ uint ghost_points_at, own_seams_at, ghost_seams_at; ///< words of the page
 void open_cluster(Tables tables, uint number) {
     cluster = Clusters(tables.clusters).at[number];
     page = Pages(tables.pages).at[cluster.page];
-    page_words = Words(page.data);
     own_points = cluster.points & 0xffffu;
     ghost_points = cluster.points >> 16;
     kind_counts = uvec4(cluster.tets & 0xffffu, cluster.others & 1023u, cluster.others >> 10 & 1023u, cluster.others >> 20);
@@ -34,9 +32,13 @@ void open_cluster(Tables tables, uint number) {
 
 uint local_points() { return ghost_points + own_points; }
 
+/// A word of the page. Its address is made of numbers here: SwiftShader keeps a global that is a reference in half of the bytes
+/// it takes, and so overwrites the one behind.
+uint page_word(uint at) { return Words(page.data).at[at]; }
+
 Neighbour neighbour_at(uint place) {
     const uint at = page.links + cluster.first_link + 3u * place;
-    return Neighbour(page_words.at[at], page_words.at[at + 1u], page_words.at[at + 2u]);
+    return Neighbour(page_word(at), page_word(at + 1u), page_word(at + 2u));
 }
 
 /// The neighbour that owns ghost point or seam `k`: the last one whose part begins at or before it. `shift` is 0 for
@@ -46,7 +48,7 @@ Neighbour neighbour_of(uint k, uint shift) {
     uint first = 0u, end = neighbour_count;
     while (end - first > 1u) {
         const uint middle = (first + end) / 2u;
-        const uint begin = page_words.at[begins_at + 3u * middle] >> shift & 0xffffu;
+        const uint begin = page_word(begins_at + 3u * middle) >> shift & 0xffffu;
         if (begin <= k) first = middle;
         else end = middle;
     }
@@ -54,7 +56,7 @@ Neighbour neighbour_of(uint k, uint shift) {
 }
 
 /// Ghost point `k`: its place among the points that its neighbour has in this page.
-uint ghost_place(uint k) { return page_words.at[ghost_points_at + k / 4u] >> 8u * (k % 4u) & 0xffu; }
+uint ghost_place(uint k) { return page_word(ghost_points_at + k / 4u) >> 8u * (k % 4u) & 0xffu; }
 
 /// The page-local number of local point `k`.
 uint page_point(uint k) {
@@ -62,17 +64,17 @@ uint page_point(uint k) {
     return neighbour_of(k, 0u).first_point + ghost_place(k);
 }
 
-float value_of(uint point) { return uintBitsToFloat(page_words.at[page.values + point]); }
+float value_of(uint point) { return uintBitsToFloat(page_word(page.values + point)); }
 
 vec3 position_of(uint point) {
     const uint at = page.positions + 3u * point;
-    return vec3(uintBitsToFloat(page_words.at[at]), uintBitsToFloat(page_words.at[at + 1u]),
-                uintBitsToFloat(page_words.at[at + 2u]));
+    return vec3(uintBitsToFloat(page_word(at)), uintBitsToFloat(page_word(at + 1u)),
+                uintBitsToFloat(page_word(at + 2u)));
 }
 
 /// The number of a page-local point among all points of the packed grid.
 uint packed_point(uint point) {
-    return point < page.own_points ? page.first_point + point : page_words.at[page.halo + point - page.own_points];
+    return point < page.own_points ? page.first_point + point : page_word(page.halo + point - page.own_points);
 }
 
 /// Place of ghost point `k` among the own points of its owner.
@@ -86,23 +88,23 @@ uint place_in_owner(Tables tables, Neighbour neighbour, uint k) {
 uint group_count() { return kind_ends.w; }
 
 /// Word `k` of the cluster's cells: four corners.
-uint cell_word(uint k) { return page_words.at[page.cells + group_size * cluster.first_group + k]; }
+uint cell_word(uint k) { return page_word(page.cells + group_size * cluster.first_group + k); }
 
 /// Range of a group in steps of the cluster's: lower + 256 * upper.
 uint range_of_group(uint group) {
     const uint at = cluster.first_group + group;
-    return page_words.at[page.group_ranges + at / 2u] >> 16u * (at % 2u) & 0xffffu;
+    return page_word(page.group_ranges + at / 2u) >> 16u * (at % 2u) & 0xffffu;
 }
 
 /// (lower, higher) local index of own seam `k`.
 uvec2 own_seam(uint k) {
-    const uint pair = page_words.at[own_seams_at + k / 2u] >> 16u * (k % 2u);
+    const uint pair = page_word(own_seams_at + k / 2u) >> 16u * (k % 2u);
     return uvec2(pair & 0xffu, pair >> 8 & 0xffu);
 }
 
 /// (lower, higher, index among the owner's own seams) of ghost seam `k`.
 uvec3 ghost_seam(uint k) {
-    const uint word = page_words.at[ghost_seams_at + k];
+    const uint word = page_word(ghost_seams_at + k);
     return uvec3(word & 0xffu, word >> 8 & 0xffu, word >> 16);
 }
 
