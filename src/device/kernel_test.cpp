@@ -59,7 +59,7 @@ Result<void> test_on(const Device& device, const SmallGrid& small) {
 /// A file beside the cache of compiled kernels, with the hash of those kernels that were right with this driver.
 std::filesystem::path note_of(const Device& device) {
     std::filesystem::path note = device.context()->pipeline_cache().file();
-    if (!note.empty()) note += ".tested";
+    if (!note.empty()) note += vulkan::PipelineCache::tested_suffix;
     return note;
 }
 

@@ -86,10 +86,10 @@ std::vector<std::byte> read_checked(const fs::path& path) {
     return bytes;
 }
 
-constexpr std::string_view prefix = "pipelines-", suffix = ".bin";
+constexpr std::string_view prefix = "pipelines-", suffix = ".bin", tested_suffix = PipelineCache::tested_suffix;
 
-/// Removes the files of other builds and drivers that were written longest ago, and what writers that were killed left.
-/// Other files are left alone.
+/// Removes the files of other builds and drivers that were written longest ago, with their notes, and what writers that were
+/// killed left. Other files are left alone.
 void tidy(const fs::path& folder) {
     using Written = std::pair<fs::file_time_type, fs::path>;
     const auto hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
@@ -102,11 +102,15 @@ void tidy(const fs::path& folder) {
         const fs::file_time_type written = entry->last_write_time(gone);
         if (gone) continue;
         if (name.ends_with(suffix)) files.emplace_back(written, entry->path());
-        else if (name.find(fmt::format("{}.", suffix)) != name.npos && written < hour_ago)
+        else if (name.find(fmt::format("{}.", suffix)) != name.npos && !name.ends_with(tested_suffix) &&
+                 written < hour_ago)
             fs::remove(entry->path(), gone);
     }
     std::ranges::sort(files, std::greater());
-    for (std::size_t i = PipelineCache::max_files; i < files.size(); ++i) fs::remove(files[i].second, failed);
+    for (std::size_t i = PipelineCache::max_files; i < files.size(); ++i) {
+        fs::remove(files[i].second, failed);
+        fs::remove(files[i].second.concat(tested_suffix), failed);
+    }
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string_view>
 
 #include "vulkan/capabilities.hpp"
 #include "vulkan/logical_device.hpp"
@@ -18,6 +19,8 @@ namespace isotet::vulkan {
 class PipelineCache {
 public:
     static constexpr std::size_t max_files = 8;
+    /// Behind the name of its file: a note on the kernels with this driver, which goes with the file.
+    static constexpr std::string_view tested_suffix = ".tested";
 
     /// `folder`   empty: nothing is read or written
     PipelineCache(LogicalDevice& device, const Capabilities& capabilities, const std::filesystem::path& folder);

@@ -93,14 +93,20 @@ TEST_F(CompiledPipelines, OfOtherBuildsGoWhenThereAreMany) {
     std::vector<fs::path> others;
     for (int i = 0; i < 12; ++i)
         others.push_back(add("pipelines-00000000000000" + std::to_string(10 + i) + ".bin", 1 + i));
+    const std::string tested(vulkan::PipelineCache::tested_suffix);
+    for (const fs::path& other : others) add(other.filename().string() + tested, 50);
+    const fs::path note = add(of_this_build.filename().string() + tested, 50);
     const fs::path killed = add("pipelines-0000000000000000.bin.123", 2),
                    writing = add("pipelines-0000000000000000.bin.456", 0);
     const fs::path foreign = add("notes.txt", 1000);
     fs::last_write_time(of_this_build, fs::file_time_type::clock::now() - std::chrono::hours(100));
     EXPECT_GT(open(), 0u);
-    for (std::size_t i = 0; i < others.size(); ++i)
+    for (std::size_t i = 0; i < others.size(); ++i) {
         EXPECT_EQ(fs::exists(others[i]), i + 1 < vulkan::PipelineCache::max_files)
             << "file " << i << " of others, newest first";
+        EXPECT_EQ(fs::exists(fs::path(others[i]).concat(tested)), fs::exists(others[i])) << "its note";
+    }
+    EXPECT_TRUE(fs::exists(note)) << "what the device was found to do right stays, however long ago";
     EXPECT_TRUE(fs::exists(of_this_build)) << "it is the newest now";
     EXPECT_FALSE(fs::exists(killed));
     EXPECT_TRUE(fs::exists(writing)) << "somebody may be at it";
