@@ -354,7 +354,8 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
     console_.detail("writing " + numbers.file);
     std::error_code ignored;
     const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
-    const Result<WriteReport> written = write_surface(surface, numbers.file, {}, console_.run());
+    const Result<WriteReport> written =
+        write_surface(surface, numbers.file, {.compression = command_.compression}, console_.run());
     if (!written) return written.error();
     console_.notes(written->notes);
     if (replaces) console_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));

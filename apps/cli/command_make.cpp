@@ -17,7 +17,8 @@ namespace isotet::cli {
 
 Result<ExitCode> run_make(const MakeCommand& command) {
     Console console(command.common);
-    if (const Result<Format> format = format_for_writing(command.out, Writes::grid); !format) return format.error();
+    if (const Result<Format> format = format_for_writing(command.out, Writes::grid, command.compression); !format)
+        return format.error();
     if (Result<void> paths = check_output_paths({}, {command.out, command.common.json}); !paths) return paths.error();
 
     const MakeOptions& options = command.grid;
@@ -27,7 +28,8 @@ Result<ExitCode> run_make(const MakeCommand& command) {
     const double make_seconds = making.seconds();
 
     const Stopwatch writing;
-    const Result<WriteReport> written = write_grid(*grid, command.out, {}, console.run());
+    const Result<WriteReport> written =
+        write_grid(*grid, command.out, {.compression = command.compression}, console.run());
     if (!written) return written.error();
     const double write_seconds = writing.seconds();
     console.notes(written->notes);

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "number_format.hpp"
 
 namespace isotet::cli {
@@ -227,6 +229,13 @@ PieceOf parse_piece(const std::string& text) {
     return out;
 }
 
+void add_compression(const Command& command, Compression& compression, const char* format) {
+    command.add_choice<Compression>(
+        "--compress", compression,
+        {{"none", Compression::none}, {"zlib", Compression::zlib}, {"lz4", Compression::lz4}},
+        fmt::format("Packs the arrays of {}: by zlib, which every VTK reads, or by LZ4, which is read faster", format));
+}
+
 void add_extract(const Command& program, ExtractCommand& extract) {
     const Command command = program.add_command("extract", "Extract isosurfaces and write them into files");
     command.add_file("FILE", extract.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
@@ -247,6 +256,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--fail-if-empty", extract.fail_if_empty,
                      "An empty surface is an error, exit status 3, and is not written");
+    add_compression(command, extract.compression, ".vtp");
     command.add_choice<Precision>("--precision", extract.precision,
                                   {{"float", Precision::float32}, {"double", Precision::float64}},
                                   "Precision of the packed grid");
@@ -360,6 +370,7 @@ void add_make(const Command& program, MakeCommand& make) {
     command.add_count(
         "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; without it 1");
     command.add_file("-o,--output", make.out, "OUT_FILE", "The grid: .vtu or .vtk").required();
+    add_compression(command, make.compression, ".vtu");
     add_common(command, make.common);
     command.set_details(make_details);
 }

@@ -23,7 +23,7 @@ struct Holds {
 
 Result<Holds> holds(const ExtractCommand& command) {
     if (command.out.empty()) return Holds{false, true};
-    const Result<Format> format = format_for_writing(command.out, Writes::surface);
+    const Result<Format> format = format_for_writing(command.out, Writes::surface, command.compression);
     if (!format) return format.error();
     const bool vtk = format->name == "vtp" || format->name == "vtk";
     for (const auto& [asked, option] :

@@ -18,6 +18,7 @@
 #include <isotet/refine.hpp>
 #include <isotet/render.hpp>
 #include <isotet/search.hpp>
+#include <isotet/write.hpp>
 
 namespace isotet::cli {
 
@@ -88,6 +89,7 @@ struct ExtractCommand {
     EngineChoice engine = EngineChoice::automatic;
     DeviceChoice device; ///< `name` is empty without --device
     std::optional<PieceOf> piece;
+    Compression compression = Compression::none;
     RefineChoice refine = RefineOptions{};
 };
 
@@ -191,6 +193,7 @@ struct MakeCommand {
     CommonOptions common;
     MakeOptions grid;
     std::string out;
+    Compression compression = Compression::none;
 };
 
 struct FormatsCommand {

@@ -79,13 +79,17 @@ std::string ending_of(const std::string& path) {
     return ending;
 }
 
-Result<Format> format_for_writing(const std::string& path, Writes what) {
+Result<Format> format_for_writing(const std::string& path, Writes what, Compression compression) {
     const std::string ending = ending_of(path);
     std::string endings;
     for (const Format& format : formats()) {
         if (!(what == Writes::surface ? format.writes_surface : format.writes_grid)) continue;
-        if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end())
+        if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end()) {
+            if (compression != Compression::none && format.name != "vtp" && format.name != "vtu")
+                return usage_error("--compress {} was asked for, but {} has no compression: {} has",
+                                   name_of(compression), ending, what == Writes::surface ? ".vtp" : ".vtu");
             return format;
+        }
         for (const std::string& other : format.extensions) endings += (endings.empty() ? "" : ", ") + other;
     }
     return usage_error("the name of the output is '{}', but it must end in one of {}", path, endings);

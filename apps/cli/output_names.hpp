@@ -10,6 +10,7 @@
 
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
+#include <isotet/write.hpp>
 
 namespace isotet::cli {
 
@@ -48,7 +49,7 @@ Result<void> check_placeholders(const std::string& out, const std::vector<std::s
 
 /// The format that the ending of `path` names. Errors: invalid_argument with the endings that there are.
 enum class Writes { grid, surface };
-Result<Format> format_for_writing(const std::string& path, Writes what);
+Result<Format> format_for_writing(const std::string& path, Writes what, Compression compression);
 
 /// The lower-case ending of a name: ".vtp".
 std::string ending_of(const std::string& path);

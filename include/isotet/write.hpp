@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/export.hpp>
@@ -19,8 +20,21 @@ struct WriteReport {
                                     ///< left out"
 };
 
+/// How arrays of vtp and vtu are packed, in blocks that are packed and can be unpacked in parallel.
+enum class Compression : std::uint8_t {
+    none,
+    zlib, ///< every version of VTK reads it
+    lz4   ///< larger, and read faster; VTK 8 and later
+};
+
+/// "none", "zlib", "lz4".
+ISOTET_API std::string_view name_of(Compression compression) noexcept;
+
 struct WriteOptions {
-    std::string format; ///< "vtp", "ply" and so on; empty: from the ending of the path
+    std::string format = {}; ///< "vtp", "ply" and so on; empty: from the ending of the path
+    Compression compression =
+        Compression::none; ///< of vtp and vtu; takes memory for the file. Its bytes are those of the
+                           ///< installed libdeflate or LZ4: another version may pack otherwise
 };
 
 /// Writes a surface: vtp, ply, stl, obj, vtk (legacy), ts (Gocad TSurf); the format from the ending of `path` unless
@@ -30,7 +44,8 @@ struct WriteOptions {
 /// old file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file
 /// differs between runs. A symbolic link stays: what it points to is replaced. Permission bits of an old file are kept.
 ///
-/// Errors   invalid_argument: unknown format, arrays that do not fit together, `path` is a folder or not a plain file;
+/// Errors   invalid_argument: unknown format, one that has no compression where one is asked for, arrays that do not fit
+///          together, `path` is a folder or not a plain file;
 ///          invalid_data: a triangle with a vertex that is not there; file: the folder of `path` is not there;
 ///          cannot_write: disk full, not writable; out_of_memory; cancelled
 ISOTET_API Result<WriteReport> write_surface(const Surface& surface, const std::string& path,

@@ -29,6 +29,9 @@ namespace {
 /// Surfaces that were extracted have numbers of points and cells as int64, also where there are none.
 bool is_there(const Array& numbers) { return !numbers.empty() || numbers.type() == ScalarType::int64; }
 
+constexpr Words<Compression, 3> words_of_compression{
+    {"none", Compression::none}, {"zlib", Compression::zlib}, {"lz4", Compression::lz4}};
+
 nb::object array_or_none(const Array& array, bool there) { return there ? array_out(array) : nb::none(); }
 
 Array optional_array(const std::optional<ArrayIn>& array) { return array ? array_in(*array) : Array(); }
@@ -121,10 +124,12 @@ void add_surfaces(nb::module_& module) {
 
     module.def(
         "write_surface",
-        [](const Surface& surface, const std::string& path, const std::string& format, const CallOptions& options) {
-            return call(options, [&](const Run& run) { return write_surface(surface, path, {format}, run); }).notes;
+        [](const Surface& surface, const std::string& path, const std::string& format, const std::string& compression,
+           const CallOptions& options) {
+            const WriteOptions how{format, choice("compression", compression, words_of_compression)};
+            return call(options, [&](const Run& run) { return write_surface(surface, path, how, run); }).notes;
         },
-        "surface"_a, "path"_a, "format"_a, "call"_a);
+        "surface"_a, "path"_a, "format"_a, "compression"_a, "call"_a);
 
     module.def(
         "read_surface",

@@ -135,14 +135,23 @@ class Surface:
         """"direct" or "clusters": how the surface was made. Both give the same one, in another order."""
         return self._how.get("method")
 
-    def write(self, path: str | os.PathLike[str], *, format: str = "", progress: Progress | None = None) -> list[str]:
+    def write(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        format: str = "",
+        compression: str = "none",
+        progress: Progress | None = None,
+    ) -> list[str]:
         """Writes the surface: .vtp, .ply, .stl, .obj, .vtk (legacy) or .ts (Gocad), whole or not at all.
+
+        compression, of .vtp only: "zlib", which every VTK reads, or "lz4", which is read faster.
 
         Returns sentences on what the format could not hold.
 
         Raises OSError where the file cannot be written, ValueError for an unknown format.
         """
-        return _isotet.write_surface(self._surface, os.fspath(path), format, call_options(0, progress))
+        return _isotet.write_surface(self._surface, os.fspath(path), format, compression, call_options(0, progress))
 
     def to_pyvista(self):
         """The surface as pyvista.PolyData, with its normals and fields. The arrays are copies."""

@@ -1,11 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The corruption driver: breaks files of every format, seeded, and gives them to a program from outside.
 //
-//   corrupt PROGRAM COUNT SEED FILE...
+//   corrupt PROGRAM COUNT SEED FILE[,PART]...
 //
-// COUNT mutations and truncations of each FILE, beside copies of the files that lie in its folder (an index is of no
-// use without them), are read by `PROGRAM info`. What is accepted: success, or exit status 3 or 4 with a message. A
-// crash, any other status, or no end within 30 s is a failure, told with the command that makes it again.
+// COUNT mutations and truncations of each FILE, or of a PART of its folder that it leads to, beside copies of the files that
+// lie in its folder (an index is of no use without them), are read by `PROGRAM info`. What is accepted: success, or exit
+// status 3 or 4 with a message. What is read must say the same, and give the same surface, when memory holds other bytes
+// before it is written (MALLOC_PERTURB_): else some value was never read. A crash, any other status, another answer, or no
+// end within 120 s is a failure, told with the command that makes it again.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -108,31 +110,57 @@ struct Driver {
     std::uint64_t count = 0, seed = 0;
     std::uint64_t refused = 0, read = 0, failed = 0;
 
-    void attack(const fs::path& file) {
+    void attack(const std::string& argument) {
+        const std::size_t comma = argument.find(',');
+        const fs::path file = argument.substr(0, comma);
+        const fs::path part = comma == std::string::npos ? file.filename() : fs::path(argument.substr(comma + 1));
         const Workplace workplace;
         fs::copy(file.parent_path().empty() ? fs::path(".") : file.parent_path(), workplace.path,
                  fs::copy_options::overwrite_existing | fs::copy_options::recursive);
-        const fs::path target = workplace.path / file.filename();
-        const std::string content = content_of(file);
+        const std::string content = content_of(workplace.path / part), grid = workplace.path / file.filename();
         for (std::uint64_t i = 0; i < count; ++i) {
             Random random((seed + i) * 0x9E3779B97F4A7C15u + 1);
             std::string broken = content;
             for (std::uint64_t changes = 1 + random() % 3; changes > 0; --changes) mutate(broken, random);
-            std::ofstream(target, std::ios::binary | std::ios::trunc) << broken;
-            isotet::test::RunOptions options;
-            options.limit = std::chrono::seconds(120);
-            judge(isotet::test::run_program({program, "info", target.string()}, options), file, seed + i);
+            std::ofstream(workplace.path / part, std::ios::binary | std::ios::trunc) << broken;
+            judge(grid, argument, seed + i);
         }
     }
-    void judge(const isotet::test::RunResult& run, const fs::path& file, std::uint64_t trial) {
-        if (acceptable(run)) {
-            ++(run.status == 0 ? read : refused);
+
+    static isotet::test::RunResult run(const std::vector<std::string>& words, const char* fresh_memory) {
+        isotet::test::RunOptions options;
+        options.environment = {{"MALLOC_PERTURB_", fresh_memory}};
+        return isotet::test::run_program(words, options);
+    }
+
+    void judge(const std::string& grid, const std::string& argument, std::uint64_t trial) {
+        const auto first = run({program, "info", grid}, "85");
+        if (!acceptable(first)) return tell(first, "", argument, trial);
+        if (first.status != 0) {
+            ++refused;
             return;
         }
+        const auto second = run({program, "info", grid}, "170");
+        if (second.status != 0 || second.out != first.out) return tell(second, "another answer", argument, trial);
+        const std::string surface = grid + ".surface.vtk";
+        std::string expected;
+        for (const char* fresh_memory : {"85", "170"}) {
+            std::error_code ignored;
+            fs::remove(surface, ignored);
+            const auto made = run({program, "extract", grid, "-f", "p", "-o", surface, "-q"}, fresh_memory);
+            if (made.timed_out || made.signal != 0 || made.status == 5) return tell(made, "extract", argument, trial);
+            const std::string found = made.status == 0 ? content_of(surface) : made.err;
+            if (*fresh_memory == '1' && found != expected) return tell(made, "another surface", argument, trial);
+            expected = found;
+        }
+        ++read;
+    }
+
+    void tell(const isotet::test::RunResult& run, const char* what, const std::string& argument, std::uint64_t trial) {
         ++failed;
-        std::printf("status %d, signal %d%s: corrupt %s 1 %llu %s\n%s\n", run.status, run.signal,
+        std::printf("%s status %d, signal %d%s: corrupt %s 1 %llu %s\n%s\n", what, run.status, run.signal,
                     run.timed_out ? ", no end" : "", program.c_str(), static_cast<unsigned long long>(trial),
-                    file.c_str(), run.err.substr(0, 500).c_str());
+                    argument.c_str(), run.err.substr(0, 500).c_str());
     }
 };
 

@@ -211,6 +211,21 @@ void expect_empty(const std::string& ending) {
     EXPECT_EQ(data->GetNumberOfCells(), 0) << ending;
 }
 
+TEST(VtkReadsVtp, WithCompression) {
+    const Surface surface = rich_surface();
+    for (const Compression compression : {Compression::zlib, Compression::lz4})
+        for (const Surface& written : {surface, empty_surface()}) {
+            const Folder folder;
+            ASSERT_TRUE(write_surface(written, folder / "out.vtp", {.compression = compression}));
+            const auto data = read_with<vtkXMLPolyDataReader>(folder / "out.vtp");
+            ASSERT_EQ(static_cast<std::size_t>(data->GetNumberOfPoints()), written.vertex_count());
+            ASSERT_EQ(static_cast<std::size_t>(data->GetNumberOfPolys()), written.triangle_count());
+            if (written.vertex_count() == 0) continue;
+            expect_same(data->GetPoints()->GetData(), written.positions, "positions");
+            EXPECT_EQ(corners_of(data->GetPolys()), corners_of(written.triangles));
+        }
+}
+
 TEST(VtkReadsEmptySurfaces, FromVtp) { expect_empty<vtkXMLPolyDataReader>("vtp"); }
 TEST(VtkReadsEmptySurfaces, FromLegacy) { expect_empty<vtkPolyDataReader>("vtk"); }
 TEST(VtkReadsEmptySurfaces, FromPly) { expect_empty<vtkPLYReader>("ply"); }
@@ -218,9 +233,9 @@ TEST(VtkReadsEmptySurfaces, FromStl) { expect_empty<vtkSTLReader>("stl"); }
 TEST(VtkReadsEmptySurfaces, FromObj) { expect_empty<vtkOBJReader>("obj"); }
 
 template <class Reader>
-void expect_grid(const Grid& grid, const std::string& ending) {
+void expect_grid(const Grid& grid, const std::string& ending, Compression compression = Compression::none) {
     const Folder folder;
-    const auto report = write_grid(grid, folder / ("out." + ending));
+    const auto report = write_grid(grid, folder / ("out." + ending), {.compression = compression});
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_EQ(report->bytes, std::filesystem::file_size(folder / ("out." + ending)));
     const auto data = read_with<Reader>(folder / ("out." + ending));
@@ -239,6 +254,12 @@ void expect_grid(const Grid& grid, const std::string& ending) {
 
 TEST(VtkReadsVtu, WithUniformCells) { expect_grid<vtkXMLUnstructuredGridReader>(tet_grid(), "vtu"); }
 TEST(VtkReadsVtu, WithMixedCells) { expect_grid<vtkXMLUnstructuredGridReader>(mixed_grid(), "vtu"); }
+TEST(VtkReadsVtu, WithCompression) {
+    for (const Compression compression : {Compression::zlib, Compression::lz4}) {
+        expect_grid<vtkXMLUnstructuredGridReader>(tet_grid(), "vtu", compression);
+        expect_grid<vtkXMLUnstructuredGridReader>(mixed_grid(), "vtu", compression);
+    }
+}
 TEST(VtkReadsLegacyGrid, WithUniformCells) { expect_grid<vtkUnstructuredGridReader>(tet_grid(), "vtk"); }
 TEST(VtkReadsLegacyGrid, WithMixedCells) { expect_grid<vtkUnstructuredGridReader>(mixed_grid(), "vtk"); }
 

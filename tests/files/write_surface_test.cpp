@@ -173,6 +173,75 @@ TEST(WriteVtp, GivesFieldsOfOneNameTwoNamesAndSaysSo) {
     EXPECT_TRUE(find_field(back->surface.point_fields, "edge_ends_2"));
 }
 
+/// Of several blocks.
+Surface long_surface() {
+    constexpr std::size_t count = 200'000;
+    std::vector<float> positions(3 * count), field(count);
+    std::vector<std::uint32_t> triangles;
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            positions[3 * i + axis] = std::sin(static_cast<float>(i * (axis + 1)));
+        field[i] = static_cast<float>(i % 1000);
+        for (std::size_t k = 0; k < 3; ++k) triangles.push_back(static_cast<std::uint32_t>((i + k) % count));
+    }
+    Surface surface;
+    surface.positions = Array::own(std::move(positions), 3);
+    surface.triangles = Array::own(std::move(triangles), 3);
+    surface.point_fields = {{"field", Array::own(std::move(field))}};
+    return surface;
+}
+
+TEST(CompressedVtp, IsReadBackAsItWasAndIsTheSameFromAnyNumberOfThreads) {
+    const Surface rich = rich_surface(), large = long_surface(), empty;
+    for (const Surface* surface : {&rich, &large, &empty})
+        for (const Compression compression : {Compression::zlib, Compression::lz4}) {
+            const Folder folder;
+            ASSERT_TRUE(write_surface(*surface, folder / "plain.vtp"));
+            for (const int threads : {1, 3}) {
+                const auto report = write_surface(*surface, folder / (std::to_string(threads) + ".vtp"),
+                                                  {.compression = compression}, {.threads = threads});
+                ASSERT_TRUE(report) << report.error().message;
+                EXPECT_EQ(report->bytes, std::filesystem::file_size(folder / (std::to_string(threads) + ".vtp")));
+            }
+            EXPECT_TRUE(content_of(folder / "1.vtp") == content_of(folder / "3.vtp"));
+            const auto back = read_surface(folder / "1.vtp"), plain = read_surface(folder / "plain.vtp");
+            ASSERT_TRUE(back) << back.error().message;
+            ASSERT_TRUE(plain) << plain.error().message;
+            expect_same(back->surface.positions, plain->surface.positions, "positions");
+            expect_same(back->surface.triangles, plain->surface.triangles, "triangles");
+            ASSERT_EQ(back->surface.point_fields.size(), plain->surface.point_fields.size());
+            for (std::size_t i = 0; i < back->surface.point_fields.size(); ++i)
+                expect_same(back->surface.point_fields[i].values, plain->surface.point_fields[i].values, "field");
+            if (surface == &large) {
+                EXPECT_LT(std::filesystem::file_size(folder / "1.vtp"),
+                          std::filesystem::file_size(folder / "plain.vtp"));
+            }
+        }
+}
+
+TEST(CompressedVtp, IsTheOnlyFormatOfSurfacesWithCompression) {
+    const Folder folder;
+    for (const std::string& format : all_formats) {
+        const auto report = write_surface(bare_surface(), folder / "out", {format, Compression::zlib});
+        EXPECT_EQ(static_cast<bool>(report), format == "vtp");
+        if (report) continue;
+        EXPECT_EQ(report.error().code, ErrorCode::invalid_argument);
+        EXPECT_EQ(report.error().message, "zlib compression was asked for, but " + format + " has none: vtp has");
+    }
+}
+
+TEST(CompressedVtp, LeavesNoFileWhenCancelled) {
+    const Folder folder;
+    const std::atomic<bool> cancel{true};
+    Progress progress;
+    progress.cancel = &cancel;
+    const auto report =
+        write_surface(long_surface(), folder / "out.vtp", {.compression = Compression::lz4}, {.progress = progress});
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::cancelled);
+    EXPECT_EQ(folder.entries(), 0U);
+}
+
 TEST(WriteStl, HoldsTrianglesAsSoupWithFacetNormals) {
     const Surface surface = bare_surface(), back = written_and_read(surface, "stl");
     ASSERT_EQ(back.vertex_count(), 9U);

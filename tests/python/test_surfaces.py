@@ -157,6 +157,13 @@ def test_written_surfaces_are_read_back(sphere, tmp_path, ending):
     surface = sphere.contour([0.4, 0.5], "sphere")
     path = tmp_path / f"surface.{ending}"
     assert isinstance(surface.write(path), list)
+    if path.suffix == ".vtp":
+        size = path.stat().st_size
+        surface.write(path, compression="zlib")
+        assert path.stat().st_size < size
+    else:
+        with pytest.raises(ValueError, match="has none"):
+            surface.write(path, compression="lz4")
     again = isotet.read_surface(str(path))
     assert len(again.triangles) == len(surface.triangles)
     assert again.area == pytest.approx(surface.area)

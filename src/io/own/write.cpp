@@ -22,8 +22,9 @@ namespace {
 struct SurfaceFormat {
     std::string_view name;
     Result<WriteReport> (*write)(const SurfaceToWrite&);
+    bool compresses = false;
 };
-constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp},
+constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp, true},
                                      SurfaceFormat{"ply", write_ply},
                                      SurfaceFormat{"stl", write_stl},
                                      SurfaceFormat{"obj", write_obj},
@@ -33,8 +34,9 @@ constexpr std::array surface_formats{SurfaceFormat{"vtp", write_vtp},
 struct GridFormat {
     std::string_view name;
     Result<WriteReport> (*write)(const GridToWrite&);
+    bool compresses = false;
 };
-constexpr std::array grid_formats{GridFormat{"vtu", write_vtu}, GridFormat{"vtk", write_legacy_grid}};
+constexpr std::array grid_formats{GridFormat{"vtu", write_vtu, true}, GridFormat{"vtk", write_legacy_grid}};
 
 /// What follows the last dot of the file's name, in lower case.
 std::string ending_of(const std::string& path) {
@@ -48,11 +50,16 @@ std::string ending_of(const std::string& path) {
 }
 
 template <class Format>
-Result<Format> choose(std::span<const Format> formats, const std::string& path, const std::string& format,
+Result<Format> choose(std::span<const Format> formats, const std::string& path, const WriteOptions& options,
                       std::string_view what) {
+    const std::string& format = options.format;
     const std::string wanted = format.empty() ? ending_of(path) : format;
     std::string all;
     for (const auto& candidate : formats) {
+        if (candidate.name == wanted && !candidate.compresses && options.compression != Compression::none)
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("{} compression was asked for, but {} has none: {} has",
+                                     name_of(options.compression), wanted, formats.front().name)};
         if (candidate.name == wanted) return candidate;
         all += fmt::format("{}{}", all.empty() ? "" : ", ", candidate.name);
     }
@@ -93,26 +100,31 @@ void note_left_out(const SurfaceToWrite& input, std::string_view format,
 
 } // namespace io
 
+std::string_view name_of(Compression compression) noexcept {
+    constexpr std::array<std::string_view, 3> names{"none", "zlib", "lz4"};
+    return names[static_cast<std::size_t>(compression)];
+}
+
 Result<WriteReport> write_surface(const Surface& surface, const std::string& path, const WriteOptions& options,
                                   const Run& run) {
     std::vector<std::string> notes;
     return io::guarded(path, run, notes, [&](const Progress& progress) -> Result<WriteReport> {
-        const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, options.format, "surface");
+        const auto chosen = io::choose<io::SurfaceFormat>(io::surface_formats, path, options, "surface");
         if (!chosen) return chosen.error();
         const auto columns = io::columns_of(surface, notes);
         if (!columns) return columns.error();
-        return chosen->write({surface, *columns, path, progress, notes});
+        return chosen->write({surface, *columns, path, progress, notes, options.compression});
     });
 }
 
 Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const WriteOptions& options, const Run& run) {
     std::vector<std::string> notes;
     return io::guarded(path, run, notes, [&](const Progress& progress) -> Result<WriteReport> {
-        const auto chosen = io::choose<io::GridFormat>(io::grid_formats, path, options.format, "grid");
+        const auto chosen = io::choose<io::GridFormat>(io::grid_formats, path, options, "grid");
         if (!chosen) return chosen.error();
         const auto columns = io::columns_of(grid, notes);
         if (!columns) return columns.error();
-        return chosen->write({*columns, path, progress});
+        return chosen->write({*columns, path, progress, options.compression});
     });
 }
 

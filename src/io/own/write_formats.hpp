@@ -19,6 +19,7 @@ struct SurfaceToWrite {
     const std::string& path;
     const Progress& progress;
     std::vector<std::string>& notes; ///< the writer adds what its format could not hold
+    Compression compression = Compression::none; ///< only for formats that have it
 };
 
 Result<WriteReport> write_vtp(const SurfaceToWrite& input);
@@ -52,6 +53,7 @@ struct GridToWrite {
     const GridColumns& columns;
     const std::string& path;
     const Progress& progress;
+    Compression compression = Compression::none; ///< only for formats that have it
 };
 
 Result<WriteReport> write_vtu(const GridToWrite& input);

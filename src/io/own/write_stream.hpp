@@ -56,6 +56,7 @@ public:
 
     /// The first error, or success.
     Result<void> finish() const;
+    const Progress& progress() const noexcept { return progress_; }
 
 private:
     template <std::unsigned_integral T>

@@ -1,8 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/own/write_vtk_xml.hpp"
 
+#include <utility>
+
 #include <fmt/core.h>
 
+#include "io/own/pack_column.hpp"
 #include "io/own/write_names.hpp"
 
 namespace isotet::io {
@@ -26,16 +29,19 @@ std::string_view xml_type(ScalarType type) {
 
 } // namespace
 
-VtkXmlFile::VtkXmlFile(std::string_view dataset)
-    : dataset_(dataset),
-      header_(fmt::format("<?xml version=\"1.0\"?>\n"
-                          "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
-                          "header_type=\"UInt64\">\n<{0}>\n",
-                          dataset)) {}
+VtkXmlFile::VtkXmlFile(std::string_view dataset, Compression compression)
+    : dataset_(dataset), compression_(compression) {
+    constexpr std::string_view compressors[] = {"", " compressor=\"vtkZLibDataCompressor\"",
+                                                " compressor=\"vtkLZ4DataCompressor\""};
+    lines_ = fmt::format("<?xml version=\"1.0\"?>\n"
+                         "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
+                         "header_type=\"UInt64\"{1}>\n<{0}>\n",
+                         dataset, compressors[static_cast<std::size_t>(compression)]);
+}
 
 void VtkXmlFile::line(std::string_view text) {
-    header_ += text;
-    header_ += '\n';
+    lines_ += text;
+    lines_ += '\n';
 }
 
 void VtkXmlFile::array(const Column& column) {
@@ -45,19 +51,41 @@ void VtkXmlFile::array(const Column& column) {
 void VtkXmlFile::flat_array(const Column& column) { add(column, {}); }
 
 void VtkXmlFile::add(const Column& column, std::string_view components) {
-    line(fmt::format(R"(<DataArray type="{}" Name="{}"{} format="appended" offset="{}"/>)", xml_type(column.type),
-                     xml_name(column.name), components, offset_));
-    columns_.push_back(&column);
-    offset_ += sizeof(std::uint64_t) + column.bytes();
+    std::string attributes =
+        fmt::format(R"(type="{}" Name="{}"{})", xml_type(column.type), xml_name(column.name), components);
+    bytes_ += lines_.size() + attributes.size() + sizeof(std::uint64_t) + column.bytes();
+    entries_.push_back({std::exchange(lines_, {}), std::move(attributes), &column});
+}
+
+std::string VtkXmlFile::header(const std::vector<std::uint64_t>& bytes_of_columns) const {
+    std::string header;
+    std::uint64_t offset = 0;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        header += entries_[i].lines;
+        header += fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n", entries_[i].attributes, offset);
+        offset += bytes_of_columns[i];
+    }
+    return header + lines_ + fmt::format("</{}>\n<AppendedData encoding=\"raw\">\n_", dataset_);
 }
 
 void VtkXmlFile::write(WriteStream& stream) const {
-    stream.text(header_);
-    stream.text(fmt::format("</{}>\n<AppendedData encoding=\"raw\">\n_", dataset_));
-    for (const auto* column : columns_) {
-        stream.number(column->bytes(), std::endian::little);
-        stream.column(*column, std::endian::little);
-    }
+    std::vector<PackedColumn> packed;
+    std::vector<std::uint64_t> bytes;
+    for (const Entry& entry : entries_)
+        if (compression_ == Compression::none) {
+            bytes.push_back(sizeof(std::uint64_t) + entry.column->bytes());
+        } else {
+            packed.push_back(pack_column(*entry.column, compression_, stream.progress()));
+            bytes.push_back(packed.back().bytes());
+        }
+    stream.text(header(bytes));
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+        if (compression_ == Compression::none) {
+            stream.number(entries_[i].column->bytes(), std::endian::little);
+            stream.column(*entries_[i].column, std::endian::little);
+        } else {
+            packed[i].write(stream);
+        }
     stream.text("\n</AppendedData>\n</VTKFile>\n");
 }
 

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTK's XML files with raw appended data: a header that names arrays, then their bytes.
+// VTK's XML files with raw appended data: a header that names arrays, then their bytes, packed or not.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace isotet::io {
 /// Collects header and arrays, then writes both. Little endian, block sizes are UInt64. Columns must outlive it.
 class VtkXmlFile {
 public:
-    explicit VtkXmlFile(std::string_view dataset);
+    VtkXmlFile(std::string_view dataset, Compression compression);
 
     /// A line of the header as it is.
     void line(std::string_view text);
@@ -22,16 +22,24 @@ public:
     void flat_array(const Column& column);
     void write(WriteStream& stream) const;
 
-    /// Bytes of the whole file, about.
-    std::uint64_t bytes() const noexcept { return header_.size() + offset_; }
+    /// Bytes of the whole file without compression, about.
+    std::uint64_t bytes() const noexcept { return bytes_; }
 
 private:
+    /// An array, and the lines before it.
+    struct Entry {
+        std::string lines, attributes;
+        const Column* column;
+    };
+
     void add(const Column& column, std::string_view components);
+    std::string header(const std::vector<std::uint64_t>& bytes_of_columns) const;
 
     std::string dataset_;
-    std::string header_;
-    std::vector<const Column*> columns_;
-    std::uint64_t offset_ = 0;
+    Compression compression_;
+    std::vector<Entry> entries_;
+    std::string lines_; ///< behind the last array
+    std::uint64_t bytes_ = 0;
 };
 
 } // namespace isotet::io

@@ -25,7 +25,7 @@ Result<WriteReport> write_vtp(const SurfaceToWrite& input) {
     const std::size_t triangles = columns.triangles.tuples;
     const Column offsets = counting("offsets", columns.triangles.type, triangles, 3, 3);
 
-    VtkXmlFile file("PolyData");
+    VtkXmlFile file("PolyData", input.compression);
     file.line(fmt::format(
         R"(<Piece NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{}">)",
         columns.positions.tuples, triangles));

@@ -16,7 +16,7 @@ Result<WriteReport> write_vtu(const GridToWrite& input) {
         columns.offsets.fill(begin + 1, end + 1, out);
     };
 
-    VtkXmlFile file("UnstructuredGrid");
+    VtkXmlFile file("UnstructuredGrid", input.compression);
     file.line(fmt::format(R"(<Piece NumberOfPoints="{}" NumberOfCells="{}">)", columns.points.tuples, columns.cells));
     file.line("<PointData>");
     for (const auto& column : columns.point_fields) file.array(column);

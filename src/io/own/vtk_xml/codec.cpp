@@ -12,6 +12,29 @@
 namespace isotet::io::vtk_xml {
 namespace {
 
+struct FreeCompressor {
+    void operator()(libdeflate_compressor* it) const noexcept { libdeflate_free_compressor(it); }
+};
+
+std::string deflate_zlib(std::span<const std::byte> block) {
+    constexpr int level = 1;
+    thread_local const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
+        libdeflate_alloc_compressor(level));
+    if (!compressor) throw std::bad_alloc();
+    std::string packed(libdeflate_zlib_compress_bound(compressor.get(), block.size()), '\0');
+    packed.resize(libdeflate_zlib_compress(compressor.get(), block.data(), block.size(), packed.data(), packed.size()));
+    return packed;
+}
+
+/// Of less than 1 GB.
+std::string deflate_lz4(std::span<const std::byte> block) {
+    const int size = static_cast<int>(block.size());
+    std::string packed(static_cast<std::size_t>(LZ4_compressBound(size)), '\0');
+    packed.resize(static_cast<std::size_t>(LZ4_compress_default(reinterpret_cast<const char*>(block.data()),
+                                                                packed.data(), size, static_cast<int>(packed.size()))));
+    return packed;
+}
+
 struct FreeDecompressor {
     void operator()(libdeflate_decompressor* it) const noexcept { libdeflate_free_decompressor(it); }
 };
@@ -62,6 +85,10 @@ bool is_plausible(Codec codec, std::uint64_t packed, std::uint64_t unpacked) {
     constexpr std::uint64_t ratios[] = {1, 1032, 255, 1 << 14}; // xz makes 1 byte of 6,900 zeros
     const std::uint64_t ratio = ratios[static_cast<std::size_t>(codec)];
     return unpacked / ratio <= packed;
+}
+
+std::string deflate(Codec codec, std::span<const std::byte> block) {
+    return codec == Codec::lz4 ? deflate_lz4(block) : deflate_zlib(block);
 }
 
 bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <isotet/export.hpp>
@@ -21,6 +22,9 @@ std::string_view name_of(Codec codec);
 
 /// False where so few bytes cannot become so many.
 ISOTET_API bool is_plausible(Codec codec, std::uint64_t packed, std::uint64_t unpacked);
+
+/// Packs one block, by zlib or LZ4: fast rather than small.
+std::string deflate(Codec codec, std::span<const std::byte> block);
 
 /// Inflates one block, which must fill `to`.
 ISOTET_API bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to);

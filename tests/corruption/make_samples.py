@@ -1,0 +1,180 @@
+# Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+"""Writes the samples of formats that data/ lacks: a box of 3 x 3 x 3 cells with a field on points and one on cells.
+
+    python3 tests/corruption/make_samples.py tests/corruption/samples
+
+Needs VTK's Python package, which writes VTK's own formats.
+"""
+import os
+import struct
+import sys
+
+import vtk
+
+SIDE = 3
+
+
+def image():
+    grid = vtk.vtkImageData()
+    grid.SetDimensions(SIDE + 1, SIDE + 1, SIDE + 1)
+    add_fields(grid)
+    return grid
+
+
+def add_fields(grid):
+    for count, data, name in [(grid.GetNumberOfPoints(), grid.GetPointData(), 'p'),
+                              (grid.GetNumberOfCells(), grid.GetCellData(), 'c')]:
+        values = vtk.vtkDoubleArray() if name == 'p' else vtk.vtkFloatArray()
+        values.SetName(name)
+        for i in range(count):
+            values.InsertNextValue((i * 7 % 11) / 10)
+        data.AddArray(values)
+
+
+def rectilinear():
+    grid = vtk.vtkRectilinearGrid()
+    grid.SetDimensions(SIDE + 1, SIDE + 1, SIDE + 1)
+    for axis in 'XYZ':
+        ticks = vtk.vtkFloatArray()
+        for i in range(SIDE + 1):
+            ticks.InsertNextValue(i * i)
+        getattr(grid, f'Set{axis}Coordinates')(ticks)
+    add_fields(grid)
+    return grid
+
+
+def structured():
+    grid = vtk.vtkStructuredGrid()
+    grid.SetDimensions(SIDE + 1, SIDE + 1, SIDE + 1)
+    points = vtk.vtkPoints()
+    for k in range(SIDE + 1):
+        for j in range(SIDE + 1):
+            for i in range(SIDE + 1):
+                points.InsertNextPoint(i + 0.1 * j, j, k)
+    grid.SetPoints(points)
+    add_fields(grid)
+    return grid
+
+
+def unstructured(tets):
+    if tets:
+        triangulate = vtk.vtkDataSetTriangleFilter()
+        triangulate.SetInputData(image())
+        triangulate.Update()
+        return triangulate.GetOutput()
+    append = vtk.vtkAppendFilter()
+    append.AddInputData(image())
+    append.Update()
+    return append.GetOutput()
+
+
+def write_xml(writer, grid, path, mode, compressor=None, encode=True):
+    writer.SetInputData(grid)
+    writer.SetFileName(path)
+    getattr(writer, f'SetDataModeTo{mode}')()
+    if compressor:
+        getattr(writer, f'SetCompressorTypeTo{compressor}')()
+    else:
+        writer.SetCompressorTypeToNone()
+    if mode == 'Appended':
+        writer.SetEncodeAppendedData(encode)
+    if writer.Write() != 1:
+        raise RuntimeError(path)
+
+
+def write_ensight(folder):
+    """Gold, C binary: one part of hexahedra."""
+    n = SIDE + 1
+    points = [(i, j, k) for k in range(n) for j in range(n) for i in range(n)]
+    number = lambda i, j, k: 1 + i + n * (j + n * k)
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = [[number(i + a, j + b, k + c) for a, b, c in corners]
+             for k in range(SIDE) for j in range(SIDE) for i in range(SIDE)]
+    text = lambda words: words.encode().ljust(80)
+    ints = lambda *numbers: struct.pack(f'<{len(numbers)}i', *numbers)
+    floats = lambda numbers: struct.pack(f'<{len(numbers)}f', *numbers)
+    values = lambda count: floats([(i * 7 % 11) / 10 for i in range(count)])
+    part = text('part') + ints(1)
+    files = {
+        'box.geo': text('C Binary') + text('a box') + text('') + text('node id assign') + text('element id assign') + part +
+                   text('box') + text('coordinates') + ints(len(points)) +
+                   b''.join(floats([point[axis] for point in points]) for axis in range(3)) +
+                   text('hexa8') + ints(len(cells)) + b''.join(ints(*cell) for cell in cells),
+        'box.p': text('p') + part + text('coordinates') + values(len(points)),
+        'box.c': text('c') + part + text('hexa8') + values(len(cells)),
+        'box.case': b'FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: box.geo\n\nVARIABLE\nscalar per node: p box.p\n'
+                    b'scalar per element: c box.c\n',
+    }
+    for name, content in files.items():
+        with open(os.path.join(folder, name), 'wb') as file:
+            file.write(content)
+
+
+def foam(folder, path, kind, location, body):
+    path = os.path.join(folder, path)
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, 'w', encoding='ascii') as file:
+        file.write(f'FoamFile\n{{\n    version 2.0;\n    format ascii;\n    class {kind};\n    location "{location}";\n'
+                   f'    object {os.path.basename(path)};\n}}\n{body}\n')
+
+
+def foam_list(items):
+    return f'{len(items)}\n(\n' + '\n'.join(items) + '\n)'
+
+
+def write_openfoam(folder):
+    n = SIDE
+    point = lambda i, j, k: i + (n + 1) * (j + (n + 1) * k)
+    cell = lambda i, j, k: i + n * (j + n * k)
+    inner, outer = [], []
+    for k in range(n):
+        for j in range(n):
+            for i in range(n):
+                for axis in range(3):
+                    ends = [(i, j, k), (i + (axis == 0), j + (axis == 1), k + (axis == 2))]
+                    u, v = [tuple(int(b == a) for b in range(3)) for a in ((axis + 1) % 3, (axis + 2) % 3)]
+                    for side, at in enumerate(ends):
+                        if side == 0 and at[axis] > 0:
+                            continue  # the lower cell has it
+                        steps = [(0, 0), (1, 0), (1, 1), (0, 1)]
+                        corners = [point(*[at[d] + a * u[d] + b * v[d] for d in range(3)]) for a, b in steps]
+                        face = '4(' + ' '.join(map(str, corners if side else corners[::-1])) + ')'
+                        other = (i + (axis == 0), j + (axis == 1), k + (axis == 2))
+                        if side and other[axis] < n:
+                            inner.append((cell(i, j, k), cell(*other), face))
+                        else:
+                            outer.append((cell(i, j, k), face))
+    inner.sort()
+    mesh = 'constant/polyMesh'
+    places = [f'({i} {j} {k})' for k in range(n + 1) for j in range(n + 1) for i in range(n + 1)]
+    foam(folder, f'{mesh}/points', 'vectorField', mesh, foam_list(places))
+    foam(folder, f'{mesh}/faces', 'faceList', mesh, foam_list([f for _, _, f in inner] + [f for _, f in outer]))
+    foam(folder, f'{mesh}/owner', 'labelList', mesh, foam_list([str(o) for o, _, _ in inner] + [str(o) for o, _ in outer]))
+    foam(folder, f'{mesh}/neighbour', 'labelList', mesh, foam_list([str(o) for _, o, _ in inner]))
+    foam(folder, f'{mesh}/boundary', 'polyBoundaryMesh', mesh,
+         f'1\n(\n    walls\n    {{\n        type wall;\n        nFaces {len(outer)};\n        startFace {len(inner)};\n    }}\n)')
+    values = [str((i * 7 % 11) / 10) for i in range(n ** 3)]
+    foam(folder, '0/p', 'volScalarField', '0',
+         'dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> ' + foam_list(values) +
+         ';\nboundaryField\n{\n    walls\n    {\n        type fixedValue;\n        value uniform 0.5;\n    }\n}')
+    foam(folder, 'system/controlDict', 'dictionary', 'system', 'startTime 0;\nendTime 0;')
+    open(os.path.join(folder, 'case.foam'), 'w', encoding='ascii').close()
+
+
+def main():
+    folder = sys.argv[1]
+    os.makedirs(folder, exist_ok=True)
+    at = lambda name: os.path.join(folder, name)
+    write_xml(vtk.vtkXMLImageDataWriter(), image(), at('raw.vti'), 'Appended', encode=False)
+    write_xml(vtk.vtkXMLRectilinearGridWriter(), rectilinear(), at('inline.vtr'), 'Binary')
+    write_xml(vtk.vtkXMLStructuredGridWriter(), structured(), at('inline_zlib.vts'), 'Binary', 'ZLib')
+    write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(True), at('inline.vtu'), 'Binary')
+    write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(True), at('appended.vtu'), 'Appended')
+    write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(False), at('appended_lz4.vtu'), 'Appended', 'LZ4')
+    os.makedirs(at('ensight'), exist_ok=True)
+    write_ensight(at('ensight'))
+    write_openfoam(at('openfoam'))
+
+
+if __name__ == '__main__':
+    main()
