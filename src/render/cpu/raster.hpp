@@ -8,6 +8,10 @@
 #include <cstdint>
 #include <utility>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "render/cpu/sheet.hpp"
 
 namespace isotet::render {
@@ -42,6 +46,31 @@ struct FixedEdge {
     std::int64_t at(std::int64_t x, std::int64_t y) const { return constant + per_x * x + per_y * y; }
 };
 
+/// The samples of a pixel at which three edges are not negative, from their values at its first sample and what is added
+/// for each of the others. As many of `offsets` are read as there are samples, rounded up to a multiple of 4.
+using SampleOffsets = std::array<std::array<std::int32_t, 64>, 3>;
+inline SampleMask samples_inside(const std::array<std::int32_t, 3>& first, const SampleOffsets& offsets,
+                                 std::size_t samples) {
+    SampleMask mask = 0;
+#if defined(__SSE2__)
+    const __m128i a = _mm_set1_epi32(first[0]), b = _mm_set1_epi32(first[1]), c = _mm_set1_epi32(first[2]);
+    const auto four = [&](std::size_t edge, std::size_t i) {
+        return _mm_loadu_si128(reinterpret_cast<const __m128i*>(&offsets[edge][i]));
+    };
+    for (std::size_t i = 0; i < samples; i += 4) {
+        const __m128i negative = _mm_or_si128(_mm_or_si128(_mm_add_epi32(a, four(0, i)), _mm_add_epi32(b, four(1, i))),
+                                              _mm_add_epi32(c, four(2, i)));
+        mask |= static_cast<SampleMask>(_mm_movemask_ps(_mm_castsi128_ps(negative)) ^ 15) << i;
+    }
+    return mask & first_samples(static_cast<std::int64_t>(samples));
+#else
+    for (std::size_t i = 0; i < samples; ++i)
+        mask |= SampleMask{((first[0] + offsets[0][i]) | (first[1] + offsets[1][i]) | (first[2] + offsets[2][i])) >= 0}
+                << i;
+    return mask;
+#endif
+}
+
 /// A triangle in a tile, its samples row by row.
 class TileCover {
 public:
@@ -57,10 +86,13 @@ public:
         const auto lowest = [](std::int64_t at) {
             return std::max<std::int64_t>((at + fixed_one - 1) >> fixed_bits, 0);
         };
-        first_x_ = lowest(std::min({x[0], x[1], x[2]}));
-        first_y_ = lowest(std::min({y[0], y[1], y[2]}));
-        last_x_ = std::min<std::int64_t>(std::max({x[0], x[1], x[2]}) >> fixed_bits, frame.width * frame.samples - 1);
-        last_y_ = std::min<std::int64_t>(std::max({y[0], y[1], y[2]}) >> fixed_bits, frame.height * frame.samples - 1);
+        const auto [left, right] = std::minmax({x[0], x[1], x[2]});
+        const auto [top, bottom] = std::minmax({y[0], y[1], y[2]});
+        first_x_ = lowest(left);
+        first_y_ = lowest(top);
+        last_x_ = std::min<std::int64_t>(right >> fixed_bits, frame.width * frame.samples - 1);
+        last_y_ = std::min<std::int64_t>(bottom >> fixed_bits, frame.height * frame.samples - 1);
+        is_small_ = right - left <= small && bottom - top <= small;
         for (std::size_t i = 0; i < 3; ++i) {
             edges_[i] = FixedEdge(x[i], y[i], x[(i + 1) % 3], y[(i + 1) % 3]);
             const FixedEdge& edge = edges_[i];
@@ -73,10 +105,38 @@ public:
     void each_pixel(const Emit& emit) const {
         if (first_x_ > last_x_ || first_y_ > last_y_) return;
         const std::int64_t s = frame_.samples;
+        if (is_small_) return each_pixel_of_small(emit);
         for (std::int64_t row = first_y_ / s; row <= last_y_ / s; ++row) pixel_row(row, emit);
     }
 
 private:
+    /// Up to 24 samples wide and high every sample around is tested: that takes less than to find where rows begin and
+    /// end. The values of edges then fit 32 bits: 24 and 8 samples are 2^13 steps, and a value is the sum of two products.
+    static constexpr std::int64_t small = 24 * fixed_one;
+
+    template <class Emit>
+    void each_pixel_of_small(const Emit& emit) const {
+        const std::int64_t s = frame_.samples;
+        const auto samples = static_cast<std::size_t>(s * s);
+        SampleOffsets offsets;
+        for (std::size_t e = 0; e < 3; ++e) {
+            const auto per_x = static_cast<std::int32_t>(edges_[e].per_x),
+                       per_y = static_cast<std::int32_t>(edges_[e].per_y);
+            std::int32_t* offset = offsets[e].data();
+            for (std::int32_t row = 0; row < frame_.samples; ++row)
+                for (std::int32_t column = 0; column < frame_.samples; ++column)
+                    *offset++ = per_y * row + per_x * column;
+            std::fill(offset, offsets[e].data() + (samples + 3) / 4 * 4, 0);
+        }
+        for (std::int64_t row = first_y_ / s; row <= last_y_ / s; ++row)
+            for (std::int64_t x = first_x_ / s; x <= last_x_ / s; ++x) {
+                std::array<std::int32_t, 3> first;
+                for (std::size_t e = 0; e < 3; ++e) first[e] = static_cast<std::int32_t>(edges_[e].at(x * s, row * s));
+                if (const SampleMask mask = samples_inside(first, offsets, samples))
+                    emit(static_cast<std::int32_t>(x), static_cast<std::int32_t>(row), mask);
+            }
+    }
+
     struct Span {
         std::int64_t begin = 0, end = 0; ///< samples
     };
@@ -148,6 +208,7 @@ private:
     const TileFrame& frame_;
     std::array<FixedEdge, 3> edges_{};
     std::int64_t first_x_ = 0, first_y_ = 0, last_x_ = -1, last_y_ = -1;
+    bool is_small_ = false;
 };
 
 /// Depth over a tile: linear in the place of a sample, and nowhere beyond that of the corners.
