@@ -236,11 +236,11 @@ private:
             });
     }
 
-    /// Reads `count` values of `size` bytes from `begin` on, in parallel, into room(first, count), in the byte order of this
-    /// machine; then calls take(first, bytes), which says whether to go on.
+    /// Reads `count` values of `size` bytes from `begin` on, in parallel, into room(first, count), as they are stored; then
+    /// calls take(first, bytes), which says whether to go on.
     template <class Room, class Take>
-    Result<void> each_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
-                            const Take& take) {
+    Result<void> each_stored_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
+                                   const Take& take) {
         FirstError failed;
         std::atomic<bool> goes_on = true;
         core::parallel_pieces(static_cast<std::size_t>(count), piece_values, progress_,
@@ -249,12 +249,20 @@ private:
                                   const std::span<std::byte> piece(room(first, end - first), (end - first) * size);
                                   if (auto read = source_.read(begin + first * size, piece); !read)
                                       return failed.add(first, read.error());
-                                  if (std::endian::native != std::endian::big)
-                                      swap_bytes(piece.data(), end - first, size);
-                                  if (!take(first, std::span<const std::byte>(piece))) goes_on = false;
+                                  if (!take(first, piece)) goes_on = false;
                               });
         if (progress_.cancelled()) failed.add(0, Pace::cancelled());
         return failed.result();
+    }
+
+    /// The same in the byte order of this machine.
+    template <class Room, class Take>
+    Result<void> each_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
+                            const Take& take) {
+        return each_stored_piece(begin, count, size, room, [&](std::size_t first, std::span<std::byte> piece) {
+            if (std::endian::native != std::endian::big) swap_bytes(piece.data(), piece.size() / size, size);
+            return take(first, std::span<const std::byte>(piece));
+        });
     }
 
     /// Indices of 64 bits in a binary file as int32; nothing, and the place as before, where one does not fit.
@@ -264,15 +272,14 @@ private:
         if (auto skipped = read_binary(type, count, 1, what, false); !skipped) return skipped.error();
         const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(std::int64_t);
         NarrowIndices narrow(static_cast<std::size_t>(count));
-        auto done = each_piece(
+        auto done = each_stored_piece(
             scanner_.position() - bytes, count, sizeof(std::int64_t),
             [](std::size_t, std::size_t values) {
                 thread_local Scratch scratch;
                 return scratch.take(values * sizeof(std::int64_t)).data();
             },
             [&](std::size_t first, std::span<const std::byte> piece) {
-                narrow.add(first, std::span(reinterpret_cast<const std::uint64_t*>(piece.data()),
-                                            piece.size() / sizeof(std::uint64_t)));
+                narrow.add_big_endian(first, piece);
                 return true;
             });
         if (!done) return done.error();
