@@ -46,7 +46,7 @@ std::vector<SampledPoint> sample_points(const Array& points, int zero_bits) {
 
 /// Samples whose hash an earlier one has.
 std::size_t count_repeated(const std::vector<SampledPoint>& samples) {
-    const int bits = std::bit_width(2 * samples.size() + 1);
+    const auto bits = static_cast<int>(std::bit_width(2 * samples.size() + 1));
     std::vector<std::uint64_t> seen(std::size_t{1} << bits); // by the highest bits: the lowest are all 0
     const std::size_t mask = seen.size() - 1;
     std::size_t count = 0, zeros = 0;
