@@ -136,12 +136,18 @@ bool all_points_are_sound(const Grid& grid) {
 
 /// Whether the cells [begin, end), four point numbers each, use only points that are there.
 bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::size_t end) {
+    if (begin == end) return true;
     return cells.connectivity().visit([&](const auto* corners) {
-        auto highest = std::make_unsigned_t<std::remove_cvref_t<decltype(*corners)>>{0};
-        for (std::size_t i = 4 * begin; i < 4 * end; ++i)
-            highest =
-                std::max(highest, static_cast<decltype(highest)>(corners[i])); // negative numbers become huge ones
-        return begin == end || highest < cells.points();
+        using Number = std::make_unsigned_t<std::remove_cvref_t<decltype(*corners)>>;
+        constexpr Number highest_bit = Number{1} << (std::numeric_limits<Number>::digits - 1);
+        if (cells.points() == 0 || cells.points() > highest_bit) return false; // then each cell is looked at
+        const auto last = static_cast<Number>(cells.points() - 1);
+        Number bits = 0; // a number that is too large, or the difference to one, has the highest bit
+        for (std::size_t i = 4 * begin; i < 4 * end; ++i) {
+            const auto corner = static_cast<Number>(corners[i]);
+            bits |= corner | (last - corner);
+        }
+        return (bits & highest_bit) == 0;
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <mutex>
 #include <type_traits>
 #include <utility>
@@ -24,10 +25,9 @@ using TypeHistogram = std::array<std::uint64_t, 256>;
 
 struct SampledPoint {
     std::uint64_t hash, number;
-    friend auto operator<=>(const SampledPoint&, const SampledPoint&) = default;
 };
 
-/// The points whose hash ends with `zero_bits` bits of zero, by hash.
+/// The points whose hash ends with `zero_bits` bits of zero, in any order.
 std::vector<SampledPoint> sample_points(const Array& points, int zero_bits) {
     std::vector<SampledPoint> samples;
     std::mutex mutex;
@@ -41,13 +41,25 @@ std::vector<SampledPoint> sample_points(const Array& points, int zero_bits) {
         const std::lock_guard lock(mutex);
         samples.insert(samples.end(), found.begin(), found.end());
     });
-    std::sort(samples.begin(), samples.end());
     return samples;
 }
 
+/// Samples whose hash an earlier one has.
 std::size_t count_repeated(const std::vector<SampledPoint>& samples) {
-    std::size_t count = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i) count += samples[i].hash == samples[i - 1].hash;
+    const auto bits = static_cast<int>(std::bit_width(2 * samples.size() + 1));
+    std::vector<std::uint64_t> seen(std::size_t{1} << bits); // by the highest bits: the lowest are all 0
+    const std::size_t mask = seen.size() - 1;
+    std::size_t count = 0, zeros = 0;
+    for (const SampledPoint& sample : samples) {
+        if (sample.hash == 0) { // means an empty place in the table
+            count += zeros++ > 0;
+            continue;
+        }
+        std::size_t place = sample.hash >> (64 - bits);
+        while (seen[place] != 0 && seen[place] != sample.hash) place = (place + 1) & mask;
+        count += seen[place] == sample.hash;
+        seen[place] = sample.hash;
+    }
     return count;
 }
 

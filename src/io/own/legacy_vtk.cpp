@@ -232,27 +232,37 @@ private:
             type.type, static_cast<std::size_t>(tuples), static_cast<std::size_t>(components), [&](std::byte* to) {
                 return each_piece(
                     begin, count, size, [&](std::size_t first, std::size_t) { return to + first * size; },
-                    [](std::size_t, std::span<const std::byte>) {});
+                    [](std::size_t, std::span<const std::byte>) { return true; });
             });
     }
 
-    /// Reads `count` values of `size` bytes from `begin` on, in parallel, into room(first, count), in the byte order of this
-    /// machine; then calls take(first, bytes).
+    /// Reads `count` values of `size` bytes from `begin` on, in parallel, into room(first, count), as they are stored; then
+    /// calls take(first, bytes), which says whether to go on.
     template <class Room, class Take>
-    Result<void> each_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
-                            const Take& take) {
+    Result<void> each_stored_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
+                                   const Take& take) {
         FirstError failed;
+        std::atomic<bool> goes_on = true;
         core::parallel_pieces(static_cast<std::size_t>(count), piece_values, progress_,
                               [&](std::size_t first, std::size_t end) {
+                                  if (!goes_on) return;
                                   const std::span<std::byte> piece(room(first, end - first), (end - first) * size);
                                   if (auto read = source_.read(begin + first * size, piece); !read)
                                       return failed.add(first, read.error());
-                                  if (std::endian::native != std::endian::big)
-                                      swap_bytes(piece.data(), end - first, size);
-                                  take(first, std::span<const std::byte>(piece));
+                                  if (!take(first, piece)) goes_on = false;
                               });
         if (progress_.cancelled()) failed.add(0, Pace::cancelled());
         return failed.result();
+    }
+
+    /// The same in the byte order of this machine.
+    template <class Room, class Take>
+    Result<void> each_piece(std::size_t begin, std::uint64_t count, std::size_t size, const Room& room,
+                            const Take& take) {
+        return each_stored_piece(begin, count, size, room, [&](std::size_t first, std::span<std::byte> piece) {
+            if (std::endian::native != std::endian::big) swap_bytes(piece.data(), piece.size() / size, size);
+            return take(first, std::span<const std::byte>(piece));
+        });
     }
 
     /// Indices of 64 bits in a binary file as int32; nothing, and the place as before, where one does not fit.
@@ -262,15 +272,15 @@ private:
         if (auto skipped = read_binary(type, count, 1, what, false); !skipped) return skipped.error();
         const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(std::int64_t);
         NarrowIndices narrow(static_cast<std::size_t>(count));
-        auto done = each_piece(
+        auto done = each_stored_piece(
             scanner_.position() - bytes, count, sizeof(std::int64_t),
             [](std::size_t, std::size_t values) {
                 thread_local Scratch scratch;
                 return scratch.take(values * sizeof(std::int64_t)).data();
             },
             [&](std::size_t first, std::span<const std::byte> piece) {
-                narrow.add(first, std::span(reinterpret_cast<const std::uint64_t*>(piece.data()),
-                                            piece.size() / sizeof(std::uint64_t)));
+                narrow.add_big_endian(first, piece);
+                return true;
             });
         if (!done) return done.error();
         auto array = std::move(narrow).to_array();
@@ -312,6 +322,13 @@ private:
     Result<void> read_cell_types() {
         const auto count = read_count("the number of cell types");
         if (!count) return count.error();
+        file_.cell_type_count = *count;
+        if (binary_ && wants_.geometry) {
+            const auto one = read_one_type(*count);
+            if (!one) return one.error();
+            file_.one_type = *one;
+            if (*one) return {};
+        }
         const auto types = read_values(integers, *count, 1, "CELL_TYPES", wants_.geometry);
         if (!types) return types.error();
         std::atomic<bool> fit = true;
@@ -321,6 +338,46 @@ private:
         });
         if (!fit) return invalid_data("CELL_TYPES: a type is not between 0 and 255");
         return {};
+    }
+
+    /// The type of all cells of a binary file; nothing, and the place as before, where there are several.
+    Result<std::optional<std::uint8_t>> read_one_type(std::uint64_t count) {
+        constexpr std::int32_t unknown = -1;
+        std::atomic<std::int32_t> first = unknown;
+        const auto same = read_while<std::int32_t>(
+            integers, count, "CELL_TYPES", [&](std::size_t, std::span<const std::int32_t> types) {
+                const std::int32_t own = types.front();
+                std::int32_t expected = unknown, different = 0;
+                if (!first.compare_exchange_strong(expected, own) && expected != own) return false;
+                for (const std::int32_t type : types) different |= type ^ own;
+                return different == 0 && own >= 0 && own <= 255;
+            });
+        if (!same) return same.error();
+        return *same && count > 0 ? std::optional(static_cast<std::uint8_t>(first.load())) : std::nullopt;
+    }
+
+    /// Looks at the values of a binary file piece by piece, in parallel, and keeps none of them. False, and the place as
+    /// before, where look(first, values) says false of some.
+    template <class Value, class Look>
+    Result<bool> read_while(const LegacyType& type, std::uint64_t count, std::string_view what, const Look& look) {
+        const std::size_t before = scanner_.position();
+        if (auto sized = check_size(count, 1, what); !sized) return sized.error();
+        if (auto skipped = read_binary(type, count, 1, what, false); !skipped) return skipped.error();
+        std::atomic<bool> all = true;
+        auto done = each_piece(
+            scanner_.position() - static_cast<std::size_t>(count) * sizeof(Value), count, sizeof(Value),
+            [](std::size_t, std::size_t values) {
+                thread_local Scratch scratch;
+                return scratch.take(values * sizeof(Value)).data();
+            },
+            [&](std::size_t first, std::span<const std::byte> piece) {
+                const auto* const values = reinterpret_cast<const Value*>(piece.data());
+                if (!look(first, std::span(values, piece.size() / sizeof(Value)))) all = false;
+                return all.load();
+            });
+        if (!done) return done.error();
+        if (!all) scanner_.seek(before);
+        return all.load();
     }
 
     Result<void> read_dimensions() {
@@ -432,6 +489,12 @@ private:
             if (is_floating(type->type) || size_of(type->type) < 4)
                 return invalid_data(fmt::format("{}: offsets or connectivity of type {}", keyword, type->name));
             const std::uint64_t needed = first ? count : size;
+            if (first && binary_ && wants_.geometry && count > 1) {
+                const auto corners = read_regular(*type, count, size, keyword);
+                if (!corners) return corners.error();
+                cells.corners = *corners;
+                if (*corners > 0) continue;
+            }
             if (binary_ && wants_.geometry && NarrowIndices::narrows(type->type)) {
                 auto narrow = read_narrow(*type, needed, keyword);
                 if (!narrow) return narrow.error();
@@ -446,7 +509,7 @@ private:
         }
         if (!wants_.geometry) return {};
         cells.count = count == 0 ? 0 : count - 1;
-        if (cells.count == 0) return {};
+        if (cells.count == 0 || cells.corners > 0) return {};
         FirstError failed;
         cells.offsets.visit([&](auto offsets) {
             core::parallel_ranges(offsets.size(), piece_values, [&](std::size_t begin, std::size_t end) {
@@ -462,6 +525,23 @@ private:
             });
         });
         return failed.result();
+    }
+
+    /// How many corners each cell has; 0, and the place as before, where not all have as many, one after another.
+    Result<std::uint64_t> read_regular(const LegacyType& type, std::uint64_t count, std::uint64_t size,
+                                       std::string_view what) {
+        const std::uint64_t corners = size / (count - 1);
+        if (corners == 0 || size % (count - 1) != 0 || type.bits) return std::uint64_t{0};
+        const auto look = [&]<class Offset>(std::size_t first, std::span<const Offset> offsets) {
+            std::uint64_t different = 0;
+            for (std::size_t i = 0; i < offsets.size(); ++i)
+                different |= static_cast<std::uint64_t>(offsets[i]) ^ ((first + i) * corners);
+            return different == 0;
+        };
+        const auto regular = size_of(type.type) == 8 ? read_while<std::int64_t>(type, count, what, look)
+                                                     : read_while<std::int32_t>(type, count, what, look);
+        if (!regular) return regular.error();
+        return *regular ? corners : 0;
     }
 
     /// Lines up to an empty one.

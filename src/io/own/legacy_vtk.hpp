@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,7 +36,9 @@ struct LegacyFile {
     bool has_points = false;
     Array points; ///< float32 or float64
     LegacyCells vertices, lines, polygons, strips, cells;
-    Array cell_types;
+    Array cell_types;                     ///< uint8; empty where all are one_type
+    std::optional<std::uint8_t> one_type; ///< of all cells
+    std::uint64_t cell_type_count = 0;
     std::array<std::uint64_t, 3> dimensions{};
     std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
     std::array<Array, 3> coordinates; ///< of a rectilinear grid

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 
@@ -30,6 +32,20 @@ public:
         for (std::size_t i = 0; i < indices.size(); ++i) {
             high |= static_cast<std::uint64_t>(indices[i]) >> 31U;
             to[i] = static_cast<std::int32_t>(indices[i]);
+        }
+        if (high != 0) fit_ = false;
+    }
+
+    /// The same of indices of 64 bits as big endian files have them.
+    void add_big_endian(std::size_t first, std::span<const std::byte> indices) {
+        std::uint64_t high = 0;
+        std::int32_t* const to = values_.data() + first;
+        for (std::size_t i = 0; i < indices.size() / sizeof(std::uint64_t); ++i) {
+            std::uint64_t index;
+            std::memcpy(&index, indices.data() + i * sizeof index, sizeof index);
+            if constexpr (std::endian::native == std::endian::little) index = __builtin_bswap64(index);
+            high |= index >> 31U;
+            to[i] = static_cast<std::int32_t>(index);
         }
         if (high != 0) fit_ = false;
     }

@@ -3,9 +3,11 @@
 #include "io/own/read_legacy_vtk.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/core.h>
 
+#include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "io/own/join.hpp"
@@ -19,22 +21,40 @@ namespace {
 
 using vtk_xml::GridSize;
 
-Array offsets_of(const LegacyCells& cells) {
-    core::Buffer<std::int64_t> offsets(static_cast<std::size_t>(cells.count) + 1);
+template <class Offset>
+Array offsets_as(const LegacyCells& cells) {
+    core::Buffer<Offset> offsets(static_cast<std::size_t>(cells.count) + 1);
     core::parallel_each(offsets.size(), std::size_t{1} << 16,
-                        [&](std::size_t i) { offsets[i] = static_cast<std::int64_t>(i * cells.corners); });
+                        [&](std::size_t i) { offsets[i] = static_cast<Offset>(i * cells.corners); });
     return std::move(offsets).to_array();
+}
+
+Array offsets_of(const LegacyCells& cells) {
+    const bool narrow = cells.connectivity.tuples() <= std::numeric_limits<std::int32_t>::max();
+    return narrow ? offsets_as<std::int32_t>(cells) : offsets_as<std::int64_t>(cells);
+}
+
+/// True where types and offsets say nothing.
+bool says_nothing(const LegacyFile& file) {
+    return file.one_type && file.cells.offsets.empty() && core::is_contoured(*file.one_type) &&
+           file.cells.corners == static_cast<std::uint64_t>(core::corners_of(*file.one_type));
 }
 
 /// Cells without types are none, as in VTK.
 Result<Cells> cells_of(const LegacyFile& file) {
     Cells cells;
     const LegacyCells& list = file.cells;
-    if (list.count == 0 || file.cell_types.empty()) return cells;
-    if (file.cell_types.tuples() != list.count)
-        return invalid_data(fmt::format("there are {} cells, but {} cell types", list.count, file.cell_types.tuples()));
+    if (list.count == 0 || file.cell_type_count == 0) return cells;
+    if (file.cell_type_count != list.count)
+        return invalid_data(fmt::format("there are {} cells, but {} cell types", list.count, file.cell_type_count));
     cells.connectivity = list.connectivity;
-    cells.types = file.cell_types;
+    if (says_nothing(file)) {
+        cells.uniform_type = static_cast<CellType>(*file.one_type);
+        return cells;
+    }
+    cells.types = file.one_type
+                      ? Array::own(std::vector<std::uint8_t>(static_cast<std::size_t>(list.count), *file.one_type))
+                      : file.cell_types;
     cells.offsets = list.offsets.empty() ? offsets_of(list) : list.offsets;
     if (list.interleaved) reorder_old_hexahedra(cells);
     vtk_xml::simplify(cells);

@@ -60,6 +60,7 @@ public:
     Result<void> each_block(const Work& work) const;
 
     const DataArray& array() const noexcept { return array_; }
+    std::uint64_t scalars() const noexcept { return scalars_; }
 
 private:
     StoredArray(const Document& document, const DataArray& array, std::uint64_t scalars, const Progress& progress)

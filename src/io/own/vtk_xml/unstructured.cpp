@@ -80,8 +80,7 @@ public:
         auto section = describe_section(document_, piece_.child("Cells"), step_);
         if (!section) return section.error();
         section_ = std::move(*section);
-        if (auto read = read_types(cells); !read) return read.error();
-        const auto size = read_offsets(cells);
+        const auto size = read_types_and_offsets(cells);
         if (!size) return size.error();
         auto connectivity = indices("connectivity", *size);
         if (!connectivity) return connectivity.error();
@@ -189,10 +188,63 @@ private:
         return *found;
     }
 
-    Result<void> read_types(Cells& cells) const {
-        const auto described = find("types");
+    Result<StoredArray> find_stored(const char* name) const {
+        const auto described = find(name);
         if (!described) return described.error();
-        auto types = load_array(document_, *described, count_, progress_);
+        return StoredArray::find(document_, *described, count_, progress_);
+    }
+
+    /// Returns how many corners there are. Neither types nor offsets become arrays where they say nothing.
+    Result<std::uint64_t> read_types_and_offsets(Cells& cells) const {
+        const auto types = find_stored("types");
+        if (!types) return types.error();
+        const auto type = one_type(*types);
+        if (!type) return type.error();
+        if (!*type) // else they have been looked at
+            if (auto read = read_types(*types, cells); !read) return read.error();
+        const auto offsets = find_stored("offsets");
+        if (!offsets) return offsets.error();
+        const auto corners = *type ? corners_of_uniform(**type) : std::nullopt;
+        if (corners && offsets->has_blocks()) {
+            const auto regular = are_regular_blocks(*offsets, *corners);
+            if (!regular) return regular.error();
+            if (*regular) {
+                cells.uniform_type = static_cast<CellType>(**type);
+                return count_ * *corners;
+            }
+        }
+        if (*type)
+            if (auto read = read_types(*types, cells); !read) return read.error();
+        auto from_0 = offsets_from_0(*offsets);
+        if (!from_0) return from_0.error();
+        const auto last = last_of(*from_0);
+        cells.offsets = std::move(*from_0);
+        simplify(cells);
+        return last;
+    }
+
+    /// The type of all cells, looked at block by block; nothing where there are several, or no such blocks.
+    static Result<std::optional<std::uint8_t>> one_type(const StoredArray& stored) {
+        if (stored.array().type != ScalarType::uint8 || !stored.has_blocks()) return std::optional<std::uint8_t>();
+        constexpr int unknown = -1;
+        std::atomic<int> first = unknown;
+        std::atomic<bool> all = true;
+        auto done = stored.each_block([&](std::uint64_t, std::span<const std::byte> types) {
+            if (!all) return;
+            const auto own = std::to_integer<int>(types.front());
+            int expected = unknown;
+            if (!first.compare_exchange_strong(expected, own) && expected != own) all = false;
+            unsigned different = 0;
+            for (const std::byte type : types) different |= std::to_integer<unsigned>(type ^ types.front());
+            if (different != 0) all = false;
+        });
+        if (!done) return done.error();
+        return all ? std::optional(static_cast<std::uint8_t>(first.load())) : std::nullopt;
+    }
+
+    static Result<void> read_types(const StoredArray& stored, Cells& cells) {
+        auto types = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
+                                  [&](std::byte* to) { return stored.decode(to); });
         if (!types) return types.error();
         if (types->type() != ScalarType::uint8) {
             const bool fits = all_pieces(*types, [](std::uint64_t, auto values) {
@@ -203,32 +255,6 @@ private:
         }
         cells.types = std::move(*types);
         return {};
-    }
-
-    /// Returns how many corners there are. Takes the types away where they say nothing.
-    Result<std::uint64_t> read_offsets(Cells& cells) const {
-        const auto described = find("offsets");
-        if (!described) return described.error();
-        const auto stored = StoredArray::find(document_, *described, count_, progress_);
-        if (!stored) return stored.error();
-        const std::uint8_t type = cells.types.as<std::uint8_t>().front();
-        auto corners = are_uniform(cells.types) ? corners_of_uniform(type) : std::nullopt;
-        if (corners && stored->has_blocks()) {
-            const auto regular = are_regular_blocks(*stored, *corners);
-            if (!regular) return regular.error();
-            if (!*regular) corners.reset();
-        }
-        if (corners && stored->has_blocks()) {
-            cells.types = Array();
-            cells.uniform_type = static_cast<CellType>(type);
-            return count_ * *corners;
-        }
-        auto offsets = offsets_from_0(*stored);
-        if (!offsets) return offsets.error();
-        const auto last = last_of(*offsets);
-        cells.offsets = std::move(*offsets);
-        simplify(cells);
-        return last;
     }
 
     Result<bool> are_regular_blocks(const StoredArray& stored, std::uint64_t corners) const {

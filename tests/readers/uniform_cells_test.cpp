@@ -1,0 +1,122 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Types and offsets go only where they say nothing, however late the cell comes that differs.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <isotet/read.hpp>
+
+#include "io/own/byte_source.hpp"
+#include "io/own/read_legacy_vtk.hpp"
+#include "io/own/vtk_xml/load.hpp"
+#include "readers/sample_bytes.hpp"
+
+namespace isotet::test {
+namespace {
+
+constexpr std::size_t many_cells = 150'000; ///< their types and offsets are looked at in several pieces
+
+/// Cells of one type with four corners each, but for the last one.
+struct LikeCells {
+    std::uint8_t type = 10, last_type = 10;
+    std::size_t last_corners = 4;
+
+    std::size_t corners() const { return 4 * (many_cells - 1) + last_corners; }
+    std::vector<std::int64_t> connectivity() const {
+        std::vector<std::int64_t> out;
+        for (std::size_t i = 0; i < corners(); ++i) out.push_back(static_cast<std::int64_t>(i % 5));
+        return out;
+    }
+    std::vector<std::int64_t> offsets(bool with_zero) const {
+        std::vector<std::int64_t> out;
+        for (std::size_t i = with_zero ? 0 : 1; i < many_cells; ++i) out.push_back(static_cast<std::int64_t>(4 * i));
+        out.push_back(static_cast<std::int64_t>(corners()));
+        return out;
+    }
+    template <class Type>
+    std::vector<Type> types() const {
+        std::vector<Type> out(many_cells, Type{type});
+        out.back() = Type{last_type};
+        return out;
+    }
+};
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values, bool swapped) {
+    SampleBytes bytes(swapped);
+    for (const T value : values) bytes.number(value);
+    return bytes.str();
+}
+
+std::string vtu_text(const LikeCells& cells) {
+    std::string data, arrays;
+    const auto append = [&](const auto& values, const char* type, const char* name, int components) {
+        const std::string bytes = bytes_of(values, false);
+        const auto element = fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
+                                         "format=\"appended\" offset=\"{}\"/>",
+                                         type, name, components, data.size());
+        data += bytes_of(std::vector{static_cast<std::uint32_t>(bytes.size())}, false) + bytes;
+        return element;
+    };
+    const std::string points = append(std::vector<float>(15, 0.5F), "Float32", "Points", 3);
+    arrays += append(cells.connectivity(), "Int64", "connectivity", 1);
+    arrays += append(cells.offsets(false), "Int64", "offsets", 1);
+    arrays += append(cells.types<std::uint8_t>(), "UInt8", "types", 1);
+    return fmt::format("<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+                       "NumberOfPoints=\"5\" NumberOfCells=\"{}\"><Points>{}</Points><Cells>{}</Cells></Piece>"
+                       "</UnstructuredGrid><AppendedData encoding=\"raw\">_{}</AppendedData></VTKFile>",
+                       many_cells, points, arrays, data);
+}
+
+std::string legacy_text(const LikeCells& cells) {
+    return "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n" +
+           bytes_of(std::vector<float>(15, 0.5F), true) +
+           fmt::format("\nCELLS {} {}\nOFFSETS vtktypeint64\n", many_cells + 1, cells.corners()) +
+           bytes_of(cells.offsets(true), true) + "\nCONNECTIVITY vtktypeint64\n" +
+           bytes_of(cells.connectivity(), true) + fmt::format("\nCELL_TYPES {}\n", many_cells) +
+           bytes_of(cells.types<std::int32_t>(), true) + "\n";
+}
+
+class CellsOfAFile : public testing::TestWithParam<bool> {
+protected:
+    static Cells read(const LikeCells& cells) {
+        const auto loaded = GetParam() ? io::load_legacy(io::ByteSource(legacy_text(cells)), {}, io::Depth::arrays, {})
+                                       : io::vtk_xml::load(io::ByteSource(vtu_text(cells)), "UnstructuredGrid", {},
+                                                           io::Depth::arrays, false, {});
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        Cells out = loaded ? loaded->pieces.at(0).grid.cells : Cells();
+        const auto expected = cells.connectivity();
+        EXPECT_EQ(values_of(out.connectivity), (std::vector<double>{expected.begin(), expected.end()}));
+        return out;
+    }
+
+    static void expect_kept(const LikeCells& cells) {
+        const Cells found = read(cells);
+        const auto types = cells.types<std::uint8_t>();
+        const auto offsets = cells.offsets(true);
+        EXPECT_EQ(values_of(found.types), (std::vector<double>{types.begin(), types.end()}));
+        EXPECT_EQ(values_of(found.offsets), (std::vector<double>{offsets.begin(), offsets.end()}));
+    }
+};
+
+TEST_P(CellsOfAFile, HaveNeitherTypesNorOffsetsWhereAllAreTetrahedra) {
+    const Cells found = read({});
+    EXPECT_TRUE(found.types.empty());
+    EXPECT_TRUE(found.offsets.empty());
+    EXPECT_EQ(found.uniform_type, CellType::tetrahedron);
+    EXPECT_EQ(found.count(), many_cells);
+}
+
+TEST_P(CellsOfAFile, KeepBothWhereTheLastTypeDiffers) { expect_kept({.last_type = 9}); }
+TEST_P(CellsOfAFile, KeepBothWhereTheLastCellIsLonger) { expect_kept({.last_type = 14, .last_corners = 5}); }
+TEST_P(CellsOfAFile, KeepBothWhereOnlyTheLastOffsetDiffers) { expect_kept({.last_corners = 5}); }
+TEST_P(CellsOfAFile, KeepBothWhereTheOneTypeIsNotContoured) { expect_kept({.type = 9, .last_type = 9}); }
+
+INSTANTIATE_TEST_SUITE_P(Formats, CellsOfAFile, testing::Values(false, true),
+                         [](const auto& format) { return format.param ? "Legacy" : "Vtu"; });
+
+} // namespace
+} // namespace isotet::test
