@@ -60,8 +60,8 @@ the same vertices and triangles in a different order. auto chooses by a fixed ru
 same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a note.
 
 Pieces (--piece) have equally many cells, in the order of the file. They are stored as the whole grid is, and edge ends
-and source cells have the numbers of the whole; so surfaces of pieces fit bit for bit. Gradient normals at the rim of a
-piece do not: they are those of its own cells.
+and source cells have the numbers of the whole; so surfaces of pieces fit bit for bit. Normals of vertices at the rim
+of a piece do not: they are those of its own cells.
 
 Examples:
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5
@@ -201,8 +201,8 @@ void add_levels(const Command& command, ExtractCommand& extract) {
 
 void add_surface_arrays(const Command& command, ExtractCommand& extract) {
     command.add_choice<Normals>("--normals", extract.normals,
-                                {{"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}},
-                                "Normals: of the field's gradient, a vertex; of the triangles, a face");
+                                {{"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}, {"vertex", Normals::vertex}},
+                                "Normals: gradient, of the field, a vertex; face, of each triangle; vertex, of the triangles around each vertex");
     command.add_texts(
         "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
         "Carry these point and cell fields onto the surface, separated by commas; may be repeated; an empty name "

@@ -12,7 +12,15 @@
 
 namespace isotet {
 
-enum class Normals : std::uint8_t { none, gradient, face };
+/// What normals a surface has.
+enum class Normals : std::uint8_t {
+    none,
+    gradient, ///< one a vertex, of the field; on thin cells they may turn away from the surface
+    face,     ///< one a triangle
+    vertex    ///< one a vertex, vertex_normals(): they follow the surface
+};
+
+inline bool are_of_vertices(Normals normals) { return normals == Normals::gradient || normals == Normals::vertex; }
 
 /// Triangles on welded vertices. V vertices, F triangles.
 ///
@@ -20,7 +28,7 @@ enum class Normals : std::uint8_t { none, gradient, face };
 ///                 precision is single, else float64
 /// `triangles`     uint32 (uint64 from 2^32 vertices on), 3 components, F tuples; counter-clockwise seen from the side
 ///                 of higher values
-/// `normals`       empty, or float32, 3 components: V tuples (gradient) or F tuples (face); unit length, or zero where
+/// `normals`       empty, or float32, 3 components: V tuples (gradient, vertex) or F tuples (face); unit length, or zero where
 ///                 nothing defines one; towards higher values
 /// `edge_ends`     empty, or int64, 2 components, V tuples: the user's numbers of the points between which the vertex
 ///                 lies, the one below first; both the same for a vertex at a tied point

@@ -36,8 +36,8 @@ std::string_view word_of(Enum value, const Words<Enum, N>& words) {
     return {};
 }
 
-inline constexpr Words<Normals, 3> words_of_normals{
-    {"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}};
+inline constexpr Words<Normals, 4> words_of_normals{
+    {"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}, {"vertex", Normals::vertex}};
 inline constexpr Words<Ties, 2> words_of_ties{{"merge", Ties::merge}, {"keep", Ties::keep}};
 inline constexpr Words<Precision, 2> words_of_precision{{"float32", Precision::float32},
                                                         {"float64", Precision::float64}};

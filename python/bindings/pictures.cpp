@@ -66,7 +66,7 @@ Result<void> set_normals(RenderRequest& request, const Run& run) {
         auto normals = vertex_normals(surface, run);
         if (!normals) return normals.error();
         surface.normals = *std::move(normals);
-        surface.normals_kind = Normals::gradient; // one a vertex
+        surface.normals_kind = Normals::vertex;
     }
     return {};
 }

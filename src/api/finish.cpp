@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "api/attributes.hpp"
+#include "api/vertex_normals.hpp"
 #include "core/buffer.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
@@ -30,8 +31,9 @@ template <class To, class Real, class F>
 Array restored(std::span<const Real> stored, std::size_t components, const F& f) {
     constexpr std::size_t values_per_task = 1 << 14;
     core::Buffer<To> out(stored.size());
-    core::parallel_each(stored.size(), values_per_task,
-                        [&](std::size_t i) { out[i] = static_cast<To>(f(static_cast<double>(stored[i]), i % components)); });
+    core::parallel_each(stored.size(), values_per_task, [&](std::size_t i) {
+        out[i] = static_cast<To>(f(static_cast<double>(stored[i]), i % components));
+    });
     return std::move(out).to_array(components);
 }
 
@@ -62,6 +64,7 @@ Surface finish(const std::array<double, 3>& origin, const ExtractOptions& option
     surface.normals_kind = options.normals;
     if (options.normals == Normals::gradient) surface.normals = fill_normals<Real>(raw);
     else if (options.normals == Normals::face) surface.normals = face_normals<Real>(raw);
+    else if (options.normals == Normals::vertex) surface.normals = *normals_of_vertices(surface);
     for (std::size_t i = 0; i < options.point_fields.size(); ++i) {
         const Field& field = options.point_fields[i];
         const Array stored = raw.fields.empty() ? interpolate_field<Real>(field, storages[i], raw) : raw.fields[i];
@@ -87,6 +90,10 @@ MoreBytes more_bytes(const ExtractOptions& options, const std::array<double, 3>&
     for (const Field& field : options.point_fields) more.vertex += field.values.components() * sizeof(double);
     if (options.normals == Normals::gradient) more.vertex += fill_normals_bytes;
     if (options.normals == Normals::face) more.triangle += 3 * sizeof(float);
+    if (options.normals == Normals::vertex) {
+        more.vertex += 3 * sizeof(float) + 8;
+        more.triangle += 12;
+    }
     for (const Field& field : options.cell_fields)
         more.triangle += field.values.components() * size_of(field.values.type());
     return more;

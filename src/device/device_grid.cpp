@@ -68,7 +68,8 @@ DeviceGrid::~DeviceGrid() = default;
 namespace {
 
 vulkan::SurfaceParts parts_of(const ExtractOptions& options, const FieldsOnDevice& fields) {
-    vulkan::SurfaceParts parts{options.normals,
+    const bool on_device = options.normals != Normals::vertex; // else after the download
+    vulkan::SurfaceParts parts{on_device ? options.normals : Normals::none,
                                options.edge_ends || !options.point_fields.empty(),
                                options.source_cells || !options.cell_fields.empty(),
                                {}};
@@ -136,15 +137,17 @@ Result<Extraction> DeviceSurface::Data::download() const {
     const bool ends = options.edge_ends || (!options.point_fields.empty() && !fields_are_there);
     auto raw = buffers.download(*context, *packed, ends);
     if (!raw) return std::move(raw).error();
-    ExtractOptions without_normals = options;
-    without_normals.normals = Normals::none;
+    ExtractOptions the_rest = options;
+    if (options.normals != Normals::vertex) the_rest.normals = Normals::none;
     std::vector<core::Storage> stored_as = storages;
     if (!fields_are_there)
         for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field, *packed));
     Extraction out;
-    out.surface = api::finish<float>(packed->origin, without_normals, stored_as, *raw);
-    out.surface.normals_kind = options.normals;
-    out.surface.normals = raw->normals;
+    out.surface = api::finish<float>(packed->origin, the_rest, stored_as, *raw);
+    if (options.normals != Normals::vertex) {
+        out.surface.normals_kind = options.normals;
+        out.surface.normals = raw->normals;
+    }
     api::report_ties(*packed, isovalue, stored, raw->tied_points, out.report);
     out.report.selected_clusters = raw->selected_clusters;
     out.report.surface_bytes = api::bytes_of(out.surface);

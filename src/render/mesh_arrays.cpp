@@ -60,7 +60,7 @@ Result<MeshArrays> MeshArrays::of(const Surface& surface) {
     mesh.triangle_count = static_cast<std::uint32_t>(surface.triangle_count());
     if (Result<void> done = mesh.take_positions(surface); !done) return done.error();
     if (Result<void> done = mesh.take_triangles(surface); !done) return done.error();
-    if (surface.normals_kind != Normals::gradient || surface.normals.tuples() != surface.vertex_count()) return mesh;
+    if (!are_of_vertices(surface.normals_kind) || surface.normals.tuples() != surface.vertex_count()) return mesh;
     mesh.normals = core::Buffer<float>(surface.normals.size());
     surface.normals.visit([&](auto scalars) {
         core::parallel_each(scalars.size(), mesh_grain,

@@ -45,8 +45,8 @@ public:
         Surface out;
         out.positions = mixed(surface_.positions);
         out.triangles = Array::own(triangles_, 3);
-        if (surface_.normals_kind == Normals::gradient && surface_.normals.tuples() == height_.size()) {
-            out.normals_kind = Normals::gradient;
+        if (are_of_vertices(surface_.normals_kind) && surface_.normals.tuples() == height_.size()) {
+            out.normals_kind = surface_.normals_kind;
             out.normals = mixed(surface_.normals);
         }
         for (const Field& field : surface_.point_fields) out.point_fields.push_back({field.name, mixed(field.values)});

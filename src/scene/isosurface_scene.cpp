@@ -300,7 +300,7 @@ Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
         Result<Array> normals = vertex_normals(one);
         if (!normals) return normals.error();
         one.normals = *std::move(normals);
-        one.normals_kind = Normals::gradient; // one a vertex
+        one.normals_kind = Normals::vertex;
     } else if (look.shade_by == ShadeBy::faces) {
         one.normals_kind = Normals::none;
     }

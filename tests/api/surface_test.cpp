@@ -177,6 +177,25 @@ TEST(GradientNormals, FallBackOnTheFirstTriangleWhereTheGradientCancels) {
         }
 }
 
+TEST(VertexNormals, AreTheMeanOfTheFacesAroundWhateverExtracts) {
+    const Grid grid = made_grid("mixed", 6, {"gyroid"});
+    ExtractOptions options;
+    options.normals = Normals::vertex;
+    const PackedGrid packed = pack(grid, point_field(grid)).value();
+    const double isovalue = 0.2;
+    const DirectOptions direct{options};
+    for (const Surface& surface :
+         {extract(packed, isovalue, options).value().surface,
+          extract_by_reference(packed, std::span(&isovalue, 1), options).value()[0].surface,
+          extract_direct(grid, point_field(grid), std::span(&isovalue, 1), direct).value().surfaces[0].surface}) {
+        ASSERT_GT(surface.vertex_count(), 100u);
+        EXPECT_EQ(surface.normals_kind, Normals::vertex);
+        const Array expected = vertex_normals(surface).value();
+        ASSERT_EQ(surface.normals.bytes(), expected.bytes());
+        EXPECT_EQ(std::memcmp(surface.normals.data(), expected.data(), expected.bytes()), 0);
+    }
+}
+
 TEST(Extraction, NeedsTheGridNoLonger) {
     PackedGrid packed;
     {

@@ -44,7 +44,7 @@ const Misuse misuses[] = {
     {{"extract", "make:kuhn:2:sphere", "--levels", "-3"}, "--levels got '-3'"},
     {{"extract", "make:kuhn:2:sphere", "-j", "1.5"}, "--threads got '1.5'"},
     {{"extract", "make:kuhn:2:sphere", "--normals", "smooth"},
-     "--normals got 'smooth', but it takes none|gradient|face"},
+     "--normals got 'smooth', but it takes none|gradient|face|vertex"},
     {{"extract", "make:kuhn:2:sphere", "--time", "0", "--step", "0"}, "excludes"},
     {{"extract", "make:kuhn:2:sphere", "--time", "3"}, "time 3 was asked for, but the file knows no time"},
     {{"extract", "make:kuhn:2:sphere", "--step", "1"}, "step 1 was asked for, but the file has 1 time step"},

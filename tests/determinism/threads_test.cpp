@@ -47,7 +47,7 @@ void expect_same_bytes(const Grid& grid, const PointField& field, Precision prec
         std::size_t place = 0;
         for (const double isovalue : isovalues)
             for (const Ties ties : {Ties::merge, Ties::keep})
-                for (const Normals normals : {Normals::gradient, Normals::face}) {
+                for (const Normals normals : {Normals::gradient, Normals::face, Normals::vertex}) {
                     const auto out =
                         extract(packed, isovalue, with_everything(grid, ties, normals), {.threads = threads}).value();
                     std::string bytes = bytes_of(out.surface);

@@ -73,13 +73,15 @@ TEST_F(SameBytes, OnTangledGridsWithRepeatedAndMissingTets) {
                        {0, 0.5, 1});
 }
 
-TEST_F(SameBytes, OfFaceNormals) {
+TEST_F(SameBytes, OfNormalsOfFacesAndVertices) {
     for (const std::uint32_t seed : Seeds(1, 3)) {
         const NastyGrid g =
             nasty_grid(seed, {.side = 7, .values = seed == 1 ? 0 : 3, .no_data = 0.02, .inverted = 0.1});
         ExtractOptions options;
-        options.normals = Normals::face;
-        expect_same_on(g.grid, g.field, {-0.2, 0, 1}, options);
+        for (const Normals normals : {Normals::face, Normals::vertex}) {
+            options.normals = normals;
+            expect_same_on(g.grid, g.field, {-0.2, 0, 1}, options);
+        }
     }
 }
 

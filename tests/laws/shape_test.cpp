@@ -100,7 +100,7 @@ TEST_P(OnEveryShape, TrianglesFaceHigherValues) {
 
 TEST_P(OnEveryShape, NormalsHaveUnitLengthAndGradientNormalsPointAwayFromTheCentre) {
     const Grid g = grid("sphere");
-    for (const Normals kind : {Normals::gradient, Normals::face}) {
+    for (const Normals kind : {Normals::gradient, Normals::face, Normals::vertex}) {
         ExtractOptions options;
         options.normals = kind;
         const Surface surface = extract(packed(g), 0.6, options).value().surface;

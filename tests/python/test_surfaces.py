@@ -42,6 +42,12 @@ def test_everything_that_can_be_asked_for(sphere):
     assert faces.normals_kind == "face"
 
 
+def test_normals_of_vertices_follow_the_surface(sphere):
+    surface = sphere.contour(0.5, "sphere", normals="vertex")
+    outward = surface.points / np.linalg.norm(surface.points, axis=1)[:, None]
+    assert (np.einsum("ij,ij->i", surface.normals, outward) > 0.8).all()
+
+
 def test_fields_are_named_or_given(sphere):
     assert list(sphere.contour(0.5, "sphere").fields) == ["sphere", "gyroid"]
     assert list(sphere.contour(0.5, "sphere", fields=["gyroid"]).fields) == ["gyroid"]

@@ -113,7 +113,7 @@ void write_polydata(const std::vector<isotet::Surface>& surfaces, const Wishes& 
         of_points->AddArray(to_vtk(field.values, field.name.c_str()));
     for (const isotet::Field& field : surface.cell_fields)
         out->GetCellData()->AddArray(to_vtk(field.values, field.name.c_str()));
-    if (wishes.normals && surface.normals_kind == isotet::Normals::gradient)
+    if (wishes.normals && isotet::are_of_vertices(surface.normals_kind))
         of_points->SetNormals(to_vtk(surface.normals, "Normals"));
     keep_active(grid->GetPointData(), of_points);
     keep_active(grid->GetCellData(), out->GetCellData());

@@ -169,7 +169,7 @@ Result<SurfaceColumns> columns_of(const Surface& surface, std::vector<std::strin
                             : converted<std::int64_t>("connectivity", surface.triangles);
     columns.triangles.components = 3;
     Names point_names, cell_names;
-    if (surface.normals_kind == Normals::gradient) {
+    if (are_of_vertices(surface.normals_kind)) {
         columns.point_normals = column_of(take_name("Normals", point_names), surface.normals);
         columns.point_normals->components = 3;
     }

@@ -1,13 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Normals of vertices from the triangles around them. Weighted by areas: by angles would need functions that machines
 // compute differently, and the thin triangles that marching makes would count as much as others.
+#include "api/vertex_normals.hpp"
+
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include <fmt/core.h>
-
-#include <isotet/surface.hpp>
 
 #include "core/carry_out.hpp"
 #include "core/errors.hpp"
@@ -75,15 +75,17 @@ Array normals_of(const Positions& positions, const Corners& corners, const Trian
 
 } // namespace
 
-Result<Array> vertex_normals(const Surface& surface, const Run& run) {
-    return core::carry_out("normals of vertices", run, [&](const Progress&) -> Result<Array> {
-        return surface.triangles.visit([&](auto corners) -> Result<Array> {
-            const Result<TrianglesAround> around = triangles_around(corners, surface.vertex_count());
-            if (!around) return around.error();
-            return surface.positions.visit(
-                [&](auto positions) { return normals_of(positions, corners, *around, surface.vertex_count()); });
-        });
+Result<Array> normals_of_vertices(const Surface& surface) {
+    return surface.triangles.visit([&](auto corners) -> Result<Array> {
+        const Result<TrianglesAround> around = triangles_around(corners, surface.vertex_count());
+        if (!around) return around.error();
+        return surface.positions.visit(
+            [&](auto positions) { return normals_of(positions, corners, *around, surface.vertex_count()); });
     });
+}
+
+Result<Array> vertex_normals(const Surface& surface, const Run& run) {
+    return core::carry_out("normals of vertices", run, [&](const Progress&) { return normals_of_vertices(surface); });
 }
 
 } // namespace isotet
