@@ -20,6 +20,7 @@ Console::Console(const CommonOptions& options)
 }
 
 void Console::note(const std::string& sentence) {
+    const std::lock_guard lock(mutex_);
     if (sentence.empty() || std::find(noted_.begin(), noted_.end(), sentence) != noted_.end()) return;
     noted_.push_back(sentence);
     if (quiet_) return;
@@ -33,6 +34,7 @@ void Console::notes(const std::vector<std::string>& sentences) {
 
 void Console::detail(const std::string& sentence) {
     if (!verbose_) return;
+    const std::lock_guard lock(mutex_);
     bar_.clear();
     write_to_stderr("isotet: " + printable(sentence) + "\n");
 }

@@ -2,6 +2,7 @@
 // What a command says while it works: results, notes, details, progress, and where each of them goes.
 #pragma once
 
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 
 namespace isotet::cli {
 
+/// Threads   note(), notes(), detail(): any
 class Console {
 public:
     explicit Console(const CommonOptions& options);
@@ -38,6 +40,7 @@ private:
     bool quiet_, verbose_, table_;
     ProgressBar bar_;
     Run run_;
+    std::mutex mutex_; ///< of what is written while working
     std::vector<std::string> noted_;
 };
 

@@ -20,6 +20,7 @@ namespace isotet::cli {
 /// Names of the fields to read; nothing: all of them.
 struct FieldsToRead {
     std::optional<std::vector<std::string>> point, cell;
+    friend bool operator==(const FieldsToRead&, const FieldsToRead&) = default;
 };
 
 /// What the ending of a name can be.

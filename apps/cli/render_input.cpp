@@ -175,6 +175,22 @@ Result<void> RenderSource::widen_range(const std::string& color, Console& consol
     return {};
 }
 
+/// A step that was read ahead, or reads it.
+Result<Grid> RenderSource::read_grid(const FieldsToRead& fields, std::size_t step, Console& console) {
+    const bool is_there = ahead_.valid() && ahead_step_ == step && fields == last_read_;
+    last_read_ = fields;
+    return is_there ? ahead_.get() : source_->read(fields, step, console);
+}
+
+void RenderSource::read_ahead(std::size_t step, Console& console) {
+    Run run = console.run();
+    run.progress.report = {}; // the bar is that of the picture
+    ahead_step_ = step;
+    ahead_ = std::async(std::launch::async, [source = *source_, fields = last_read_, step, run, &console] {
+        return source.read(fields, step, console, run);
+    });
+}
+
 /// Reads what the picture needs of a step, and decides what it shows.
 Result<RenderSource::Contents> RenderSource::read_contents(std::size_t step, Console& console) {
     Contents contents;
@@ -196,7 +212,7 @@ Result<RenderSource::Contents> RenderSource::read_contents(std::size_t step, Con
         add_names(*read.point, found->point);
         add_names(*read.cell, found->cell);
     }
-    Result<Grid> grid = source_->read(read, step, console);
+    Result<Grid> grid = read_grid(read, step, console);
     if (!grid) return grid.error();
     contents.grid = *std::move(grid);
     if (unnamed) {
@@ -245,6 +261,7 @@ Result<RenderInput> RenderSource::read(std::size_t which, const std::optional<De
     Result<Contents> contents = read_contents(step, console);
     if (!contents) return contents.error();
     input.read_seconds = reading.seconds();
+    if (which + 1 < steps_.size() && console.run().threads != 1) read_ahead(steps_[which + 1], console);
     input.format = source_->info().format;
     input.time = time_of(source_->info(), step);
     if (source_->info().times.size() > 1) input.step = step;

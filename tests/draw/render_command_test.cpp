@@ -110,6 +110,40 @@ TEST_F(RenderOnCpu, DrawsEveryTimeStepWithOneCameraAndOneScale) {
     EXPECT_NE(film.err.find("ffmpeg -framerate 12 -i '"), std::string::npos) << film.err;
 }
 
+// One thread reads each step when it is wanted, several read the next one while a picture is drawn.
+TEST_F(RenderOnCpu, ReadsStepsAheadWithoutADifference) {
+    std::ofstream series(path("series.pvd"));
+    series << "<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection>";
+    for (const std::string step : {"1", "2", "3"}) {
+        const std::string file = path("step" + step + ".vtu");
+        ASSERT_EQ(isotet({"make", "perturbed", "--side", "6", "--fields", "gyroid", "--seed", step, "-o", file}).status,
+                  0);
+        series << "<DataSet timestep=\"" << step << "\" file=\"step" << step << ".vtu\"/>";
+    }
+    series << "</Collection></VTKFile>";
+    series.close();
+    const auto draw = [&](const std::string& threads) {
+        return isotet({"render", path("series.pvd"), "-i", "0.3", "--all-steps", "-o",
+                       path("t" + threads + "-{frame}.png"), "--size", "120x90", "--threads", threads});
+    };
+    ASSERT_EQ(draw("1").status, 0);
+    ASSERT_EQ(draw("3").status, 0);
+    const auto content = [&](const std::string& name) {
+        std::ifstream file(path(name), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    for (const std::string frame : {"1", "2", "3"})
+        EXPECT_TRUE(content("t1-" + frame + ".png") == content("t3-" + frame + ".png"));
+    EXPECT_FALSE(content("t1-1.png") == content("t1-2.png"));
+
+    std::ofstream(path("step3.vtu")) << "broken";
+    std::filesystem::remove(path("t3-1.png"));
+    const RunResult broken = draw("3");
+    EXPECT_EQ(broken.status, 3);
+    EXPECT_NE(broken.err.find("step3.vtu"), std::string::npos) << broken.err;
+    EXPECT_TRUE(std::filesystem::exists(path("t3-1.png"))) << "what came before is there";
+}
+
 TEST_F(RenderOnCpu, ShadesByTheNormalsThatAreAskedFor) {
     const auto shaded = [&](const char* normals) {
         return picture(std::string(normals) + ".png",
