@@ -109,7 +109,8 @@ std::string curved_table(const CurvedFindings& found) {
     Table table = facts();
     table.row({"curved cells", fmt::format("{}; extract and render refine them to --tolerance", grouped(found.cells))});
     if (found.left_out > 0)
-        table.row({"", fmt::format("{} left out: pyramids of degree 3 and above, or above degree 10", grouped(found.left_out))});
+        table.row({"", fmt::format("{} left out: pyramids of degree 3 and above, or above degree 10",
+                                   grouped(found.left_out))});
     for (const CurvedCost& cost : found.costs)
         table.row({"", fmt::format("{}: split at their nodes only, off by at most {} ({:.2g} % of the range)",
                                    cost.field, rounded(cost.bound), 100 * cost.share)});
@@ -169,6 +170,22 @@ std::string block_table(const FileInfo& file) {
         table.row({"block", std::to_string(block.number), block.name.empty() ? "-" : block.name, block.kind,
                    fmt::format("{} cell{}", grouped(block.cells), block.cells == 1 ? "" : "s")});
     return table.text();
+}
+
+std::string region_table(const FileInfo& file) {
+    using enum Table::Align;
+    Table table({left, left, right, left});
+    for (const RegionName& region : file.regions)
+        table.row({"region", region.field, std::to_string(region.number), region.name});
+    return table.text();
+}
+
+Json json_of(const std::vector<RegionName>& regions) {
+    Json list = Json::array();
+    for (const RegionName& region : regions)
+        list.push_back(
+            {{"field", json_text(region.field)}, {"number", region.number}, {"name", json_text(region.name)}});
+    return list;
 }
 
 Json json_of(const std::vector<BlockInfo>& blocks) {
@@ -275,11 +292,12 @@ Result<ExitCode> run_info(const InfoCommand& command) {
     Json report = json_of(found, path);
     report["curved"] = json_of(*curved);
     report["blocks"] = json_of(source->info().blocks);
+    report["regions"] = json_of(source->info().regions);
     report["fields"] = json_of(*fields);
     if (*chart) report["chart"] = json_of(**chart);
     return finish(console, command.common,
-                  grid_table(found, path) + curved_table(*curved) + block_table(source->info()) + field_table(*fields) +
-                      (*chart ? chart_table(**chart) : ""),
+                  grid_table(found, path) + curved_table(*curved) + block_table(source->info()) +
+                      region_table(source->info()) + field_table(*fields) + (*chart ? chart_table(**chart) : ""),
                   std::move(report));
 }
 

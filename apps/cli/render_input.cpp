@@ -45,10 +45,12 @@ Result<ColorOptions> color_options(const RenderCommand& command) {
 
 /// A field of `from`, a grid or a surface, that colours.
 template <class From>
-Result<ColorField> colors_of(const From& from, const std::string& name, const RenderCommand& command,
-                             Console& console) {
-    const Result<ColorOptions> options = color_options(command);
+Result<ColorField> colors_of(const From& from, const std::string& name, const std::vector<RegionName>& regions,
+                             const RenderCommand& command, Console& console) {
+    Result<ColorOptions> options = color_options(command);
     if (!options) return options.error();
+    for (const RegionName& region : regions)
+        if (region.field == name) options->names[static_cast<double>(region.number)] = region.name;
     Result<FoundColors> found = find_colors(from, name, *options, console.run());
     if (!found) return found.error();
     console.notes(found->notes);
@@ -140,7 +142,7 @@ Result<RenderInput> RenderSource::take_surface(const std::optional<Device>& devi
     input.read_seconds = surface_seconds_;
     Contents contents;
     if (!command_.color_by.empty()) {
-        Result<ColorField> colors = colors_of(*surface_, command_.color_by, command_, console);
+        Result<ColorField> colors = colors_of(*surface_, command_.color_by, {}, command_, console);
         if (!colors) return colors.error();
         input.colors = contents.colors = *std::move(colors);
     }
@@ -164,7 +166,7 @@ Result<void> RenderSource::widen_range(const std::string& color, Console& consol
     for (const std::size_t step : steps_) {
         const Result<Grid> grid = source_->read({found->point, found->cell}, step, console);
         if (!grid) return grid.error();
-        Result<ColorField> colors = colors_of(*grid, color, command_, console);
+        Result<ColorField> colors = colors_of(*grid, color, source_->info().regions, command_, console);
         if (!colors) return colors.error();
         if (!colors->classes.empty()) return {};
         const Result<ValueRange> one = colored_range(colors->values, command_.scale.logarithmic, console.run());
@@ -246,7 +248,7 @@ Result<RenderSource::Contents> RenderSource::read_contents(std::size_t step, Con
     }
     if (!color.empty()) {
         if (auto widened = widen_range(color, console); !widened) return widened.error();
-        Result<ColorField> colors = colors_of(contents.grid, color, command_, console);
+        Result<ColorField> colors = colors_of(contents.grid, color, source_->info().regions, command_, console);
         if (!colors) return colors.error();
         contents.colors = *std::move(colors);
     }

@@ -2,6 +2,7 @@
 // A field that colours a surface or a grid: its values, and the scale that fits them.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,9 @@ struct ColorField {
 
 /// The scale that is wanted.
 struct ColorOptions {
-    ColorScale scale;                     ///< without its ends and classes
-    std::optional<ValueRange> range = {}; ///< its ends; nothing: those of the values
+    ColorScale scale;                         ///< without its ends and classes
+    std::optional<ValueRange> range = {};     ///< its ends; nothing: those of the values
+    std::map<double, std::string> names = {}; ///< of whole numbers that are classes; without one it is the number
 };
 
 /// A field that colours, and what a reader of the picture should know of it.

@@ -42,6 +42,13 @@ struct BlockInfo {
     std::uint64_t cells = 0; ///< of all types and dimensions
 };
 
+/// What a number of a cell field stands for.
+struct RegionName {
+    std::string field;
+    std::int64_t number = 0;
+    std::string name;
+};
+
 /// What a file holds.
 struct FileInfo {
     std::string format;
@@ -50,6 +57,7 @@ struct FileInfo {
     std::vector<std::string>
         files;                     ///< those that were opened to find this out, or to read: the file and its companions
     std::vector<BlockInfo> blocks; ///< empty where the format has none that can be chosen
+    std::vector<RegionName> regions; ///< names of physical groups of volumes (Gmsh); not always all numbers have one
 };
 
 struct ReadOptions {

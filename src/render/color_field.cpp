@@ -115,7 +115,7 @@ std::set<double> few_whole_numbers(const Array& values, const Cells& cells) {
 }
 
 /// Numbers of classes instead of the whole numbers themselves.
-ColorField classified(ColorField field, const std::set<double>& numbers, const ColorScale& wanted) {
+ColorField classified(ColorField field, const std::set<double>& numbers, const ColorOptions& options) {
     std::vector<float> classes(field.values.size());
     field.values.visit([&](auto scalars) {
         for (std::size_t i = 0; i < scalars.size(); ++i) {
@@ -126,13 +126,14 @@ ColorField classified(ColorField field, const std::set<double>& numbers, const C
         }
     });
     field.values = Array::own(std::move(classes));
-    field.scale = wanted;
+    field.scale = options.scale;
     field.scale.lower = -0.5;
     field.scale.upper = static_cast<double>(numbers.size()) - 0.5;
     field.scale.classes.clear();
     for (const double number : numbers) {
         field.scale.classes.push_back(*parse_color(class_colors[field.scale.classes.size()]));
-        field.classes.push_back(fmt::format("{}", number));
+        const auto name = options.names.find(number);
+        field.classes.push_back(name != options.names.end() ? name->second : fmt::format("{}", number));
     }
     return field;
 }
@@ -194,7 +195,7 @@ Result<FoundColors> find_colors(const Grid& grid, const std::string& name, const
         ColorField field{name, cells->values, Association::cell, {}};
         if (!options.range && !options.scale.logarithmic)
             if (const auto numbers = few_whole_numbers(cells->values, grid.cells); !numbers.empty())
-                return FoundColors{classified(std::move(field), numbers, options.scale), {}};
+                return FoundColors{classified(std::move(field), numbers, options), {}};
         return with_scale(std::move(field), options, run);
     }
     const Result<PointField> found = find_field(grid, name, {}, run);

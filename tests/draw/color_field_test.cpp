@@ -84,6 +84,9 @@ TEST(FindColors, GivesFewWholeNumbersOfCellsAColourEach) {
     EXPECT_EQ(found->field.classes, (std::vector<std::string>{"7", "40"}));
     EXPECT_EQ(found->field.scale.classes.size(), 2u);
     EXPECT_EQ(found->field.values.as<float>()[1], 1);
+    ColorOptions named;
+    named.names = {{40, "wing"}, {41, "tail"}};
+    EXPECT_EQ(find_colors(two_tets(7, 40), "c", named)->field.classes, (std::vector<std::string>{"7", "wing"}));
     const auto ranged = find_colors(two_tets(7, 40), "c", {{}, ValueRange{0, 50}});
     ASSERT_TRUE(ranged);
     EXPECT_TRUE(ranged->field.classes.empty()) << "a range is of values, not of classes";

@@ -75,6 +75,30 @@ TEST_P(ReadGmsh, GivesPhysicalGroupsAndEntities) {
     EXPECT_EQ(find(result.grid.cell_fields, "gmsh:physical")->values.type(), ScalarType::int32);
 }
 
+TEST_P(ReadGmsh, NamesThePhysicalGroupsOfVolumes) {
+    const std::string bytes = gmsh_sample(GetParam());
+    const FileInfo info = io::inspect_gmsh(bytes, {}).value();
+    ASSERT_EQ(info.regions.size(), 1u);
+    EXPECT_EQ(info.regions[0].field, "gmsh:physical");
+    EXPECT_EQ(info.regions[0].number, 8);
+    EXPECT_EQ(info.regions[0].name, "a $ in a name");
+    const std::string names = "1\n3 8 \"a $ in a name\"\n";
+    const auto with = [&](const std::string& others) {
+        std::string changed = bytes;
+        return changed.replace(changed.find(names), names.size(), others);
+    };
+    const FileInfo more = io::inspect_gmsh(with("3\n2 1 \"face\"\n3 8 \"\"\n3 9 \"say \"x\"\"\n"), {}).value();
+    ASSERT_EQ(more.regions.size(), 2u) << "surfaces have none";
+    EXPECT_EQ(more.regions[0].name, "");
+    EXPECT_EQ(more.regions[1].name, "say \"x\"");
+    for (const char* wrong : {"x\n", "-1\n", "2\n3 8 \"one\"\n", "1\n3 8 one\n", "1\n3 8 \"one\n", "1\n3\n"}) {
+        const auto refused = io::inspect_gmsh(with(wrong), {});
+        ASSERT_FALSE(refused) << wrong;
+        EXPECT_EQ(refused.error().code, ErrorCode::invalid_data);
+        EXPECT_TRUE(refused.error().message.starts_with("$PhysicalNames")) << refused.error().message;
+    }
+}
+
 TEST_P(ReadGmsh, AnnouncesWhatItReads) {
     const std::string bytes = gmsh_sample(GetParam());
     const FileInfo info = io::inspect_gmsh(bytes, {}).value();

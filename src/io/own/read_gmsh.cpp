@@ -95,6 +95,11 @@ Result<Contents> open_contents(std::string_view bytes) {
     const auto tags = contents.file.version_4 ? tags_of_4(contents.file) : tags_of_2(contents.file);
     if (!tags) return tags.error();
     contents.tags = *tags;
+    if (contents.tags.physical) {
+        auto names = names_of_volumes(contents.file, physical_name);
+        if (!names) return names.error();
+        contents.info.regions = *std::move(names);
+    }
     contents.info.format = "gmsh";
     find_times(contents);
     if (const auto fields = find_fields(contents); !fields) return fields.error();

@@ -69,6 +69,9 @@ struct Mesh {
     std::vector<std::int32_t> physical, geometrical;
 };
 
+/// The names of the physical groups of volumes, numbers of the cell field `field`.
+Result<std::vector<RegionName>> names_of_volumes(const File& file, std::string_view field);
+
 /// Which of `gmsh:physical` and `gmsh:geometrical` the file has.
 Result<Wants> tags_of_2(const File& file);
 Result<Wants> tags_of_4(const File& file);
