@@ -10,6 +10,7 @@
 #include <isotet/field_statistics.hpp>
 #include <isotet/levels.hpp>
 
+#include "exit_code.hpp"
 #include "field_choice.hpp"
 #include "output_names.hpp"
 #include "stopwatch.hpp"
