@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "exit_code.hpp"
+
 namespace isotet::cli {
 
 Result<std::optional<Device>> open_device(const DeviceChoice& choice, Console& console) {

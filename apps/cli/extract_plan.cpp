@@ -9,6 +9,7 @@
 
 #include <isotet/levels.hpp>
 
+#include "exit_code.hpp"
 #include "number_format.hpp"
 
 namespace isotet::cli {

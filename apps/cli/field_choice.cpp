@@ -8,6 +8,8 @@
 
 #include <isotet/field_statistics.hpp>
 
+#include "exit_code.hpp"
+
 namespace isotet::cli {
 
 namespace {

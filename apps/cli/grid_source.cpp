@@ -9,6 +9,7 @@
 
 #include <isotet/grid_counts.hpp>
 
+#include "exit_code.hpp"
 #include "number_format.hpp"
 #include "output_names.hpp"
 

@@ -12,6 +12,7 @@
 #include <isotet/grid.hpp>
 
 #include "command_options.hpp"
+#include "exit_code.hpp"
 #include "number_format.hpp"
 #include "options.hpp"
 

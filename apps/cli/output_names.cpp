@@ -9,6 +9,7 @@
 
 #include <isotet/write_file.hpp>
 
+#include "exit_code.hpp"
 #include "number_format.hpp"
 
 namespace isotet::cli {

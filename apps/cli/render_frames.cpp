@@ -8,6 +8,7 @@
 
 #include <isotet/picture_file.hpp>
 
+#include "exit_code.hpp"
 #include "number_format.hpp"
 #include "output_names.hpp"
 
