@@ -1,0 +1,67 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What an IsosurfaceScene has. Beside what is shown for some isovalues there is what is there for all of them.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isotet/device_grid.hpp>
+#include <isotet/isosurface_scene.hpp>
+
+namespace isotet {
+
+namespace scene {
+inline constexpr Color single_color{0.92F, 0.48F, 0.16F, 1}; ///< stands out from the boundary, and from blue and green
+}
+
+struct IsosurfaceScene::Data {
+    std::optional<Device> device; ///< that draws; nothing: the CPU does
+    SceneLook look = {};
+    std::optional<Surface> surface = {}; ///< that was given; else there is
+    std::optional<Contour> contour = {}; ///< with gradient normals
+    ContourInput without_device = {};    ///< of the session, if it has a device: to go on without it
+    bool required = false;               ///< the device
+    Box bounds = {};
+    std::optional<Surface> boundary = {};
+    std::vector<Surface> slices = {};
+    std::vector<DrawnLines> edges = {};         ///< of slices and boundary
+    std::vector<DrawnLines> surface_edges = {}; ///< of what is shown
+    std::optional<TetStore> store = {};
+    std::optional<TetIndex> index = {};
+    std::optional<DeviceColors> grid_colors = {};
+    std::vector<TetSurface> tets = {};
+    std::vector<DeviceSurface> on_device = {};
+    std::deque<DeviceMesh> meshes = {}; ///< places that do not move
+    std::deque<DeviceColors> mesh_colors = {};
+    std::deque<Surface> extracted = {}; ///< without a device
+    std::deque<SurfaceColors> values = {};
+    std::deque<DeviceMesh> fixed_meshes = {}; ///< of what is there for all isovalues
+    std::deque<DeviceColors> fixed_colors = {};
+    std::deque<SurfaceColors> fixed_values = {};
+    std::vector<DrawnSurface> fixed = {}; ///< slices and boundary
+    std::vector<Box> boxes = {};          ///< of surfaces shown; empty where they are on the device
+    Scene scene = {};
+    std::vector<ShownSurface> shown = {};
+    SceneReport report = {};
+    std::vector<std::string> notes = {};
+
+    Result<void> look_around(const Grid& grid, const Run& run);
+    Result<void> add_fixed(const Surface& one, const ColorField* field, const Color& color, double opacity);
+    Result<void> start(IsosurfaceOptions options, const Run& run);
+    Result<void> load_tets(const IsosurfaceOptions& options, const Run& run);
+    Result<void> show_tets(std::span<const double> isovalues);
+    Result<void> show_extracted(std::span<const double> isovalues, const Run& run);
+    Result<void> show_on_device(std::span<const double> isovalues, const Run& run);
+    Result<void> add_surface(Surface one);
+    bool draws_surface_edges() const { return look.edges && (surface || (!boundary && slices.empty())); }
+    bool hides_another(std::size_t which) const;
+    std::uint64_t smallest_size() const;
+    void dress();
+    void clear();
+};
+
+} // namespace isotet

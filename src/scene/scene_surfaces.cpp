@@ -1,0 +1,199 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What is shown for some isovalues: surfaces of the session, on its device or in memory, or tets that stand for them.
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "core/errors.hpp"
+#include "core/stopwatch.hpp"
+#include "scene/clip_surface.hpp"
+#include "scene/colored_surface.hpp"
+#include "scene/scene_data.hpp"
+
+namespace isotet {
+
+namespace {
+
+/// Device memory that pictures of this size need beside a store, with the numbers of all tets.
+std::uint64_t picture_bytes(const PictureOptions& picture, std::uint64_t tets) {
+    constexpr std::uint64_t max_samples = std::uint64_t{1} << 24, bytes_per_sample = 28, corners_of_quads = 2'000'000;
+    const std::uint64_t samples = std::uint64_t{picture.width} * picture.height * picture.samples * picture.samples;
+    return std::min(samples, max_samples) * bytes_per_sample + 4 * tets + corners_of_quads;
+}
+
+} // namespace
+
+/// Starts the session. A device colours by the grid's own values; on the CPU surfaces carry the field that colours.
+Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& run) {
+    ContourOptions options;
+    options.normals = look.shade_by == ShadeBy::gradient || wanted.draw || wanted.where == ExtractOn::device
+                          ? Normals::gradient
+                          : Normals::none;
+    options.method = wanted.draw ? Method::clusters : wanted.method;
+    options.surfaces = wanted.surfaces;
+    const bool by_cells = look.colors && look.colors->association == Association::cell;
+    const bool by_points = look.colors && !by_cells;
+    ContourInput plain{std::move(wanted.grid), std::move(wanted.field), {}, {}}, carrying = plain;
+    if (by_points) carrying.point_fields.push_back({look.colors->name, look.colors->values});
+    if (by_cells) carrying.cell_fields.push_back({look.colors->name, look.colors->values});
+    required = wanted.where == ExtractOn::device;
+    if (!device && (required || wanted.draw))
+        return invalid_argument("a scene without a device, but it is to extract, or to draw tets, on one");
+    options.split_cells = wanted.split_cells || wanted.draw;
+    const bool in_memory = // surfaces are worked on
+        !look.clips.empty() || look.shade_by == ShadeBy::vertices || draws_surface_edges();
+    const bool card = device && device->info().kind != DeviceKind::software &&
+                      options.method.value_or(method_for(options.surfaces, true)) == Method::clusters;
+    const bool use_device = !wanted.draw && (required || (card && !in_memory && wanted.where == ExtractOn::best));
+    if (!use_device && !wanted.draw) options.refine = wanted.refine;
+    if (use_device) {
+        options.engine = vulkan_engine(*device);
+        options.engine_required = required;
+        options.edge_ends = by_points;
+        options.source_cells = by_cells;
+        without_device = carrying;
+    }
+    Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options);
+    if (!created) return created.error();
+    contour = *std::move(created);
+    const core::Stopwatch packing;
+    if (Result<void> ready = contour->prepare(run); !ready) return ready;
+    if (contour->packed()) report.pack_seconds = packing.seconds();
+    return {};
+}
+
+Result<void> IsosurfaceScene::Data::load_tets(const IsosurfaceOptions& options, const Run& run) {
+    const core::Stopwatch uploading;
+    const PackedGrid packed = *contour->packed();
+    report.field = packed.field();
+    TetStoreOptions store_options;
+    store_options.gradients = options.draw == DrawMethod::textures || options.draw == DrawMethod::mesh;
+    store_options.picture_bytes = picture_bytes(options.picture, packed.report().tets);
+    Result<TetStore> uploaded = TetStore::upload(*device, packed, *options.draw, store_options, run);
+    if (!uploaded) return uploaded.error();
+    store = *std::move(uploaded);
+    report.store = store->report();
+    if (options.index != SearchIndex::none) {
+        Result<TetIndex> created = TetIndex::create(packed, options.index, run);
+        if (!created) return created.error();
+        index = *std::move(created);
+    }
+    report.upload_seconds += uploading.seconds();
+    return {};
+}
+
+Result<void> IsosurfaceScene::Data::show_tets(std::span<const double> isovalues) {
+    for (const double isovalue : isovalues) {
+        std::optional<std::span<const std::uint32_t>> active;
+        if (index) {
+            const auto found = index->find(isovalue);
+            if (!found) return found.error();
+            active = *found;
+        }
+        Result<TetSurface> surface_of_tets = active ? store->at(isovalue, *active) : store->at(isovalue);
+        if (!surface_of_tets) return surface_of_tets.error();
+        tets.push_back(*std::move(surface_of_tets));
+    }
+    for (const TetSurface& one : tets) {
+        scene.surfaces.emplace_back().tets = &one;
+        shown.push_back({.isovalue = {}, .tets = one.tets(), .sent_bytes = one.sent_bytes()});
+    }
+    return {};
+}
+
+/// By the session: surfaces stay on its device, or come from the CPU.
+Result<void> IsosurfaceScene::Data::show_extracted(std::span<const double> isovalues, const Run& run) {
+    if (contour->engine() == "vulkan") {
+        const Result<void> done = show_on_device(isovalues, run);
+        if (done || required || done.error().code == ErrorCode::cancelled) return done;
+        notes.push_back(done.error().message + ": the CPU extracts instead");
+        clear();
+    }
+    report.on_device = false;
+    if (!without_device.grid.points.empty()) // surfaces must carry the field that colours
+        if (auto set = contour->set(std::exchange(without_device, {}), run); !set) return set.error();
+    Result<ContourResult> result = contour->extract(isovalues, run);
+    if (!result) return result.error();
+    std::ranges::move(result->notes, std::back_inserter(notes));
+    report.method = result->method;
+    report.field = result->field;
+    report.pack_seconds += result->pack_seconds;
+    for (Extraction& extraction : result->surfaces)
+        if (Result<void> added = add_surface(std::move(extraction.surface)); !added) return added;
+    return {};
+}
+
+Result<void> IsosurfaceScene::Data::show_on_device(std::span<const double> isovalues, const Run& run) {
+    const PackedGrid packed = *contour->packed();
+    if (look.colors && !grid_colors) {
+        Result<DeviceColors> colors =
+            DeviceColors::of_grid(*device, packed, look.colors->values, look.colors->association, look.colors->scale);
+        if (!colors) return colors.error();
+        grid_colors = *std::move(colors);
+    }
+    Result<SurfacesOnDevice> surfaces = extract_on_device(*contour, isovalues, run);
+    if (!surfaces) return surfaces.error();
+    on_device = std::move(surfaces->surfaces);
+    report.on_device = true;
+    report.method = Method::clusters;
+    report.extract_work = surfaces->work;
+    report.field = packed.field();
+    for (const DeviceSurface& one : on_device) {
+        DrawnSurface& drawn = scene.surfaces.emplace_back();
+        drawn.surface = &one;
+        if (grid_colors) drawn.colors = &*grid_colors;
+        shown.push_back({.isovalue = {}, .vertices = one.vertex_count(), .triangles = one.triangle_count()});
+    }
+    return {};
+}
+
+Result<void> IsosurfaceScene::Data::add_surface(Surface one) {
+    shown.push_back({.isovalue = {}, .vertices = one.vertex_count(), .triangles = one.triangle_count()});
+    if (surface && look.colors) { // of a surface that was given
+        auto& fields = look.colors->association == Association::point ? one.point_fields : one.cell_fields;
+        fields = {{look.colors->name, look.colors->values}};
+    }
+    for (const Plane& plane : look.clips) one = scene::clipped(one, plane);
+    if (look.shade_by == ShadeBy::vertices) {
+        Result<Array> normals = vertex_normals(one);
+        if (!normals) return normals.error();
+        one.normals = *std::move(normals);
+        one.normals_kind = Normals::vertex;
+    } else if (look.shade_by == ShadeBy::faces) {
+        one.normals_kind = Normals::none;
+    }
+    boxes.push_back(bounds_of(one));
+    if (draws_surface_edges()) surface_edges.push_back(scene::edges_of(one));
+    DrawnSurface& drawn = scene.surfaces.emplace_back();
+    std::optional<SurfaceColors> colors;
+    if (look.colors) colors = scene::carried_colors(one, *look.colors);
+    if (!device) {
+        drawn.triangles = &extracted.emplace_back(std::move(one));
+        if (colors) drawn.values = &values.emplace_back(*std::move(colors));
+        return {};
+    }
+    Result<DeviceMesh> mesh = DeviceMesh::upload(*device, one);
+    if (!mesh) return mesh.error();
+    drawn.mesh = &meshes.emplace_back(*std::move(mesh));
+    if (!colors) return {};
+    Result<DeviceColors> uploaded = DeviceColors::of_mesh(*device, colors->values, colors->association, colors->scale);
+    if (!uploaded) return uploaded.error();
+    drawn.colors = &mesh_colors.emplace_back(*std::move(uploaded));
+    return {};
+}
+
+void IsosurfaceScene::Data::clear() {
+    scene.surfaces.clear();
+    scene.lines.clear();
+    surface_edges.clear();
+    tets.clear();
+    on_device.clear();
+    mesh_colors.clear();
+    meshes.clear();
+    extracted.clear();
+    values.clear();
+    boxes.clear();
+    shown.clear();
+}
+
+} // namespace isotet

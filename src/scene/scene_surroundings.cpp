@@ -1,0 +1,74 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What is there for all isovalues: the grid's boundary, slices, and how large all is.
+#include <utility>
+
+#include <isotet/boundary.hpp>
+
+#include "core/stopwatch.hpp"
+#include "scene/clip_surface.hpp"
+#include "scene/colored_surface.hpp"
+#include "scene/scene_data.hpp"
+
+namespace isotet {
+
+using scene::single_color;
+
+/// The boundary if it is drawn, slices, and the box around the grid.
+Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run) {
+    const core::Stopwatch looking;
+    if (look.boundary_opacity > 0) {
+        Result<Surface> found = boundary_of(grid, run);
+        if (!found) return found.error();
+        boundary = *std::move(found);
+        bounds = bounds_of(*boundary);
+        report.boundary_faces = boundary->triangle_count();
+        if (look.boundary_colors)
+            if (auto colored = scene::color_boundary(*boundary, grid, *look.boundary_colors, run); !colored)
+                return colored;
+        for (const Plane& plane : look.clips) boundary = scene::clipped(*boundary, plane);
+        if (look.edges) edges.push_back(scene::edges_of(*boundary));
+    } else {
+        const Result<GridReport> surveyed = survey(grid, {.faces = false}, run);
+        if (!surveyed) return surveyed.error();
+        bounds.add(surveyed->lower);
+        bounds.add(surveyed->upper);
+    }
+    report.boundary_seconds = looking.seconds();
+    const ColorField* colors = look.colors ? &*look.colors : nullptr;
+    for (const Plane& plane : look.slices) {
+        Result<Surface> slice = slice_of(grid, plane, colors, run);
+        if (!slice) return slice.error();
+        report.slice_triangles += slice->triangle_count();
+        if (look.edges) edges.push_back(scene::edges_of(*slice));
+        slices.push_back(*std::move(slice));
+    }
+    for (const Surface& slice : slices)
+        if (auto added = add_fixed(slice, colors, single_color, 1); !added) return added;
+    if (!boundary) return {};
+    return add_fixed(*boundary, look.boundary_colors ? &*look.boundary_colors : nullptr, {0.62F, 0.66F, 0.70F, 1},
+                     look.boundary_opacity);
+}
+
+/// Adds what is drawn for all isovalues. Its first field of points or cells colours it.
+Result<void> IsosurfaceScene::Data::add_fixed(const Surface& one, const ColorField* field, const Color& color,
+                                              double opacity) {
+    DrawnSurface& drawn = fixed.emplace_back();
+    drawn.color = color;
+    drawn.opacity = opacity;
+    if (!device) {
+        drawn.triangles = &one;
+        if (field) drawn.values = &fixed_values.emplace_back(scene::carried_colors(one, *field));
+        return {};
+    }
+    Result<DeviceMesh> mesh = DeviceMesh::upload(*device, one);
+    if (!mesh) return mesh.error();
+    drawn.mesh = &fixed_meshes.emplace_back(*std::move(mesh));
+    if (!field) return {};
+    const SurfaceColors carried = scene::carried_colors(one, *field);
+    Result<DeviceColors> colors = DeviceColors::of_mesh(*device, carried.values, carried.association, carried.scale);
+    if (!colors) return colors.error();
+    drawn.colors = &fixed_colors.emplace_back(*std::move(colors));
+    return {};
+}
+
+} // namespace isotet
