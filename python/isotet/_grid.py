@@ -455,7 +455,7 @@ def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients
 def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, cell_fields: Iterable[str] | None = None,
          step: int | None = None, format: str = "", merge_pieces: bool = False, reader_program: str = "",
          progress: Progress | None = None) -> Grid:  # fmt: skip
-    """Reads a grid: VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, Gocad and more (`formats`).
+    """Reads a grid: VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, Gocad, GRDECL and more (`formats`).
 
     path, format
         The file; its format is found out by its content, then its name, unless it is named.

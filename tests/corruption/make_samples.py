@@ -161,6 +161,24 @@ def write_openfoam(folder):
     open(os.path.join(folder, 'case.foam'), 'w', encoding='ascii').close()
 
 
+def write_corner_points(folder):
+    """Layers with a fault: corners as 2 n x 2 n x 2 n depths."""
+    n = SIDE
+    numbers = lambda items: ' '.join(f'{item:g}' for item in items) + ' /\n'
+    pillars = [number for j in range(n + 1) for i in range(n + 1) for number in (i, j, 10, i + 0.5, j, 20)]
+    depths = [11 + (k + 1) // 2 + (0.25 if i // 2 == n - 1 else 0)
+              for k in range(2 * n) for j in range(2 * n) for i in range(2 * n)]
+    values = [(i * 7 % 11) / 10 for i in range(n ** 3)]
+    files = {
+        'faulted.grdecl': f'-- made\nSPECGRID\n {n} {n} {n} 1 F /\nCOORD\n' + numbers(pillars) + 'INCLUDE\n zcorn.inc /\n' +
+                          f'ACTNUM\n {n ** 3 - 1}*1 0 /\nPORO\n' + numbers(values) + f'SATNUM\n {n ** 3}*2 /\n',
+        'zcorn.inc': 'ZCORN\n' + numbers(depths),
+    }
+    for name, content in files.items():
+        with open(os.path.join(folder, name), 'w', encoding='ascii') as file:
+            file.write(content)
+
+
 def main():
     folder = sys.argv[1]
     os.makedirs(folder, exist_ok=True)
@@ -174,6 +192,8 @@ def main():
     os.makedirs(at('ensight'), exist_ok=True)
     write_ensight(at('ensight'))
     write_openfoam(at('openfoam'))
+    os.makedirs(at('corner_points'), exist_ok=True)
+    write_corner_points(at('corner_points'))
 
 
 if __name__ == '__main__':

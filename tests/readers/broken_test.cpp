@@ -6,10 +6,12 @@
 
 #include "io/own/read_gmsh.hpp"
 #include "io/own/read_gocad.hpp"
+#include "io/own/read_grdecl.hpp"
 #include "io/own/read_medit.hpp"
 #include "io/own/read_tetgen.hpp"
 #include "readers/gmsh_sample.hpp"
 #include "readers/gocad_sample.hpp"
+#include "readers/grdecl_sample.hpp"
 #include "readers/medit_sample.hpp"
 #include "readers/sample_bytes.hpp"
 
@@ -44,6 +46,10 @@ std::vector<Sample> samples() {
     all.push_back({"tetgen_ele", tetgen_tets,
                    [](std::string_view bytes) { return io::parse_tetgen(tetgen_nodes, bytes, {}, {}); }});
     all.push_back({"gocad", gocad_sample, [](std::string_view bytes) { return io::parse_gocad(bytes, {}, {}); }});
+    all.push_back({"grdecl", grdecl_sample(), [](std::string_view bytes) {
+                       const auto nothing = [](std::string_view) { return Error{ErrorCode::file, "is not there"}; };
+                       return io::parse_grdecl({"deck", nullptr, bytes}, nothing, {}, {});
+                   }});
     return all;
 }
 

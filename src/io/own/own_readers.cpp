@@ -12,6 +12,7 @@
 
 #include "io/own/read_gmsh.hpp"
 #include "io/own/read_gocad.hpp"
+#include "io/own/read_grdecl.hpp"
 #include "io/own/read_legacy_vtk.hpp"
 #include "io/own/read_medit.hpp"
 #include "io/own/read_medit_parts.hpp"
@@ -178,6 +179,7 @@ std::span<const GridReader> own_readers() {
         std::vector<GridReader> all = vtk_xml_readers();
         all.push_back(legacy_vtk_reader());
         all.push_back(openfoam_reader());
+        all.push_back(grdecl_reader());
         all.insert(all.end(), {
                                   GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh,
                                              inspect_gmsh_file, read_gmsh_file},
