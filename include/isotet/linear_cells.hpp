@@ -60,6 +60,8 @@ struct RefinementReport {
     double geometry_bound = 0;          ///< proven: the tets are nowhere farther from the curved cells
     bool too_fine = false;              ///< an edge could not be bisected any further: bounds may exceed tolerances
     std::vector<double> isovalues;      ///< the only ones that the grid is good for, ascending; empty: all
+    bool too_bent = false;              ///< an edge bends strongly at every length, as where a cell folds: it was bisected
+                                        ///< into 64 at most, and geometry_bound may be large
 };
 
 /// What linearize() did, in cells of the user's grid.

@@ -2,6 +2,7 @@
 #include "linear/bisection.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -18,12 +19,31 @@ std::size_t hash_of(const Place& place) {
 }
 constexpr double rounding_margin = 0x1p-21; ///< of stored values beside Bezier values: float32 and more
 
-/// The number of the corner that a place is; 4: none.
-std::size_t corner_at(const Place& place) {
-    return static_cast<std::size_t>(std::ranges::find(corner_places, place) - corner_places.begin());
-}
+/// Edges of places shorter than this are not bisected for their bend: a cell that folds has edges that bend at every length.
+constexpr std::uint32_t shortest_bent = whole_weight / 64;
 
 double half(double a, double b) { return (a + b) / 2; }
+
+bool is_same(const Place& a, const Place& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
+
+/// The largest difference of the weights of two places.
+std::uint32_t extent(const Place& a, const Place& b) {
+    const auto from = steps_of(a), to = steps_of(b);
+    std::uint32_t out = 0;
+    for (std::size_t i = 0; i < 4; ++i) out = std::max(out, from[i] > to[i] ? from[i] - to[i] : to[i] - from[i]);
+    return out;
+}
+
+/// The power of two below a number above 1, halved and rounded down twice: how often an edge is to be bisected whose
+/// deviation, squared, is so many times what it may be.
+int grade_of(double excess2) { return (static_cast<int>(std::bit_cast<std::uint64_t>(excess2) >> 52U) - 1023) / 4; }
+
+template <class T>
+core::Buffer<T> copied(const std::vector<T>& from) {
+    core::Buffer<T> out(from.size());
+    std::ranges::copy(from, out.begin());
+    return out;
+}
 
 } // namespace
 
@@ -35,93 +55,111 @@ Bisector::Bisector(const QuadraticTets& grid, const std::array<NodeValues, 3>& p
       rule_(rule),
       limits_(limits),
       progress_(progress),
+      per_deviation2_(rule.deviation > 0 ? 1 / (rule.deviation * rule.deviation) : 0),
       slots_(64, free_slot),
       slot_numbers_(64) {}
 
 /// True when a surface may pass where values lie between these two, as stored.
 bool Bisector::can_be_met(double lower, double upper) const {
-    if (rule_.isovalues.empty()) return true;
     const double margin = rounding_margin * std::max(std::abs(lower), std::abs(upper));
     const auto next = std::ranges::lower_bound(rule_.isovalues, lower - margin);
     return next != rule_.isovalues.end() && *next <= upper + margin;
 }
 
+/// By the Bezier values.
 bool Bisector::is_met(const Part& part) const {
     if (rule_.isovalues.empty()) return true;
-    const auto [lower, upper] = std::ranges::minmax(part.values[0]);
+    const auto& c = part.corners;
+    auto [lower, upper] = std::minmax({c[0].value, c[1].value, c[2].value, c[3].value});
+    for (std::size_t e = 0; e < 6; ++e) {
+        const double value = half(c[tet_edges[e][0]].value, c[tet_edges[e][1]].value) + 2 * part.edges[e].bump;
+        lower = std::min(lower, value);
+        upper = std::max(upper, value);
+    }
     return can_be_met(lower, upper);
 }
 
-/// How many times an edge deviates more than it may; marked edges above 1.
-double Bisector::excess_of(const Part& part, std::size_t edge, double length2) const {
-    const auto [a, b] = tet_edges[edge];
-    if (rule_.nodes_only) {
-        const std::size_t from = corner_at(part.corners[a]), to = corner_at(part.corners[b]);
-        return from < 4 && to < 4 && (*tet_)[4 + tet_edge_of[from][to]] != mean_node ? 2 : 0;
+/// Marks an edge that deviates more than it may, with a grade by how much.
+void Bisector::judge(Edge& edge, const Corner& a, const Corner& b) {
+    edge.grade = unmarked;
+    double away2 = 0, length2 = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double d = a.at[k] - b.at[k];
+        length2 += d * d;
+        away2 += edge.bend[k] * edge.bend[k];
     }
-    const auto off = [&](std::size_t k) {
-        const auto& v = part.values[k];
-        return (2 * v[4 + edge] - (v[a] + v[b])) / 4;
-    };
-    const double field = std::abs(off(0)), x = off(1), y = off(2), z = off(3), away2 = x * x + y * y + z * z;
+    edge.length2 = length2;
+    if (rule_.nodes_only) return;
+    double excess2 = edge.bump * edge.bump * per_deviation2_;
     const double allowed2 = rule_.length > 0 ? rule_.length * rule_.length : rule_.bend * rule_.bend * length2;
-    const double by_field = field > rule_.deviation ? field / rule_.deviation : 0;
-    return std::max(by_field, away2 > allowed2 ? std::sqrt(away2 / allowed2) : 0);
+    if (away2 > allowed2) {
+        if (rule_.length == 0 && extent(a.place, b.place) <= shortest_bent) told_.too_bent = true;
+        else excess2 = std::max(excess2, away2 / allowed2);
+    }
+    if (excess2 > 1) edge.grade = grade_of(excess2);
 }
 
 /// Of the marked edges with the largest excess, in grades of 4 (what one bisection gains), the longest, ties by the places of
 /// its ends. By length alone bisection need not end: edges along which the field is straight are never marked, and three
 /// short ones can go round such an edge for ever.
-Bisector::Choice Bisector::first_marked(const Part& part) {
-    Choice best;
+std::size_t Bisector::first_marked(const Part& part) {
+    std::size_t best = no_edge;
+    Place low{}, high{};
     for (std::size_t edge = 0; edge < 6; ++edge) {
-        const auto [a, b] = tet_edges[edge];
-        double length2 = 0;
-        for (std::size_t k = 1; k < 4; ++k) {
-            const double d = part.values[k][a] - part.values[k][b];
-            length2 += d * d;
-        }
-        const double excess = excess_of(part, edge, length2);
-        if (!(excess > 1)) continue;
-        const int grade = std::ilogb(excess) / 2;
-        if (grade < best.grade || (grade == best.grade && length2 < best.length2)) continue;
-        const auto middle = halfway(part.corners[a], part.corners[b]);
-        if (!middle) {
-            out_->too_fine = true;
+        const Edge& here = part.edges[edge];
+        if (here.grade == unmarked) continue;
+        const bool is_first = best == no_edge || here.grade > part.edges[best].grade;
+        if (!is_first && (here.grade < part.edges[best].grade || here.length2 < part.edges[best].length2)) continue;
+        const Place &a = part.corners[tet_edges[edge][0]].place, &b = part.corners[tet_edges[edge][1]].place;
+        if (!halfway(a, b)) {
+            told_.too_fine = true;
             continue;
         }
-        const auto [low, high] = std::minmax(part.corners[a], part.corners[b]);
-        const bool is_first =
-            grade > best.grade || length2 > best.length2 || high > best.high || (high == best.high && low > best.low);
-        if (is_first) best = {grade, length2, high, low, *middle, edge};
+        const auto [lower, upper] = std::minmax(a, b);
+        if (is_first || here.length2 > part.edges[best].length2 || upper > high || (upper == high && lower > low)) {
+            best = edge;
+            low = lower;
+            high = upper;
+        }
     }
     return best;
 }
 
+/// A quadratic field is above the mean of an edge's ends by -1/8 of its second derivative along the edge, so halves of an
+/// edge have a quarter of its bump, and the edge from its middle to a third corner follows from the three sides.
 void Bisector::divide(const Part& part) {
     if (stopped_ || !is_met(part)) return;
-    const Choice choice = first_marked(part);
-    if (choice.edge == 6) return emit(part);
-    const std::size_t a = tet_edges[choice.edge][0], b = tet_edges[choice.edge][1], ab = 4 + choice.edge;
-    std::array<std::size_t, 2> others{};
-    for (std::size_t i = 0, n = 0; i < 4; ++i)
-        if (i != a && i != b) others[n++] = i;
-    Part at_a = part, at_b = part; // de Casteljau
-    for (std::size_t k = 0; k < 4; ++k) {
-        const auto& v = part.values[k];
-        auto &u = at_a.values[k], &w = at_b.values[k];
-        const double am = half(v[a], v[ab]), mb = half(v[ab], v[b]), m = half(am, mb);
-        u[b] = w[a] = m;
-        u[ab] = am;
-        w[ab] = mb;
-        for (const std::size_t c : others) {
-            const std::size_t ac = 4u + tet_edge_of[a][c], bc = 4u + tet_edge_of[b][c];
-            u[bc] = w[ac] = half(v[ac], v[bc]);
-        }
+    const std::size_t first = first_marked(part);
+    if (first == no_edge) return emit(part);
+    const std::size_t a = tet_edges[first][0], b = tet_edges[first][1];
+    const Corner &at_a = part.corners[a], &at_b = part.corners[b];
+    const Edge& whole = part.edges[first];
+    Corner middle;
+    middle.value = half(at_a.value, at_b.value) + whole.bump;
+    middle.place = *halfway(at_a.place, at_b.place);
+    Edge quarter;
+    quarter.bump = whole.bump / 4;
+    for (std::size_t k = 0; k < 3; ++k) {
+        middle.at[k] = half(at_a.at[k], at_b.at[k]) + whole.bend[k];
+        quarter.bend[k] = whole.bend[k] / 4;
     }
-    at_a.corners[b] = at_b.corners[a] = choice.middle;
-    divide(at_a);
-    divide(at_b);
+    Part lower = part, upper = part; // the halves with a and with b
+    lower.corners[b] = upper.corners[a] = middle;
+    lower.edges[first] = upper.edges[first] = quarter;
+    judge(lower.edges[first], at_a, middle);
+    judge(upper.edges[first], middle, at_b);
+    for (std::size_t c = 0; c < 4; ++c) {
+        if (c == a || c == b) continue;
+        const std::size_t ac = tet_edge_of[a][c], bc = tet_edge_of[b][c];
+        Edge inner;
+        inner.bump = half(part.edges[ac].bump, part.edges[bc].bump) - quarter.bump;
+        for (std::size_t k = 0; k < 3; ++k)
+            inner.bend[k] = half(part.edges[ac].bend[k], part.edges[bc].bend[k]) - quarter.bend[k];
+        judge(inner, middle, part.corners[c]);
+        lower.edges[bc] = upper.edges[ac] = inner;
+    }
+    divide(lower);
+    divide(upper);
 }
 
 /// The number of a point among those of the tet at hand and the ones before.
@@ -132,27 +170,27 @@ std::uint32_t Bisector::number_of(const Place& place) {
         std::swap(slots_, old);
         std::swap(slot_numbers_, old_numbers);
         for (std::size_t i = 0; i < old.size(); ++i) {
-            if (old[i] == free_slot) continue;
+            if (is_same(old[i], free_slot)) continue;
             std::size_t slot = hash_of(old[i]) & (slots_.size() - 1);
-            while (slots_[slot] != free_slot) slot = (slot + 1) & (slots_.size() - 1);
+            while (!is_same(slots_[slot], free_slot)) slot = (slot + 1) & (slots_.size() - 1);
             slots_[slot] = old[i];
             slot_numbers_[slot] = old_numbers[i];
         }
     }
     std::size_t slot = hash_of(place) & (slots_.size() - 1);
-    for (; slots_[slot] != free_slot; slot = (slot + 1) & (slots_.size() - 1))
-        if (slots_[slot] == place) return slot_numbers_[slot];
+    for (; !is_same(slots_[slot], free_slot); slot = (slot + 1) & (slots_.size() - 1))
+        if (is_same(slots_[slot], place)) return slot_numbers_[slot];
     slots_[slot] = place;
-    slot_numbers_[slot] = static_cast<std::uint32_t>(out_->places.size());
+    slot_numbers_[slot] = static_cast<std::uint32_t>(places_.size());
     ++used_slots_;
-    out_->places.push_back(place);
-    out_->parents.push_back(index_);
+    places_.push_back(place);
+    parents_.push_back(index_);
     return slot_numbers_[slot];
 }
 
 /// Numbers the points of the tet at hand by their places: their order is then the same whatever was dropped.
 void Bisector::order_points(std::size_t first_point, std::size_t first_tet) {
-    const auto places = std::span(out_->places).subspan(first_point);
+    const auto places = std::span(places_).subspan(first_point);
     if (std::ranges::is_sorted(places)) return;
     order_.resize(places.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = {places[i], i};
@@ -162,7 +200,7 @@ void Bisector::order_points(std::size_t first_point, std::size_t first_tet) {
         places[i] = order_[i].first;
         rank_[order_[i].second] = static_cast<std::uint32_t>(first_point + i);
     }
-    for (auto& tet : std::span(out_->tets).subspan(first_tet))
+    for (auto& tet : std::span(tets_).subspan(first_tet))
         for (std::uint32_t& point : tet) point = rank_[point - first_point];
 }
 
@@ -177,9 +215,9 @@ void Bisector::forget_numbers() {
 }
 
 void Bisector::emit(const Part& part) {
-    const auto& v = part.values[0];
-    const auto [lower, upper] = std::minmax({v[0], v[1], v[2], v[3]});
-    if (!can_be_met(lower, upper)) return;
+    const auto& c = part.corners;
+    const auto [lower, upper] = std::minmax({c[0].value, c[1].value, c[2].value, c[3].value});
+    if (!rule_.isovalues.empty() && !can_be_met(lower, upper)) return;
     constexpr std::uint64_t counted_at_once = 1024;
     if (++uncounted_ == counted_at_once) {
         uncounted_ = 0;
@@ -187,41 +225,68 @@ void Bisector::emit(const Part& part) {
         stopped_ = limits_.exceeded || progress_.cancelled();
     }
     std::array<std::uint32_t, 4> tet{};
-    for (std::size_t i = 0; i < 4; ++i) tet[i] = number_of(part.corners[i]);
+    for (std::size_t i = 0; i < 4; ++i) tet[i] = number_of(c[i].place);
     if (grid_.odd[index_]) std::swap(tet[2], tet[3]);
-    out_->tets.push_back(tet);
-    for (std::size_t edge = 0; edge < 6; ++edge) {
-        const auto [a, b] = tet_edges[edge];
-        double away2 = 0;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const double off = (2 * part.values[k][4 + edge] - (part.values[k][a] + part.values[k][b])) / 4;
-            if (k == 0) out_->deviation = std::max(out_->deviation, std::abs(off));
-            else away2 += off * off;
-        }
-        out_->length = std::max(out_->length, std::sqrt(away2));
+    tets_.push_back(tet);
+    for (const Edge& edge : part.edges) {
+        const auto& [x, y, z] = edge.bend;
+        told_.deviation = std::max(told_.deviation, std::abs(edge.bump));
+        told_.length2 = std::max(told_.length2, x * x + y * y + z * z);
     }
 }
 
-void Bisector::bisect(std::uint32_t index, Bisected& out) {
-    out_ = &out;
-    index_ = index;
-    tet_ = &grid_.tets[index];
-    const std::size_t before = out.tets.size(), first_point = out.places.size();
-    Part part{};
-    bool finite = true;
+/// The whole of a quadratic tet.
+Bisector::Part Bisector::part_of(std::uint32_t index) {
+    const QuadraticTet& tet = grid_.tets[index];
+    Part part;
+    const auto bump = [](const std::array<double, 10>& values, std::size_t e) {
+        return values[4 + e] - half(values[tet_edges[e][0]], values[tet_edges[e][1]]);
+    };
     if (field_) {
-        part.values[0] = to_bezier(field_->of(*tet_));
-        finite = std::ranges::all_of(part.values[0], [](double value) { return std::isfinite(value); });
-        out.not_finite += !finite;
+        const auto values = field_->of(tet);
+        for (std::size_t i = 0; i < 4; ++i) part.corners[i].value = values[i];
+        for (std::size_t e = 0; e < 6; ++e) part.edges[e].bump = bump(values, e);
     }
-    if (finite && is_met(part)) {
-        part.corners = corner_places;
-        for (std::size_t k = 0; k < 3; ++k) part.values[1 + k] = to_bezier(points_[k].of(*tet_));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto values = points_[k].of(tet);
+        for (std::size_t i = 0; i < 4; ++i) part.corners[i].at[k] = values[i];
+        for (std::size_t e = 0; e < 6; ++e) part.edges[e].bend[k] = bump(values, e);
+    }
+    for (std::size_t i = 0; i < 4; ++i) part.corners[i].place = corner_places[i];
+    for (std::size_t e = 0; e < 6; ++e) {
+        judge(part.edges[e], part.corners[tet_edges[e][0]], part.corners[tet_edges[e][1]]);
+        if (rule_.nodes_only && tet[4 + e] != mean_node) part.edges[e].grade = 0;
+    }
+    return part;
+}
+
+void Bisector::bisect(std::uint32_t index) {
+    index_ = index;
+    const std::size_t before = tets_.size(), first_point = places_.size();
+    const Part part = part_of(index);
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    const bool finite = std::ranges::all_of(part.corners, is_finite, &Corner::value) &&
+                        std::ranges::all_of(part.edges, is_finite, &Edge::bump);
+    told_.not_finite += !finite;
+    if (finite) {
         divide(part);
         forget_numbers();
         order_points(first_point, before);
     }
-    out.children.push_back(static_cast<std::uint32_t>(out.tets.size() - before));
+    children_.push_back(static_cast<std::uint32_t>(tets_.size() - before));
+}
+
+Bisected Bisector::take() {
+    Bisected out = std::exchange(told_, {});
+    out.places = copied(places_);
+    out.parents = copied(parents_);
+    out.tets = copied(tets_);
+    out.children = copied(children_);
+    places_.clear();
+    parents_.clear();
+    tets_.clear();
+    children_.clear();
+    return out;
 }
 
 } // namespace isotet::linear

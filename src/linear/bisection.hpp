@@ -11,6 +11,7 @@
 
 #include <isotet/progress.hpp>
 
+#include "core/buffer.hpp"
 #include "linear/node_values.hpp"
 #include "linear/place.hpp"
 #include "linear/quadratic.hpp"
@@ -21,19 +22,20 @@ struct BisectionRule {
     bool nodes_only = false; ///< bisect just the edges that have nodes; fields are not looked at
     double deviation = 0;    ///< an edge is bisected where its middle is farther than this from the mean of its ends
     double length = 0;       ///< the same for places; 0: by `bend`
-    double bend = 0.01;      ///< the same for places, in lengths of the edge
+    double bend = 0.01;      ///< the same for places, in lengths of the edge, down to 1/64 of a quadratic tet
     std::span<const double> isovalues; ///< ascending; tets that none can meet are dropped; empty: none is
 };
 
 /// What has become of some quadratic tets.
 struct Bisected {
-    std::vector<Place> places;                      ///< of points, each once in a quadratic tet
-    std::vector<std::uint32_t> parents;             ///< of points, the quadratic tet
-    std::vector<std::array<std::uint32_t, 4>> tets; ///< points
-    std::vector<std::uint32_t> children;            ///< tets of each quadratic tet, in order
-    double deviation = 0, length = 0;               ///< largest that are left at an edge
-    std::uint64_t not_finite = 0;                   ///< quadratic tets dropped
-    bool too_fine = false;                          ///< an edge was too short to be bisected further
+    core::Buffer<Place> places;                      ///< of points, each once in a quadratic tet
+    core::Buffer<std::uint32_t> parents;             ///< of points, the quadratic tet
+    core::Buffer<std::array<std::uint32_t, 4>> tets; ///< points
+    core::Buffer<std::uint32_t> children;            ///< tets of each quadratic tet, in order
+    double deviation = 0, length2 = 0;               ///< largest that are left at an edge; of places, squared
+    std::uint64_t not_finite = 0;                    ///< quadratic tets dropped
+    bool too_fine = false;                           ///< an edge was too short to be bisected further
+    bool too_bent = false;                           ///< an edge of 1/64 of a quadratic tet bends by more than `bend`
 };
 
 /// Limits that all threads share.
@@ -50,26 +52,36 @@ public:
              const BisectionRule& rule, BisectionLimits& limits, const Progress& progress);
 
     /// Adds the tets that quadratic tet `index` becomes.
-    void bisect(std::uint32_t index, Bisected& out);
+    void bisect(std::uint32_t index);
+
+    /// What has been added since the last call.
+    Bisected take();
 
 private:
-    /// Bezier values of the field and of x, y, z; and where the corners are.
+    /// What all tets at an edge know of it. A quadratic field is at the middle of an edge by `bump` above the mean of its
+    /// ends, and places by `bend`.
+    struct Edge {
+        double bump = 0;
+        std::array<double, 3> bend{};
+        double length2 = 0;
+        int grade = unmarked;
+    };
+    struct Corner {
+        double value = 0;
+        std::array<double, 3> at{};
+        Place place{};
+    };
     struct Part {
-        std::array<std::array<double, 10>, 4> values;
-        std::array<Place, 4> corners;
+        std::array<Corner, 4> corners;
+        std::array<Edge, 6> edges;
     };
-    struct Choice {
-        int grade = -1;
-        double length2 = -1;
-        Place high{}, low{};
-        Place middle{};
-        std::size_t edge = 6;
-    };
+    static constexpr int unmarked = -1, no_edge = 6;
 
+    Part part_of(std::uint32_t index);
     bool can_be_met(double lower, double upper) const;
     bool is_met(const Part& part) const;
-    double excess_of(const Part& part, std::size_t edge, double length2) const;
-    Choice first_marked(const Part& part);
+    void judge(Edge& edge, const Corner& a, const Corner& b);
+    std::size_t first_marked(const Part& part);
     void divide(const Part& part);
     void emit(const Part& part);
     std::uint32_t number_of(const Place& place);
@@ -82,11 +94,18 @@ private:
     const BisectionRule& rule_;
     BisectionLimits& limits_;
     const Progress& progress_;
-    Bisected* out_ = nullptr;
-    const QuadraticTet* tet_ = nullptr;
+    double per_deviation2_ = 0; ///< 1 over the square of what an edge may deviate
     std::uint32_t index_ = 0;
     std::uint64_t uncounted_ = 0;
     bool stopped_ = false;
+
+    // What take() gives away.
+    std::vector<Place> places_;
+    std::vector<std::uint32_t> parents_;
+    std::vector<std::array<std::uint32_t, 4>> tets_;
+    std::vector<std::uint32_t> children_;
+    Bisected told_;
+
     std::vector<Place> slots_; ///< hash of the places of the tet at hand
     std::vector<std::uint32_t> slot_numbers_;
     std::uint64_t used_slots_ = 0;

@@ -30,17 +30,17 @@ void add_refined(const RefinedPoints& refined, std::size_t before, std::size_t c
     const auto parents = refined.parents.as<std::uint32_t>();
     const auto nodes = refined.nodes.as<linear::Node>();
     const Array points = Array::borrow(known, components);
-    for (std::size_t c = 0; c < components; ++c) {
-        const linear::NodeValues values(points, refined.hidden, c);
-        core::parallel_pieces(refined.count(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
-            linear::QuadraticTet tet{};
-            for (std::size_t i = begin; i < end; ++i) {
-                std::memcpy(tet.data(), &nodes[10 * std::size_t{parents[i]}], sizeof tet);
-                to[(before + i) * components + c] =
-                    static_cast<T>(linear::value_at(values, tet, linear::place_at(refined.places, i)));
-            }
-        });
-    }
+    std::vector<linear::NodeValues> values;
+    for (std::size_t c = 0; c < components; ++c) values.emplace_back(points, refined.hidden, c);
+    core::parallel_pieces(refined.count(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+        linear::QuadraticTet tet{};
+        for (std::size_t i = begin; i < end; ++i) {
+            std::memcpy(tet.data(), &nodes[10 * std::size_t{parents[i]}], sizeof tet);
+            const linear::WeightedNodes at(tet, linear::place_at(refined.places, i));
+            for (std::size_t c = 0; c < components; ++c)
+                to[(before + i) * components + c] = static_cast<T>(at.value(values[c]));
+        }
+    });
 }
 
 template <class To, class From>

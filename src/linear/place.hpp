@@ -49,23 +49,38 @@ constexpr std::array<double, 10> node_weights(const Place& place) {
     return out;
 }
 
+/// The nodes that weigh something at a place of a quadratic tet.
+class WeightedNodes {
+public:
+    WeightedNodes(const QuadraticTet& tet, const Place& place) {
+        std::array<double, 10> weights = node_weights(place);
+        for (std::size_t e = 0; e < 6; ++e)
+            if (tet[4 + e] == mean_node) {
+                for (const std::uint8_t end : tet_edges[e]) weights[end] += weights[4 + e] / 2;
+                weights[4 + e] = 0;
+            }
+        for (std::size_t i = 0; i < 10; ++i)
+            if (weights[i] != 0) {
+                weights_[count_] = weights[i];
+                nodes_[count_++] = tet[i];
+            }
+    }
+
+    /// The quadratic field there.
+    double value(const NodeValues& values) const {
+        return weighted_sum(
+            count_, [&](std::size_t i) { return weights_[i]; }, [&](std::size_t i) { return values[nodes_[i]]; });
+    }
+
+private:
+    std::array<double, 10> weights_{};
+    std::array<Node, 10> nodes_{};
+    std::size_t count_ = 0;
+};
+
 /// The quadratic field there; nodes that weigh nothing are not looked at.
 inline double value_at(const NodeValues& values, const QuadraticTet& tet, const Place& place) {
-    std::array<double, 10> weights = node_weights(place);
-    for (std::size_t e = 0; e < 6; ++e)
-        if (tet[4 + e] == mean_node) {
-            for (const std::uint8_t end : tet_edges[e]) weights[end] += weights[4 + e] / 2;
-            weights[4 + e] = 0;
-        }
-    std::array<double, 10> used{};
-    std::array<Node, 10> nodes{};
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < 10; ++i)
-        if (weights[i] != 0) {
-            used[count] = weights[i];
-            nodes[count++] = tet[i];
-        }
-    return weighted_sum(count, [&](std::size_t i) { return used[i]; }, [&](std::size_t i) { return values[nodes[i]]; });
+    return WeightedNodes(tet, place).value(values);
 }
 
 } // namespace isotet::linear

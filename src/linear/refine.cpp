@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include "core/carry_out.hpp"
 #include "core/errors.hpp"
@@ -63,13 +64,16 @@ RefinementReport reported(const std::vector<Bisected>& blocks, const QuadraticTe
     report.unknown_cells = tets.unknown;
     report.left_out = tets.left_out;
     report.quadratic_tets = tets.tets.size();
+    double length2 = 0;
     for (const Bisected& block : blocks) {
         report.tets += block.tets.size();
         report.not_finite += block.not_finite;
         report.field_bound = std::max(report.field_bound, error_per_deviation * block.deviation);
-        report.geometry_bound = std::max(report.geometry_bound, error_per_deviation * block.length);
+        length2 = std::max(length2, block.length2);
         report.too_fine |= block.too_fine;
+        report.too_bent |= block.too_bent;
     }
+    report.geometry_bound = error_per_deviation * std::sqrt(length2);
     return report;
 }
 
@@ -107,13 +111,18 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     const std::uint64_t free = core::free_memory();
     limits.max_tets = free / bytes_per_made_tet;
     if (options.max_tets > 0) limits.max_tets = std::min(limits.max_tets, options.max_tets);
-    const std::size_t count = tets->tets.size(), per_block = std::clamp<std::size_t>(count / 512, 1, 1024);
+    const std::size_t count = tets->tets.size(), shares = 32 * static_cast<std::size_t>(core::threads_here()),
+                      per_block = std::clamp<std::size_t>(count / shares, 1, 1U << 14U);
     std::vector<Bisected> blocks((count + per_block - 1) / per_block);
+    tbb::enumerable_thread_specific<Bisector> bisectors(
+        [&] { return Bisector(*tets, points, field ? &values : nullptr, rule, limits, progress); });
     core::parallel_pieces(blocks.size(), 1, progress, [&](std::size_t begin, std::size_t end) {
-        Bisector bisector(*tets, points, field ? &values : nullptr, rule, limits, progress);
-        for (std::size_t b = begin; b < end && !limits.exceeded; ++b)
+        Bisector& bisector = bisectors.local();
+        for (std::size_t b = begin; b < end && !limits.exceeded; ++b) {
             for (std::size_t i = b * per_block; i < std::min(count, (b + 1) * per_block); ++i)
-                bisector.bisect(static_cast<std::uint32_t>(i), blocks[b]);
+                bisector.bisect(static_cast<std::uint32_t>(i));
+            blocks[b] = bisector.take();
+        }
     });
     if (progress.cancelled()) return refining_cancelled();
     if (limits.exceeded)
