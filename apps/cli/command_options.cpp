@@ -201,8 +201,12 @@ void add_levels(const Command& command, ExtractCommand& extract) {
 
 void add_surface_arrays(const Command& command, ExtractCommand& extract) {
     command.add_choice<Normals>("--normals", extract.normals,
-                                {{"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}, {"vertex", Normals::vertex}},
-                                "Normals: gradient, of the field, a vertex; face, of each triangle; vertex, of the triangles around each vertex");
+                                {{"none", Normals::none},
+                                 {"gradient", Normals::gradient},
+                                 {"face", Normals::face},
+                                 {"vertex", Normals::vertex}},
+                                "Normals: gradient, of the field, a vertex; face, of each triangle; vertex, of the "
+                                "triangles around each vertex");
     command.add_texts(
         "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
         "Carry these point and cell fields onto the surface, separated by commas; may be repeated; an empty name "
@@ -212,6 +216,8 @@ void add_surface_arrays(const Command& command, ExtractCommand& extract) {
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
     command.add_flag("--source-cells", extract.source_cells,
                      "Write the grid cell of each triangle (source_cell); .vtp, .vtk");
+    command.add_flag("--exact-vertices", extract.exact_vertices,
+                     "Quadratic cells: vertices where the quadratic field has the isovalue on their edges");
     command.add_flag("--split-cells", extract.split_cells,
                      "Split pyramids, wedges and hexahedra into tets first: 2 to 3 times the triangles");
 }
@@ -427,37 +433,54 @@ void add_device(const Command& command, DeviceChoice& choice) {
 }
 
 void add_refinement(const Command& command, RefineChoice& refine) {
-    const auto number = [](const std::string& name, const std::string& text, const char* end, const char* rule) {
+    const auto number = [](const std::string& name, const std::string& text, std::size_t size, const char* rule) {
         double value = 0;
+        const char* const end = text.data() + size;
         const auto [stopped, fault] = std::from_chars(text.data(), end, value);
         if (fault != std::errc{} || stopped != end || !std::isfinite(value) || value <= 0)
             refuse_value(name, text, rule);
         return value;
     };
+    // Options are taken in this order, whatever the order on the command line.
+    const auto given = std::make_shared<bool>(false);
     command.add_value(
         "--tolerance",
-        [&refine, number](const std::string& text) {
+        [&refine, number, given](const std::string& text) {
+            *given = true;
             if (text == "nodes") {
                 refine.reset();
                 return;
             }
             const bool percent = text.ends_with('%');
-            const char* const end = text.data() + text.size() - (percent ? 1 : 0);
-            const double value =
-                number("--tolerance", text, end, "a number above 0, one with %, such as 0.1%, or nodes");
-            if (!refine) refine.emplace();
+            const double value = number("--tolerance", text, text.size() - (percent ? 1 : 0),
+                                        "a number above 0, one with %, such as 0.1%, or nodes");
             (percent ? refine->relative_tolerance : refine->tolerance) = percent ? value / 100 : value;
         },
         "T|P%|nodes",
         "Quadratic cells: largest error of the field, in its unit or in % of its range, without it 0.1%; nodes splits "
         "cells at their nodes, without a bound");
-    command.add_value(
-        "--geometry-tolerance",
-        [&refine, number](const std::string& text) {
-            const double value = number("--geometry-tolerance", text, text.data() + text.size(), "a number above 0");
-            if (refine) refine->geometry_tolerance = value;
+    const auto add_length = [&](const std::string& name, auto set, const char* help) {
+        command.add_value(
+            name,
+            [&refine, number, name, set](const std::string& text) {
+                const double value = number(name, text, text.size(), "a number above 0");
+                if (!refine)
+                    refuse_value(name, text, "a distance only where cells are refined: not with --tolerance nodes");
+                set(*refine, value);
+            },
+            "D", help);
+    };
+    add_length(
+        "--distance",
+        [given](RefineOptions& options, double value) {
+            options.distance = value;
+            if (!*given) options.relative_tolerance = 0;
         },
-        "D",
+        "Quadratic cells: largest distance of the surface from that of the quadratic field, by estimate, in the unit "
+        "of "
+        "the points; in place of --tolerance, or beside it");
+    add_length(
+        "--geometry-tolerance", [](RefineOptions& options, double value) { options.geometry_tolerance = value; },
         "Quadratic cells: largest distance of the tets from the curved cells, in the unit of the points; without it a "
         "hundredth of each edge's length");
 }

@@ -123,6 +123,7 @@ Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource
     plan.contour.source_cells = command.source_cells;
     plan.contour.split_cells = command.split_cells;
     plan.contour.refine = command.refine;
+    plan.contour.exact_vertices = command.exact_vertices;
     return plan;
 }
 

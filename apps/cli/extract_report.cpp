@@ -153,16 +153,18 @@ Json extract_json(const ExtractNumbers& numbers) {
     report["tets"] = numbers.pack ? Json(numbers.pack->tets) : Json(nullptr);
     report["cells_left_out"] = numbers.cells_left_out;
     const RefinementReport& curved = numbers.refinement;
-    report["curved"] = curved.curved_cells + curved.unknown_cells == 0
-                           ? Json(nullptr)
-                           : Json({{"cells", curved.curved_cells},
-                                   {"cells_left_out", curved.unknown_cells},
-                                   {"refined", curved.refined},
-                                   {"tets", curved.tets},
-                                   {"points", curved.points},
-                                   {"tolerance", curved.refined ? Json(curved.tolerance) : Json(nullptr)},
-                                   {"field_bound", curved.refined ? Json(curved.field_bound) : Json(nullptr)},
-                                   {"geometry_bound", curved.geometry_bound}});
+    report["curved"] =
+        curved.curved_cells + curved.unknown_cells == 0
+            ? Json(nullptr)
+            : Json({{"cells", curved.curved_cells},
+                    {"cells_left_out", curved.unknown_cells},
+                    {"refined", curved.refined},
+                    {"tets", curved.tets},
+                    {"points", curved.points},
+                    {"tolerance", curved.refined && curved.tolerance > 0 ? Json(curved.tolerance) : Json(nullptr)},
+                    {"field_bound", curved.refined ? Json(curved.field_bound) : Json(nullptr)},
+                    {"geometry_bound", curved.geometry_bound},
+                    {"distance", curved.distance > 0 ? Json(curved.distance) : Json(nullptr)}});
     report["field"] = json_text(numbers.field.name);
     const bool finite = numbers.field.lower <= numbers.field.upper;
     report["range"] = finite ? Json::array({numbers.field.lower, numbers.field.upper}) : Json(nullptr);

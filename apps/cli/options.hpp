@@ -84,6 +84,7 @@ struct ExtractCommand {
     bool edge_ends = false;
     bool source_cells = false;
     bool split_cells = false;
+    bool exact_vertices = false;
     Precision precision = Precision::float32;
     std::optional<Method> method; ///< nothing: by the rule
     EngineChoice engine = EngineChoice::automatic;

@@ -54,6 +54,10 @@ struct ContourOptions {
     /// each surface; RefineOptions::isovalues are those that come first, and are refined for together. Nothing: they are
     /// split at their nodes, once for all isovalues, fields and steps, and a note gives the bound.
     std::optional<RefineOptions> refine = {};
+    /// extract() puts vertices to where the quadratic field of curved cells has the isovalue on their edges, which may be
+    /// curved themselves, and point fields with them. Gradient normals stay those of the tets. Grids without curved cells
+    /// have no such edges. Costs edge ends and source cells for a while.
+    bool exact_vertices = false;
 };
 
 /// What set() had to do.

@@ -16,7 +16,7 @@
 namespace isotet {
 
 struct RefineOptions {
-    /// Largest error of the field, in its unit; 0: `relative_tolerance` times its range.
+    /// Largest error of the field, in its unit; 0: `relative_tolerance` times its range, if that is above 0.
     double tolerance = 0;
     double relative_tolerance = 1e-3;
     /// Largest distance of the tets from the curved cells, in the points' unit; 0: edges leave the curve by at most a
@@ -26,6 +26,10 @@ struct RefineOptions {
     std::vector<double> isovalues = {};
     /// More tets than this are an error; 0: as many as free memory holds.
     std::uint64_t max_tets = 0;
+    /// Largest distance of the surface from that of the quadratic field, in the points' unit, by estimate: an edge may
+    /// deviate by this times the least gradient of the field at its ends, but always by 10^-5 of the range. 0: not looked
+    /// at. What of tolerance, relative_tolerance and distance is above 0 holds together.
+    double distance = 0;
 };
 
 /// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the

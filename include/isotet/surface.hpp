@@ -64,6 +64,14 @@ ISOTET_API Surface join(const std::vector<Surface>& surfaces, const std::vector<
 /// Errors       invalid_data when a triangle has a vertex that is not there; out_of_memory
 ISOTET_API Result<Array> vertex_normals(const Surface& surface, const Run& run = {});
 
+/// A normal for each triangle, as Normals::face.
+///
+/// Returns      float32, 3 components, F tuples; unit length, or zero where a triangle has no area
+/// Guarantees   the same for any thread count
+/// Cost         O(F)
+/// Errors       invalid_data when a triangle has a vertex that is not there; out_of_memory
+ISOTET_API Result<Array> face_normals(const Surface& surface, const Run& run = {});
+
 /// Area of all triangles, summed in double in a fixed order; NaN when check() would call the surface invalid.
 ISOTET_API double area(const Surface& surface);
 

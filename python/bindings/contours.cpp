@@ -56,12 +56,13 @@ ContourOptions contour_options(std::string_view normals, bool edge_ends, bool so
 
 /// Nothing asked for: nothing.
 std::optional<RefineOptions> refine_options(std::optional<double> tolerance, std::optional<double> relative_tolerance,
-                                            double geometry_tolerance) {
-    if (!tolerance && !relative_tolerance) return std::nullopt;
+                                            double geometry_tolerance, double distance) {
+    if (!tolerance && !relative_tolerance && distance == 0) return std::nullopt;
     RefineOptions options;
     options.tolerance = tolerance.value_or(0);
     options.relative_tolerance = relative_tolerance.value_or(0);
     options.geometry_tolerance = geometry_tolerance;
+    options.distance = distance;
     return options;
 }
 
@@ -132,14 +133,17 @@ void add_sessions(nb::module_& module) {
             [](ContourOptions* self, std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                std::string_view precision, std::optional<std::string_view> method, std::uint64_t surfaces,
                bool split_cells, const Frame* frame, std::optional<double> tolerance,
-               std::optional<double> relative_tolerance, double geometry_tolerance) {
-                new (self) ContourOptions(
-                    contour_options(normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells,
-                                    frame, refine_options(tolerance, relative_tolerance, geometry_tolerance)));
+               std::optional<double> relative_tolerance, double geometry_tolerance, double distance,
+               bool exact_vertices) {
+                new (self) ContourOptions(contour_options(
+                    normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells, frame,
+                    refine_options(tolerance, relative_tolerance, geometry_tolerance, distance)));
+                self->exact_vertices = exact_vertices;
             },
             "normals"_a, "edge_ends"_a, "source_cells"_a, "ties"_a, "precision"_a, "method"_a.none(), "surfaces"_a,
             "split_cells"_a = false, "frame"_a.none() = nb::none(), "tolerance"_a.none() = nb::none(),
-            "relative_tolerance"_a.none() = nb::none(), "geometry_tolerance"_a = 0.0);
+            "relative_tolerance"_a.none() = nb::none(), "geometry_tolerance"_a = 0.0, "distance"_a = 0.0,
+            "exact_vertices"_a = false);
 
     nb::class_<Contour>(module, "Contour")
         .def(

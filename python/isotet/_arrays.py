@@ -146,15 +146,16 @@ def isovalues_in(isovalues) -> list[float]:
     return np.asarray(isovalues, np.float64).reshape(-1).tolist()
 
 
-def tolerances_in(tolerance, geometry_tolerance) -> tuple[float | None, float | None, float]:
-    """A number, or text as "0.1%", which is a share of the field's range: (number, share, distance)."""
+def tolerances_in(tolerance, geometry_tolerance, distance) -> tuple[float | None, float | None, float, float]:
+    """A number, or text as "0.1%", which is a share of the field's range: (number, share, and both lengths)."""
+    lengths = float(geometry_tolerance), float(distance)
     if tolerance is None:
-        if geometry_tolerance:
-            raise ValueError(f"geometry_tolerance is {geometry_tolerance}, but needs a tolerance beside it")
-        return None, None, 0.0
+        if geometry_tolerance and not distance:
+            raise ValueError(f"geometry_tolerance is {geometry_tolerance}, but needs a tolerance or distance beside it")
+        return None, None, *lengths
     if isinstance(tolerance, str):
         number, percent, rest = tolerance.partition("%")
         if percent != "%" or rest:
             raise ValueError(f"tolerance is '{tolerance}', but must be a number, or text such as '0.1%'")
-        return None, float(number) / 100, float(geometry_tolerance)
-    return float(tolerance), None, float(geometry_tolerance)
+        return None, float(number) / 100, *lengths
+    return float(tolerance), None, *lengths

@@ -136,8 +136,8 @@ class Grid:
                 cell_fields: Mapping[str, Any] | Iterable[str] | None = None, edge_ends: bool = False,
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
                 split_cells: bool = False, frame: Frame | None = None, tolerance: float | str | None = None,
-                geometry_tolerance: float = 0.0, threads: int = 0,
-                progress: Progress | None = None) -> Surface:  # fmt: skip
+                geometry_tolerance: float = 0.0, distance: float = 0.0, exact_vertices: bool = False,
+                threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
 
         isovalues
@@ -168,6 +168,11 @@ class Grid:
         geometry_tolerance
             With `tolerance`: the tets are at most this far from the curved cells. 0: edges leave them by a hundredth of their
             length at most.
+        distance
+            Curved cells are refined until the surface is within this of the quadratic field's, by estimate; without a tolerance,
+            or beside one.
+        exact_vertices
+            Vertices are put to where the quadratic field of curved cells has the isovalue on their edges.
         threads
             At most so many; 0: all.
         progress
@@ -179,7 +184,8 @@ class Grid:
         call = call_options(threads, progress)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
                                          split_cells, frame and frame._frame,
-                                         *tolerances_in(tolerance, geometry_tolerance))  # fmt: skip
+                                         *tolerances_in(tolerance, geometry_tolerance, distance),
+                                         exact_vertices)  # fmt: skip
         session = _isotet.Contour(self._grid, self._field(field, call, frame is not None), self._carried(fields, "fields"),
                                   self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
@@ -319,7 +325,7 @@ class Contour:
     same as before.
 
     grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells, frame, tolerance,
-    geometry_tolerance
+    geometry_tolerance, distance, exact_vertices
         As for `Grid.contour`. With a tolerance curved cells are refined for each isovalue, field and step again.
     surfaces
         How many surfaces will be asked for in all; 0: not known.
@@ -333,22 +339,23 @@ class Contour:
     'field'
     """
 
-    __slots__ = ("_session", "_options", "_tolerances", "__weakref__")
+    __slots__ = ("_session", "_options", "_refinement", "__weakref__")
 
     def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
                  edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
                  method: str | None = None, split_cells: bool = False, surfaces: int = 0,
                  frame: Frame | None = None, tolerance: float | str | None = None,
-                 geometry_tolerance: float = 0.0):  # fmt: skip
+                 geometry_tolerance: float = 0.0, distance: float = 0.0,
+                 exact_vertices: bool = False):  # fmt: skip
         call = call_options(0, None)
-        self._tolerances = tolerances_in(tolerance, geometry_tolerance)
+        self._refinement = (*tolerances_in(tolerance, geometry_tolerance, distance), exact_vertices)
         self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
         self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None), grid._carried(fields, "fields"),
                                         grid._carried(cell_fields, "cell_fields"), self._options_with(frame),
                                         call)  # fmt: skip
 
     def _options_with(self, frame: Frame | None) -> _isotet.ContourOptions:
-        return _isotet.ContourOptions(*self._options, frame and frame._frame, *self._tolerances)
+        return _isotet.ContourOptions(*self._options, frame and frame._frame, *self._refinement)
 
     def set(self, grid: Grid, field=None, *, fields=None, cell_fields=None, frame: Frame | None = None, threads: int = 0,
             progress: Progress | None = None) -> str:  # fmt: skip
@@ -390,8 +397,8 @@ def contour(points, cells, values, isovalues: float | Sequence[float], *, offset
             fields: Mapping[str, Any] | None = None, cell_fields: Mapping[str, Any] | None = None,
             edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
             method: str | None = None, split_cells: bool = False, frame: Frame | None = None,
-            tolerance: float | str | None = None, geometry_tolerance: float = 0.0, threads: int = 0,
-            progress: Progress | None = None) -> Surface:  # fmt: skip
+            tolerance: float | str | None = None, geometry_tolerance: float = 0.0, distance: float = 0.0,
+            exact_vertices: bool = False, threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
     """The surface on which values at the points of a grid, linear in each tetrahedron, equal an isovalue.
 
     points, cells, offsets, types
@@ -417,6 +424,7 @@ def contour(points, cells, values, isovalues: float | Sequence[float], *, offset
     return grid.contour(isovalues, values, normals=normals, fields=fields, cell_fields=cell_fields, edge_ends=edge_ends,
                         source_cells=source_cells, ties=ties, precision=precision, method=method,
                         split_cells=split_cells, frame=frame, tolerance=tolerance, geometry_tolerance=geometry_tolerance,
+                        distance=distance, exact_vertices=exact_vertices,
                         threads=threads, progress=progress)  # fmt: skip
 
 

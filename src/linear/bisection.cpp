@@ -19,19 +19,16 @@ std::size_t hash_of(const Place& place) {
 }
 constexpr double rounding_margin = 0x1p-21; ///< of stored values beside Bezier values: float32 and more
 
-/// Edges of places shorter than this are not bisected for their bend: a cell that folds has edges that bend at every length.
-constexpr std::uint32_t shortest_bent = whole_weight / 64;
+/// For their bend edges are bisected to points in steps of 1/64 only: a cell that folds has edges that bend at every length.
+constexpr std::uint32_t bend_step = whole_weight / 64;
 
 double half(double a, double b) { return (a + b) / 2; }
 
 bool is_same(const Place& a, const Place& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
 
-/// The largest difference of the weights of two places.
-std::uint32_t extent(const Place& a, const Place& b) {
-    const auto from = steps_of(a), to = steps_of(b);
-    std::uint32_t out = 0;
-    for (std::size_t i = 0; i < 4; ++i) out = std::max(out, from[i] > to[i] ? from[i] - to[i] : to[i] - from[i]);
-    return out;
+/// True when the middle of two places is none of these steps.
+bool is_bent_too_fine(const Place& a, const Place& b) {
+    return (((a[0] + b[0]) | (a[1] + b[1]) | (a[2] + b[2])) & (2 * bend_step - 1)) != 0;
 }
 
 /// The power of two below a number above 1, halved and rounded down twice: how often an edge is to be bisected whose
@@ -55,7 +52,7 @@ Bisector::Bisector(const QuadraticTets& grid, const std::array<NodeValues, 3>& p
       rule_(rule),
       limits_(limits),
       progress_(progress),
-      per_deviation2_(rule.deviation > 0 ? 1 / (rule.deviation * rule.deviation) : 0),
+      per_deviation_(rule.deviation > 0 ? 1 / rule.deviation : 0),
       slots_(64, free_slot),
       slot_numbers_(64) {}
 
@@ -90,10 +87,12 @@ void Bisector::judge(Edge& edge, const Corner& a, const Corner& b) {
     }
     edge.length2 = length2;
     if (rule_.nodes_only) return;
-    double excess2 = edge.bump * edge.bump * per_deviation2_;
+    const double excess =
+        edge.bump * (rule_.deviations.empty() ? per_deviation_ : 1 / std::min(a.deviation, b.deviation));
+    double excess2 = excess * excess;
     const double allowed2 = rule_.length > 0 ? rule_.length * rule_.length : rule_.bend * rule_.bend * length2;
     if (away2 > allowed2) {
-        if (rule_.length == 0 && extent(a.place, b.place) <= shortest_bent) told_.too_bent = true;
+        if (rule_.length == 0 && is_bent_too_fine(a.place, b.place)) told_.too_bent = true;
         else excess2 = std::max(excess2, away2 / allowed2);
     }
     if (excess2 > 1) edge.grade = grade_of(excess2);
@@ -136,6 +135,7 @@ void Bisector::divide(const Part& part) {
     const Edge& whole = part.edges[first];
     Corner middle;
     middle.value = half(at_a.value, at_b.value) + whole.bump;
+    middle.deviation = half(at_a.deviation, at_b.deviation);
     middle.place = *halfway(at_a.place, at_b.place);
     Edge quarter;
     quarter.bump = whole.bump / 4;
@@ -233,6 +233,21 @@ void Bisector::emit(const Part& part) {
         told_.deviation = std::max(told_.deviation, std::abs(edge.bump));
         told_.length2 = std::max(told_.length2, x * x + y * y + z * z);
     }
+    if (!rule_.deviations.empty()) told_.distances.add(distance_in(part));
+}
+
+/// How far a surface in a tet is at most from that of the quadratic field, if the field is as steep there as in the tet.
+double Bisector::distance_in(const Part& part) const {
+    double bump = 0;
+    for (const Edge& edge : part.edges) bump = std::max(bump, std::abs(edge.bump));
+    const auto& c = part.corners;
+    std::array<double, 3> rise{};
+    std::array<Point, 3> along{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        rise[i] = c[i + 1].value - c[0].value;
+        for (std::size_t k = 0; k < 3; ++k) along[i][k] = c[i + 1].at[k] - c[0].at[k];
+    }
+    return error_per_deviation * bump / slope(along, rise);
 }
 
 /// The whole of a quadratic tet.
@@ -252,7 +267,10 @@ Bisector::Part Bisector::part_of(std::uint32_t index) {
         for (std::size_t i = 0; i < 4; ++i) part.corners[i].at[k] = values[i];
         for (std::size_t e = 0; e < 6; ++e) part.edges[e].bend[k] = bump(values, e);
     }
-    for (std::size_t i = 0; i < 4; ++i) part.corners[i].place = corner_places[i];
+    for (std::size_t i = 0; i < 4; ++i) {
+        part.corners[i].place = corner_places[i];
+        if (!rule_.deviations.empty()) part.corners[i].deviation = rule_.deviations[tet[i]];
+    }
     for (std::size_t e = 0; e < 6; ++e) {
         judge(part.edges[e], part.corners[tet_edges[e][0]], part.corners[tet_edges[e][1]]);
         if (rule_.nodes_only && tet[4 + e] != mean_node) part.edges[e].grade = 0;

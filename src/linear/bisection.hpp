@@ -12,6 +12,7 @@
 #include <isotet/progress.hpp>
 
 #include "core/buffer.hpp"
+#include "linear/distance.hpp"
 #include "linear/node_values.hpp"
 #include "linear/place.hpp"
 #include "linear/quadratic.hpp"
@@ -22,8 +23,10 @@ struct BisectionRule {
     bool nodes_only = false; ///< bisect just the edges that have nodes; fields are not looked at
     double deviation = 0;    ///< an edge is bisected where its middle is farther than this from the mean of its ends
     double length = 0;       ///< the same for places; 0: by `bend`
-    double bend = 0.01;      ///< the same for places, in lengths of the edge, down to 1/64 of a quadratic tet
-    std::span<const double> isovalues; ///< ascending; tets that none can meet are dropped; empty: none is
+    double bend = 0.01;      ///< the same for places, in lengths of the edge, for new points in steps of 1/64
+    std::span<const double> deviations = {}; ///< empty, or one a point: at an edge the lesser of its ends' holds, too;
+                                             ///< between points they are linear
+    std::span<const double> isovalues;       ///< ascending; tets that none can meet are dropped; empty: none is
 };
 
 /// What has become of some quadratic tets.
@@ -35,7 +38,8 @@ struct Bisected {
     double deviation = 0, length2 = 0;               ///< largest that are left at an edge; of places, squared
     std::uint64_t not_finite = 0;                    ///< quadratic tets dropped
     bool too_fine = false;                           ///< an edge was too short to be bisected further
-    bool too_bent = false;                           ///< an edge of 1/64 of a quadratic tet bends by more than `bend`
+    DistanceCounts distances;                        ///< with BisectionRule::deviations
+    bool too_bent = false;                           ///< an edge bends by more than `bend`, but is too short for that
 };
 
 /// Limits that all threads share.
@@ -67,7 +71,7 @@ private:
         int grade = unmarked;
     };
     struct Corner {
-        double value = 0;
+        double value = 0, deviation = 0;
         std::array<double, 3> at{};
         Place place{};
     };
@@ -78,6 +82,7 @@ private:
     static constexpr int unmarked = -1, no_edge = 6;
 
     Part part_of(std::uint32_t index);
+    double distance_in(const Part& part) const;
     bool can_be_met(double lower, double upper) const;
     bool is_met(const Part& part) const;
     void judge(Edge& edge, const Corner& a, const Corner& b);
@@ -94,7 +99,7 @@ private:
     const BisectionRule& rule_;
     BisectionLimits& limits_;
     const Progress& progress_;
-    double per_deviation2_ = 0; ///< 1 over the square of what an edge may deviate
+    double per_deviation_;
     std::uint32_t index_ = 0;
     std::uint64_t uncounted_ = 0;
     bool stopped_ = false;

@@ -23,10 +23,6 @@ namespace linear {
 
 namespace {
 
-/// The largest error is at most this times the largest deviation at the middle of an edge: the weights' products of a tet
-/// sum up to at most 3/8.
-constexpr double error_per_deviation = 1.5;
-
 constexpr std::uint64_t bytes_per_made_tet = 72; ///< with its share of points, while blocks are put together
 
 Error refining_cancelled() { return {ErrorCode::cancelled, "refining was cancelled"}; }
@@ -46,11 +42,12 @@ double range_of(const QuadraticTets& tets, const NodeValues& values) {
 Result<void> check_options(const RefineOptions& options) {
     for (const auto& [name, value] : {std::pair{"tolerance", options.tolerance},
                                       {"relative tolerance", options.relative_tolerance},
+                                      {"distance", options.distance},
                                       {"geometry tolerance", options.geometry_tolerance}})
         if (!std::isfinite(value) || value < 0)
             return invalid_argument(fmt::format("the {} is {}, but must be finite and not negative", name, value));
-    if (options.tolerance == 0 && options.relative_tolerance == 0)
-        return invalid_argument("tolerance and relative tolerance are both 0, but one must be above");
+    if (options.tolerance == 0 && options.relative_tolerance == 0 && options.distance == 0)
+        return invalid_argument("tolerance, relative tolerance and distance are 0, but one must be above");
     for (const double isovalue : options.isovalues)
         if (!std::isfinite(isovalue))
             return invalid_argument(fmt::format("an isovalue is {}, but must be finite", isovalue));
@@ -65,6 +62,7 @@ RefinementReport reported(const std::vector<Bisected>& blocks, const QuadraticTe
     report.left_out = tets.left_out;
     report.quadratic_tets = tets.tets.size();
     double length2 = 0;
+    DistanceCounts distances;
     for (const Bisected& block : blocks) {
         report.tets += block.tets.size();
         report.not_finite += block.not_finite;
@@ -72,8 +70,11 @@ RefinementReport reported(const std::vector<Bisected>& blocks, const QuadraticTe
         length2 = std::max(length2, block.length2);
         report.too_fine |= block.too_fine;
         report.too_bent |= block.too_bent;
+        distances.add(block.distances);
     }
     report.geometry_bound = error_per_deviation * std::sqrt(length2);
+    report.largest_distance = distances.largest();
+    report.distance = distances.not_exceeded_by(0.99);
     return report;
 }
 
@@ -95,6 +96,7 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     rule.isovalues = isovalues;
     Array longer;
     NodeValues values;
+    std::vector<double> deviations;
     double tolerance = 0;
     if (field) {
         auto extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
@@ -105,6 +107,13 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
         tolerance = options.tolerance > 0 ? options.tolerance : options.relative_tolerance * range;
         constexpr double finest = 0x1p-44; // of the range: beyond, rounding is all that is left
         rule.deviation = std::max(tolerance, finest * range) / error_per_deviation;
+        if (options.distance > 0) {
+            constexpr double finest_for_distance = 1e-5; // of the range: where the field is flat, no distance is kept
+            const double most = tolerance > 0 ? rule.deviation : std::numeric_limits<double>::infinity();
+            const double least = std::min(most, finest_for_distance * range / error_per_deviation);
+            deviations = deviations_for(options.distance, least, most, *tets, values, points, longer.tuples());
+            rule.deviations = deviations;
+        }
     }
 
     BisectionLimits limits;

@@ -14,6 +14,7 @@
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
 #include "session/contour_data.hpp"
+#include "session/exact_vertices.hpp"
 
 namespace isotet {
 
@@ -136,14 +137,14 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         const auto start = std::chrono::steady_clock::now();
         const Method method = data.method_of_next(0);
         const std::shared_ptr<const LinearGrid> linear = data.linear_grid();
+        const ContourInput input = data.input; // shares the arrays
+        const ContourOptions options = data.options;
         const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
         ContourResult head;
         head.notes = std::exchange(data.notes, {});
         head.pack_seconds = std::exchange(data.update_seconds, 0);
         Result<ContourResult> result = ContourResult{};
         if (method == Method::direct) {
-            const ContourInput input = data.input; // shares the arrays
-            const ContourOptions options = data.options;
             lock.unlock();
             result = extract_directly(input, options, isovalues, run);
             if (result) result->engine = options.engine->name();
@@ -152,20 +153,23 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             std::ranges::move(std::exchange(data.notes, {}), std::back_inserter(head.notes));
             const PackedGrid packed = *data.packed;
             const std::shared_ptr<const Engine> engine = data.options.engine;
-            const ExtractOptions options = session::extract_options(data.options, data.input);
             lock.unlock();
             result->field = packed.field();
             result->cells_left_out = packed.report().cells_left_out;
             if (result->surfaces.size() < isovalues.size()) {
                 const auto grid = engine->create_grid(packed, run);
                 if (!grid) return grid.error();
-                auto rest = (*grid)->extract(isovalues.subspan(result->surfaces.size()), options, run);
+                auto rest = (*grid)->extract(isovalues.subspan(result->surfaces.size()),
+                                             session::extract_options(options, input), run);
                 if (!rest) return rest.error();
                 result->engine = engine->name();
                 std::ranges::move(*rest, std::back_inserter(result->surfaces));
             }
         }
         if (!result) return result;
+        if (options.exact_vertices)
+            if (auto ok = session::move_vertices(linear.get(), input, options, isovalues, result->surfaces, run); !ok)
+                return ok.error();
         if (linear) {
             session::map_source_cells(*linear, result->surfaces);
             result->refinement = linear->refinement;

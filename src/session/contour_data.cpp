@@ -15,9 +15,10 @@ namespace isotet {
 ExtractOptions session::extract_options(const ContourOptions& options, const ContourInput& input) {
     ExtractOptions extract;
     extract.ties = options.ties;
-    extract.normals = options.normals;
-    extract.edge_ends = options.edge_ends;
-    extract.source_cells = options.source_cells;
+    const bool exact = options.exact_vertices; // moved vertices need these, and get their normals anew
+    extract.normals = exact && options.normals != Normals::gradient ? Normals::none : options.normals;
+    extract.edge_ends = options.edge_ends || exact;
+    extract.source_cells = options.source_cells || exact;
     extract.point_fields = input.point_fields;
     extract.cell_fields = input.cell_fields;
     return extract;
@@ -25,9 +26,13 @@ ExtractOptions session::extract_options(const ContourOptions& options, const Con
 
 namespace {
 
+bool needs_source_cells(const ContourOptions& options, const ContourInput& input) {
+    return options.source_cells || options.exact_vertices || !input.cell_fields.empty();
+}
+
 /// Whether surfaces as `options` ask for can be had without packing again.
 bool has_what_is_needed(const PackedGrid& packed, const ContourOptions& options, const ContourInput& input) {
-    const bool needs_cells = options.source_cells || !input.cell_fields.empty();
+    const bool needs_cells = needs_source_cells(options, input);
     const bool needs_gradients = options.normals == Normals::gradient;
     return packed.precision() == options.precision && (!needs_cells || packed.report().source_bytes > 0) &&
            (!needs_gradients || packed.report().gradient_bytes > 0);
@@ -140,7 +145,7 @@ Result<void> Contour::Data::pack_grid(const Run& run) {
     packed.reset(); // the old one goes before the new one comes
     PackOptions pack_options;
     pack_options.precision = options.precision;
-    pack_options.source_cells = options.source_cells || !input.cell_fields.empty();
+    pack_options.source_cells = needs_source_cells(options, input);
     pack_options.split_cells = options.split_cells;
     pack_options.gradients = options.normals == Normals::gradient;
     pack_options.frame = options.frame;

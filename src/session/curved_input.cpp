@@ -36,16 +36,25 @@ std::uint8_t type_of_corners(std::uint8_t type, std::uint64_t nodes) {
 std::vector<std::string> notes_on(const RefinementReport& report) {
     std::vector<std::string> out;
     if (report.curved_cells > 0 && report.refined)
-        out.push_back(fmt::format("{} curved cells were refined to {} tets: the field is within {:.3g} of the cells' "
-                                  "quadratic one (asked for {:.3g}), the tets within {:.3g} of their shape",
-                                  report.curved_cells, report.tets, report.field_bound, report.tolerance,
-                                  report.geometry_bound));
+        out.push_back(fmt::format(
+            "{} curved cells were refined to {} tets: the field is within {:.3g} of the cells' quadratic one{}, the "
+            "tets within {:.3g} of their shape{}",
+            report.curved_cells, report.tets, report.field_bound,
+            report.tolerance > 0 ? fmt::format(" (asked for {:.3g})", report.tolerance) : "", report.geometry_bound,
+            report.distance > 0
+                ? fmt::format(", 99 of 100 surfaces in them within {:.3g} of the quadratic field's, by estimate",
+                              report.distance)
+                : ""));
     else if (report.curved_cells > 0)
         out.push_back(fmt::format("{} curved cells were split at their nodes into {} tets, without a tolerance for the "
                                   "field",
                                   report.curved_cells, report.tets));
     if (report.too_fine)
         out.push_back("some edges could not be bisected any further: the bound is larger than the tolerance");
+    if (report.too_bent)
+        out.push_back(
+            "some cells bend more than bisecting can follow, as where they fold: there the tets are off their "
+            "shape");
     if (report.not_finite > 0)
         out.push_back(fmt::format("{} of {} quadratic tets were left out: a node has no finite value",
                                   report.not_finite, report.quadratic_tets));

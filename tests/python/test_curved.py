@@ -50,3 +50,18 @@ def test_wrong_tolerances_are_told(tolerance):
 def test_a_geometry_tolerance_alone_is_an_error():
     with pytest.raises(ValueError, match="geometry_tolerance"):
         ball().contour(0.5, "d", geometry_tolerance=0.1)
+
+
+def test_a_distance_takes_the_place_of_a_tolerance():
+    coarse, fine = (ball().contour(0.5, "d", distance=distance) for distance in (0.1, 0.01))
+    assert len(coarse.triangles) < len(fine.triangles)
+    assert np.abs(np.linalg.norm(fine.points, axis=1) - np.sqrt(0.5)).max() <= 0.01
+
+
+def test_exact_vertices_lie_on_the_quadratic_field():
+    exact, linear = (ball().contour(0.5, "d", precision="float64", exact_vertices=exact) for exact in (True, False))
+    off = [np.abs((surface.points**2).sum(axis=1) - 0.5).max() for surface in (exact, linear)]
+    assert off[0] < 1e-12 < 1e-3 < off[1]
+    assert (exact.triangles == linear.triangles).all()
+    session = isotet.Contour(ball(), "d", precision="float64", exact_vertices=True)
+    assert (session.contour(0.5).points == exact.points).all()
