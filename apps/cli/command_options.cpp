@@ -156,6 +156,11 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",
         "Merge points closer than this; 0: exactly equal coordinates. Refused when every cell collapses");
+    command
+        .add_choice<MergedValues>(
+            "--merge-values", grid.merge_values, {{"lowest", MergedValues::lowest}, {"mean", MergedValues::mean}},
+            "What merged points have where a field jumps: the value of the lowest-numbered, or the mean")
+        .needs(command.option("--merge-points"));
     command.add_flag("--keep-pieces", grid.keep_pieces,
                      "Keep points of different pieces apart, which are joined where their coordinates are equal");
     command.add_flag("--allow-outside", grid.allow_outside,

@@ -36,9 +36,22 @@ std::string coincident_points_note(const Grid& grid) {
                        found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "");
 }
 
+/// What is said of fields whose values differ at merged points; empty where none does.
+std::string jumps_note(const MergedPoints& merged, MergedValues values) {
+    std::string list;
+    for (const FieldJump& jump : merged.jumps)
+        if (jump.largest > 0)
+            list += fmt::format("{}'{}' by up to {}", list.empty() ? "" : ", ", jump.field, shortest(jump.largest));
+    if (list.empty()) return {};
+    return fmt::format("values of merged points differ: {}; {}", list,
+                       values == MergedValues::mean
+                           ? "they have the mean"
+                           : "they have that of the lowest number, --merge-values mean takes means");
+}
+
 /// Merges points, and notes what that did.
-Result<Grid> merged(const Grid& grid, double tolerance, Console& console, const Run& run) {
-    Result<MergedPoints> result = merge_points(grid, tolerance, run);
+Result<Grid> merged(const Grid& grid, const MergeOptions& options, Console& console, const Run& run) {
+    Result<MergedPoints> result = merge_points(grid, options, run);
     if (!result && result.error().code == ErrorCode::invalid_argument)
         return Error{result.error().code, "--merge-points: " + result.error().message};
     if (!result) return result.error();
@@ -47,7 +60,8 @@ Result<Grid> merged(const Grid& grid, double tolerance, Console& console, const 
     if (result->collapsed_cells > 0)
         console.note(fmt::format("--merge-points {} is longer than edges of {}, which collapse: there the surface is "
                                  "not that of the grid",
-                                 shortest(tolerance), counted(result->collapsed_cells, "cell")));
+                                 shortest(options.tolerance), counted(result->collapsed_cells, "cell")));
+    console.note(jumps_note(*result, options.values));
     return std::move(result->grid);
 }
 
@@ -148,7 +162,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         console.notes(result->notes);
         grid = std::move(result->grid);
     }
-    if (options_.merge_points) return merged(grid, *options_.merge_points, console, run);
+    if (options_.merge_points) return merged(grid, {*options_.merge_points, options_.merge_values}, console, run);
     console.note(coincident_points_note(grid));
     return grid;
 }

@@ -37,6 +37,7 @@ struct GridOptions {
     std::optional<double> time;
     std::optional<std::uint64_t> step;
     std::optional<double> merge_points; ///< tolerance
+    MergedValues merge_values = MergedValues::lowest;
     bool keep_pieces = false;
     bool allow_outside = false;
     std::string displace;

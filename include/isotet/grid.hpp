@@ -122,20 +122,41 @@ struct TetList {
 /// Errors       as survey()
 ISOTET_API Result<TetList> split(const Grid& grid, const Run& run = {});
 
+/// What point fields have at merged points.
+enum class MergedValues : std::uint8_t {
+    lowest, ///< the value of the lowest-numbered of them
+    mean,   ///< the mean of all that are not NaN, for fields that jump between cells
+};
+
+struct MergeOptions {
+    double tolerance = 0; ///< points at most this far apart are merged; 0: exactly equal coordinates (-0 equals +0)
+    MergedValues values = MergedValues::lowest;
+};
+
+/// The largest difference of a point field's values at points that were merged, of any component.
+struct FieldJump {
+    std::string field;
+    double largest = 0;
+};
+
 /// A grid after welding.
 struct MergedPoints {
     Grid grid;
     std::size_t merged = 0;          ///< points no longer used
-    std::size_t collapsed_cells = 0; ///< contoured cells of which two corners became the same point
+    std::size_t collapsed_cells = 0; ///< cells of which two corners became the same point
+    std::vector<FieldJump> jumps;    ///< one a point field
 };
 
-/// Welds points closer than `tolerance` (0: exactly equal coordinates; -0 equals +0): every cell then uses the
-/// lowest-numbered point of each chain of close points. Points and point fields keep their numbers and lengths.
+/// Welds points: every cell, also curved ones and polyhedra, then uses the lowest-numbered point of each chain of close
+/// points. Points and point fields keep their numbers and lengths.
 ///
-/// Errors   invalid_argument when the tolerance is negative or not finite, or so large that every contoured cell
-///          collapses; invalid_data as survey(); out_of_memory
-/// Cost     O(P log P), 24 bytes a point, and a new connectivity
-ISOTET_API Result<MergedPoints> merge_points(const Grid& grid, double tolerance, const Run& run = {});
+/// Means are computed in double in the order of point numbers, and rounded once; fields of integers become float64.
+///
+/// Guarantees   the same for any thread count
+/// Errors       invalid_argument when the tolerance is negative or not finite, or so large that every contoured cell
+///              collapses; invalid_data as survey(), or for a field whose length is not that of the points; out_of_memory
+/// Cost         O(P log P), 24 bytes a point, and a new connectivity; a pass over each point field, which means copy
+ISOTET_API Result<MergedPoints> merge_points(const Grid& grid, const MergeOptions& options = {}, const Run& run = {});
 
 /// A field to contour: one scalar per point of the grid, and how it was found.
 struct PointField {
