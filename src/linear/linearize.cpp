@@ -72,20 +72,23 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
         if (auto sound = check_high_degree(grid, *cells, progress); !sound) return sound.error();
     progress("linearize", 0.1);
 
-    std::vector<Parts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
-    core::parallel_pieces(blocks.size(), 4, progress, [&](std::size_t begin, std::size_t end) {
+    const bool narrow = grid.points.tuples() < std::uint64_t{1} << 31;
+    std::vector<KeptParts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
+    core::parallel_pieces(blocks.size(), 16, progress, [&](std::size_t begin, std::size_t end) {
         PolyhedronSplitter splitter(grid, *cells, *faces, options);
         HighDegreeSplitter by_degree(*cells);
         std::vector<std::uint64_t> corners;
+        Parts parts;
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
                 if (cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell))
-                    splitter.split(cell, blocks[b]);
+                    splitter.split(cell, parts);
                 else if (const auto what = high_degree_of(cells->type(cell), cells->corners(cell)))
-                    by_degree.split(cell, *what, blocks[b]);
-                else keep_cell(*cells, cell, corners, blocks[b]);
+                    by_degree.split(cell, *what, parts);
+                else keep_cell(*cells, cell, corners, parts);
             }
+            blocks[b] = KeptParts(parts, narrow);
         }
     });
     if (progress.cancelled()) return linearizing_cancelled();

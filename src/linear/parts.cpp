@@ -3,27 +3,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
-#include "core/buffer.hpp"
 #include "core/parallel.hpp"
 
 namespace isotet::linear {
 
-void Parts::add_cell(std::uint8_t type, std::span<const std::uint64_t> cell_corners, std::uint64_t source) {
-    corners.insert(corners.end(), cell_corners.begin(), cell_corners.end());
-    ends.push_back(corners.size());
-    types.push_back(type);
-    sources.push_back(source);
-}
-
-std::uint64_t Parts::add_point(std::span<const std::uint64_t> points, std::span<const double> weights) {
-    row_points.insert(row_points.end(), points.begin(), points.end());
-    row_weights.insert(row_weights.end(), weights.begin(), weights.end());
-    row_ends.push_back(row_points.size());
-    return derived_bit + row_ends.size() - 1;
-}
-
 namespace {
+
+constexpr std::uint32_t narrow_derived_bit = std::uint32_t{1} << 31;
 
 /// Where a block's part of the arrays begins.
 struct BlockPlace {
@@ -42,63 +30,145 @@ void add(LinearizeReport& sum, const LinearizeReport& part) {
     sum.high_degree_parts += part.high_degree_parts;
 }
 
-template <class Index>
-void join_cells(const std::vector<Parts>& blocks, const std::vector<BlockPlace>& places, std::uint64_t user_points,
-                Cells& cells) {
-    const BlockPlace& end = places.back();
-    core::Buffer<Index> connectivity(end.corner), offsets(end.cell + 1);
-    core::Buffer<std::uint8_t> types(end.cell);
-    offsets[0] = 0;
-    core::parallel_each(blocks.size(), 1, [&](std::size_t b) {
-        const Parts& block = blocks[b];
-        const BlockPlace& at = places[b];
-        for (std::size_t i = 0; i < block.corners.size(); ++i) {
-            const std::uint64_t corner = block.corners[i];
-            connectivity[at.corner + i] = static_cast<Index>(
-                corner & Parts::derived_bit ? user_points + at.row + (corner - Parts::derived_bit) : corner);
-        }
-        for (std::size_t i = 0; i < block.ends.size(); ++i)
-            offsets[at.cell + i + 1] = static_cast<Index>(at.corner + block.ends[i]);
-        std::ranges::copy(block.types, types.begin() + at.cell);
-    });
-    cells.connectivity = std::move(connectivity).to_array();
-    cells.offsets = std::move(offsets).to_array();
-    cells.types = std::move(types).to_array();
+template <class T>
+core::Buffer<T> take(std::vector<T>& from) {
+    core::Buffer<T> out(from.size());
+    std::ranges::copy(from, out.begin());
+    from.clear();
+    return out;
 }
 
 } // namespace
 
-LinearGrid joined(std::vector<Parts>& blocks, std::uint64_t user_points) {
-    LinearGrid out;
-    std::vector<BlockPlace> places(blocks.size() + 1);
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        const BlockPlace& at = places[b];
-        places[b + 1] = {at.cell + blocks[b].types.size(), at.corner + blocks[b].corners.size(),
-                         at.row + blocks[b].row_ends.size(), at.term + blocks[b].row_points.size()};
-        add(out.report, blocks[b].report);
+void Parts::add_cell(std::uint8_t type, std::span<const std::uint64_t> corners, std::uint64_t source) {
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    corner_counts_.push_back(static_cast<std::uint32_t>(corners.size()));
+    types_.push_back(type);
+    if (sources_.empty() || sources_.back() != source) {
+        sources_.push_back(source);
+        part_counts_.push_back(0);
     }
-    const BlockPlace& end = places.back();
-    constexpr std::uint64_t narrow = std::numeric_limits<std::int32_t>::max();
-    if (user_points + end.row <= narrow && end.corner <= narrow)
-        join_cells<std::int32_t>(blocks, places, user_points, out.grid.cells);
-    else join_cells<std::int64_t>(blocks, places, user_points, out.grid.cells);
+    ++part_counts_.back();
+}
 
-    core::Buffer<std::uint64_t> sources(end.cell), first(end.row + 1), points(end.term);
-    core::Buffer<double> weights(end.term);
-    first[0] = 0;
-    core::parallel_each(blocks.size(), 1, [&](std::size_t b) {
-        const Parts& block = blocks[b];
-        const BlockPlace& at = places[b];
-        std::ranges::copy(block.sources, sources.begin() + at.cell);
-        for (std::size_t i = 0; i < block.row_ends.size(); ++i) first[at.row + i + 1] = at.term + block.row_ends[i];
-        std::ranges::copy(block.row_points, points.begin() + at.term);
-        std::ranges::copy(block.row_weights, weights.begin() + at.term);
-        blocks[b] = {};
+std::uint64_t Parts::add_point(std::span<const std::uint64_t> points, std::span<const double> weights) {
+    term_points_.insert(term_points_.end(), points.begin(), points.end());
+    term_weights_.insert(term_weights_.end(), weights.begin(), weights.end());
+    term_counts_.push_back(static_cast<std::uint32_t>(points.size()));
+    return derived_bit + term_counts_.size() - 1;
+}
+
+KeptParts::KeptParts(Parts& parts, bool narrow)
+    : corner_counts_(take(parts.corner_counts_)),
+      part_counts_(take(parts.part_counts_)),
+      term_counts_(take(parts.term_counts_)),
+      types_(take(parts.types_)),
+      sources_(take(parts.sources_)),
+      term_points_(take(parts.term_points_)),
+      term_weights_(take(parts.term_weights_)),
+      report_(std::exchange(parts.report, {})) {
+    if (!narrow) {
+        wide_corners_ = take(parts.corners_);
+        return;
+    }
+    narrow_corners_ = core::Buffer<std::uint32_t>(parts.corners_.size());
+    std::ranges::transform(parts.corners_, narrow_corners_.begin(), [](std::uint64_t corner) {
+        const auto low = static_cast<std::uint32_t>(corner);
+        return corner & Parts::derived_bit ? low | narrow_derived_bit : low;
     });
-    out.source_cells = std::move(sources).to_array();
-    out.derived = {std::move(first).to_array(), std::move(points).to_array(), std::move(weights).to_array()};
-    out.user_points = user_points;
-    return out;
+    parts.corners_.clear();
+}
+
+class PartsJoiner {
+public:
+    PartsJoiner(std::vector<KeptParts>& blocks, std::uint64_t user_points)
+        : blocks_(blocks), user_points_(user_points), places_(blocks.size() + 1) {
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const KeptParts& block = blocks[b];
+            const BlockPlace& at = places_[b];
+            places_[b + 1] = {at.cell + block.types_.size(),
+                              at.corner + block.narrow_corners_.size() + block.wide_corners_.size(),
+                              at.row + block.term_counts_.size(), at.term + block.term_points_.size()};
+        }
+    }
+
+    LinearGrid join() {
+        LinearGrid out;
+        for (const KeptParts& block : blocks_) add(out.report, block.report_);
+        constexpr std::uint64_t narrow = std::numeric_limits<std::int32_t>::max();
+        if (user_points_ + end().row <= narrow && end().corner <= narrow) join_cells<std::int32_t>(out.grid.cells);
+        else join_cells<std::int64_t>(out.grid.cells);
+        join_sources_and_rows(out);
+        out.user_points = user_points_;
+        return out;
+    }
+
+private:
+    const BlockPlace& end() const { return places_.back(); }
+
+    /// A block's corners by their numbers in the whole.
+    template <class Index>
+    void write_corners(const KeptParts& block, const BlockPlace& at, Index* to) const {
+        const std::uint64_t first_row = user_points_ + at.row;
+        for (const std::uint32_t corner : block.narrow_corners_)
+            *to++ =
+                static_cast<Index>(corner & narrow_derived_bit ? first_row + (corner - narrow_derived_bit) : corner);
+        for (const std::uint64_t corner : block.wide_corners_)
+            *to++ =
+                static_cast<Index>(corner & Parts::derived_bit ? first_row + (corner - Parts::derived_bit) : corner);
+    }
+
+    template <class Index>
+    void join_cells(Cells& cells) {
+        core::Buffer<Index> connectivity(end().corner), offsets(end().cell + 1);
+        core::Buffer<std::uint8_t> types(end().cell);
+        offsets[0] = 0;
+        core::parallel_each(blocks_.size(), 1, [&](std::size_t b) {
+            KeptParts& block = blocks_[b];
+            const BlockPlace& at = places_[b];
+            write_corners(block, at, connectivity.data() + at.corner);
+            std::uint64_t sum = at.corner;
+            for (std::size_t i = 0; i < block.corner_counts_.size(); ++i)
+                offsets[at.cell + i + 1] = static_cast<Index>(sum += block.corner_counts_[i]);
+            std::ranges::copy(block.types_, types.begin() + at.cell);
+            block.narrow_corners_.release();
+            block.wide_corners_.release();
+            block.corner_counts_.release();
+            block.types_.release();
+        });
+        cells.connectivity = std::move(connectivity).to_array();
+        cells.offsets = std::move(offsets).to_array();
+        cells.types = std::move(types).to_array();
+    }
+
+    void join_sources_and_rows(LinearGrid& out) {
+        core::Buffer<std::uint64_t> sources(end().cell), first(end().row + 1), points(end().term);
+        core::Buffer<double> weights(end().term);
+        first[0] = 0;
+        core::parallel_each(blocks_.size(), 1, [&](std::size_t b) {
+            const KeptParts& block = blocks_[b];
+            const BlockPlace& at = places_[b];
+            std::uint64_t* source = sources.data() + at.cell;
+            for (std::size_t i = 0; i < block.sources_.size(); ++i)
+                source = std::fill_n(source, block.part_counts_[i], block.sources_[i]);
+            std::uint64_t sum = at.term;
+            for (std::size_t i = 0; i < block.term_counts_.size(); ++i)
+                first[at.row + i + 1] = sum += block.term_counts_[i];
+            std::ranges::copy(block.term_points_, points.begin() + at.term);
+            std::ranges::copy(block.term_weights_, weights.begin() + at.term);
+            blocks_[b] = {};
+        });
+        out.source_cells = std::move(sources).to_array();
+        out.derived = {std::move(first).to_array(), std::move(points).to_array(), std::move(weights).to_array()};
+    }
+
+    std::vector<KeptParts>& blocks_;
+    std::uint64_t user_points_;
+    std::vector<BlockPlace> places_;
+};
+
+LinearGrid joined(std::vector<KeptParts>& blocks, std::uint64_t user_points) {
+    return PartsJoiner(blocks, user_points).join();
 }
 
 } // namespace isotet::linear

@@ -8,24 +8,58 @@
 
 #include <isotet/linear_cells.hpp>
 
+#include "core/buffer.hpp"
+
 namespace isotet::linear {
 
-/// What a block of cells becomes. A corner with the highest bit set is derived point `corner - derived_bit` of the block.
-struct Parts {
+/// What a block of cells becomes, while it grows. A corner with the highest bit set is derived point `corner - derived_bit`
+/// of the block.
+class Parts {
+public:
     static constexpr std::uint64_t derived_bit = std::uint64_t{1} << 63;
 
-    std::vector<std::uint64_t> corners, ends, sources; ///< of cells
-    std::vector<std::uint8_t> types;
-    std::vector<std::uint64_t> row_ends, row_points; ///< of derived points
-    std::vector<double> row_weights;
     LinearizeReport report;
 
-    void add_cell(std::uint8_t type, std::span<const std::uint64_t> cell_corners, std::uint64_t source);
+    /// `source`   the user's cell, ascending
+    void add_cell(std::uint8_t type, std::span<const std::uint64_t> corners, std::uint64_t source);
     /// Returns the corner that means it.
     std::uint64_t add_point(std::span<const std::uint64_t> points, std::span<const double> weights);
+
+private:
+    friend class KeptParts;
+
+    std::vector<std::uint64_t> corners_;
+    std::vector<std::uint32_t> corner_counts_; ///< of cells
+    std::vector<std::uint8_t> types_;
+    std::vector<std::uint64_t> sources_;     ///< users' cells
+    std::vector<std::uint32_t> part_counts_; ///< and how many cells each became
+    std::vector<std::uint32_t> term_counts_; ///< of derived points
+    std::vector<std::uint64_t> term_points_;
+    std::vector<double> term_weights_;
+};
+
+/// The same in arrays of its size.
+class KeptParts {
+public:
+    KeptParts() = default;
+    /// Empties `parts`, which keep their memory for the next block.
+    ///
+    /// `narrow`   corners are kept in 32 bits: there are fewer points than 2^31
+    KeptParts(Parts& parts, bool narrow);
+
+private:
+    friend class PartsJoiner;
+
+    core::Buffer<std::uint32_t> narrow_corners_; ///< with the highest bit likewise
+    core::Buffer<std::uint64_t> wide_corners_;
+    core::Buffer<std::uint32_t> corner_counts_, part_counts_, term_counts_;
+    core::Buffer<std::uint8_t> types_;
+    core::Buffer<std::uint64_t> sources_, term_points_;
+    core::Buffer<double> term_weights_;
+    LinearizeReport report_;
 };
 
 /// The blocks in their order; takes them apart. Sets cells, points' weights, sources and the report, not the points.
-LinearGrid joined(std::vector<Parts>& blocks, std::uint64_t user_points);
+LinearGrid joined(std::vector<KeptParts>& blocks, std::uint64_t user_points);
 
 } // namespace isotet::linear
