@@ -3,7 +3,8 @@
 
     python3 tests/corruption/make_samples.py tests/corruption/samples
 
-Needs VTK's Python package, which writes VTK's own formats: 9.4 or later for VTKHDF.
+Needs VTK's Python package, which writes VTK's own formats: 9.4 or later for VTKHDF. Polyhedra in
+other formats are written by make_polyhedral_samples.cpp.
 """
 import os
 import struct

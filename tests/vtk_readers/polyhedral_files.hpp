@@ -86,6 +86,31 @@ inline std::vector<std::int64_t> corners_of_cell(const Grid& grid, std::size_t c
     return out;
 }
 
+/// Hexahedra with hanging points, as polyhedra too.
+inline Grid all_polyhedra(const Grid& grid) {
+    const auto reader = core::FaceReader::open(grid.cells).value();
+    PolyhedronList list;
+    for (std::size_t cell = 0; cell < grid.cells.count(); ++cell) {
+        CellFaces faces;
+        const std::vector<std::int64_t> corners = corners_of_cell(grid, cell);
+        if (reader.begin(cell) == reader.end(cell)) {
+            for (const core::CellFace& face : core::shape_of(core::CellKind::hexahedron).faces()) {
+                FaceLoop& loop = faces.emplace_back();
+                for (const std::uint8_t corner : face.all()) loop.push_back(corners[corner]);
+            }
+        } else {
+            for (std::uint64_t at = reader.begin(cell) + 1; at < reader.end(cell);) {
+                FaceLoop& loop = faces.emplace_back(reader.at(at++));
+                for (auto& point : loop) point = static_cast<std::int64_t>(reader.at(at++));
+            }
+        }
+        list.add(faces);
+    }
+    Grid out = grid;
+    out.cells = list.cells();
+    return out;
+}
+
 inline ContourResult surface_for_files(const Grid& grid, const Field& field, double isovalue) {
     return Contour::create({grid, {field.name, field.values, false, {}}, {}, {}},
                            {.edge_ends = true, .source_cells = true})

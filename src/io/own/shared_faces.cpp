@@ -1,23 +1,28 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/own/shared_faces.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "core/buffer.hpp"
+#include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "io/own/face_streams.hpp"
 
 namespace isotet::io {
 namespace {
 
 constexpr std::size_t faces_grain = std::size_t{1} << 14U;
+constexpr std::size_t cells_grain = std::size_t{1} << 10U;
 
 Result<void> check_index_array(const Array& array, const char* what) {
     if (array.empty()) return {};
@@ -107,15 +112,14 @@ Array make_stream(const FacePlan& plan, std::uint64_t size) {
     return std::move(stream).to_array();
 }
 
-} // namespace
-
-Result<void> write_out_faces(const SharedFaces& shared, Cells& cells) {
+Result<FacePlan> make_plan(const SharedFaces& shared) {
     for (const auto& [array, what] :
          {std::pair(&shared.points, "points of faces"), std::pair(&shared.face_offsets, "offsets of faces"),
           std::pair(&shared.faces, "faces of cells"), std::pair(&shared.cell_offsets, "offsets of cells' faces")})
-        if (auto fits = check_index_array(*array, what); !fits) return fits;
-    if (auto fits = check_ranges(shared.face_offsets, shared.points.size(), "face", "points"); !fits) return fits;
-    if (auto fits = check_ranges(shared.cell_offsets, shared.faces.size(), "cell", "faces"); !fits) return fits;
+        if (auto fits = check_index_array(*array, what); !fits) return fits.error();
+    if (auto fits = check_ranges(shared.face_offsets, shared.points.size(), "face", "points"); !fits)
+        return fits.error();
+    if (auto fits = check_ranges(shared.cell_offsets, shared.faces.size(), "cell", "faces"); !fits) return fits.error();
     FacePlan plan{core::IndexColumn(shared.points),
                   core::IndexColumn(shared.face_offsets),
                   core::IndexColumn(shared.faces),
@@ -126,12 +130,70 @@ Result<void> write_out_faces(const SharedFaces& shared, Cells& cells) {
     if (wrong < shared.faces.size())
         return invalid_data(fmt::format("a polyhedron has face {}, but there are {} faces",
                                         static_cast<std::int64_t>(plan.faces[wrong]), count));
-    const auto size = measure_parts(shared, plan);
-    if (!size) return size.error();
+    if (auto measured = measure_parts(shared, plan); !measured) return measured.error();
+    return plan;
+}
+
+/// The points of a cell's faces, each once, ascending.
+void list_points(const core::FaceReader& faces, std::size_t cell, std::vector<std::int64_t>& points) {
+    points.clear();
+    for (std::uint64_t at = faces.begin(cell) + 1; at < faces.end(cell);)
+        for (std::uint64_t left = faces.at(at++); left > 0; --left)
+            points.push_back(static_cast<std::int64_t>(faces.at(at++)));
+    std::ranges::sort(points);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+} // namespace
+
+Result<void> check_shared_faces(const SharedFaces& shared) {
+    if (auto plan = make_plan(shared); !plan) return plan.error();
+    return {};
+}
+
+Result<void> write_out_faces(const SharedFaces& shared, Cells& cells) {
+    auto plan = make_plan(shared);
+    if (!plan) return plan.error();
+    const auto size = static_cast<std::uint64_t>(plan->places[plan->places.size() - 1]);
     const bool narrow =
-        shared.points.type() == ScalarType::int32 && *size <= std::uint64_t{std::numeric_limits<std::int32_t>::max()};
-    cells.faces = narrow ? make_stream<std::int32_t>(plan, *size) : make_stream<std::int64_t>(plan, *size);
-    cells.face_offsets = std::move(plan.places).to_array();
+        shared.points.type() == ScalarType::int32 && size <= std::uint64_t{std::numeric_limits<std::int32_t>::max()};
+    cells.faces = narrow ? make_stream<std::int32_t>(*plan, size) : make_stream<std::int64_t>(*plan, size);
+    cells.face_offsets = std::move(plan->places).to_array();
+    return {};
+}
+
+Result<void> list_points_of_faces(std::uint64_t points, Cells& cells) {
+    const std::size_t count = cells.face_offsets.empty() ? 0 : cells.face_offsets.size() - 1;
+    cells.types = Array::own(std::vector<std::uint8_t>(count, core::polyhedron_type));
+    cells.offsets = cells.face_offsets; // so that they can be counted
+    const auto faces = core::FaceReader::open(cells);
+    if (!faces) return faces.error();
+    if (auto sound = check_face_streams(cells, points); !sound) return sound;
+    core::Buffer<std::int64_t> offsets(count + 1);
+    offsets[0] = 0;
+    core::parallel_ranges(count, cells_grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::int64_t> own;
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            list_points(*faces, cell, own);
+            offsets[cell + 1] = static_cast<std::int64_t>(own.size());
+        }
+    });
+    for (std::size_t cell = 0; cell < count; ++cell) offsets[cell + 1] += offsets[cell];
+    const auto fill = [&]<class Index>(core::Buffer<Index> connectivity) {
+        core::parallel_ranges(count, cells_grain, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::int64_t> own;
+            for (std::size_t cell = begin; cell < end; ++cell) {
+                list_points(*faces, cell, own);
+                for (std::size_t i = 0; i < own.size(); ++i)
+                    connectivity[static_cast<std::size_t>(offsets[cell]) + i] = static_cast<Index>(own[i]);
+            }
+        });
+        cells.connectivity = std::move(connectivity).to_array();
+    };
+    const auto size = static_cast<std::size_t>(offsets[count]);
+    if (cells.faces.type() == ScalarType::int32) fill(core::Buffer<std::int32_t>(size));
+    else fill(core::Buffer<std::int64_t>(size));
+    cells.offsets = std::move(offsets).to_array();
     return {};
 }
 

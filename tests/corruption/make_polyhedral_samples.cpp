@@ -1,0 +1,19 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Writes the samples of polyhedra in formats for which VTK has no writer that works: make_polyhedral_samples FOLDER
+#include <cstdio>
+#include <string>
+
+#include "vtk_readers/polyhedral_cgns.hpp"
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::puts("usage: make_polyhedral_samples FOLDER");
+        return 2;
+    }
+    using namespace isotet::test;
+    const std::string folder = std::string(argv[1]) + "/";
+    const isotet::Grid all = all_polyhedra(octree_for_files());
+    write_cgns(all, {}, folder + "cells.cgns");
+    write_cgns(all, {.hdf5 = true, .face_sections = 2, .parents = true}, folder + "parents_hdf5.cgns");
+    return testing::Test::HasFailure() ? 1 : 0;
+}
