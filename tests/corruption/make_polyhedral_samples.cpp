@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <string>
 
-#include "vtk_readers/polyhedral_cgns.hpp"
+#include "vtk_readers/polyhedral_exodus.hpp"
+
+#include "vtk_readers/polyhedral_cgns.hpp" // last: its macros rename common words
 
 int main(int argc, char** argv) {
     if (argc != 2) {
@@ -15,5 +17,7 @@ int main(int argc, char** argv) {
     const isotet::Grid all = all_polyhedra(octree_for_files());
     write_cgns(all, {}, folder + "cells.cgns");
     write_cgns(all, {.hdf5 = true, .face_sections = 2, .parents = true}, folder + "parents_hdf5.cgns");
+    write_polyhedral_exodus(octree_for_files(), folder + "blocks.exo");
+    write_polyhedral_exodus(octree_for_files(), folder + "blocks_hdf5.exo", EX_NETCDF4);
     return testing::Test::HasFailure() ? 1 : 0;
 }

@@ -134,15 +134,32 @@ Result<FacePlan> make_plan(const SharedFaces& shared) {
     return plan;
 }
 
-/// The points of a cell's faces, each once, ascending.
-void list_points(const core::FaceReader& faces, std::size_t cell, std::vector<std::int64_t>& points) {
-    points.clear();
-    for (std::uint64_t at = faces.begin(cell) + 1; at < faces.end(cell);)
-        for (std::uint64_t left = faces.at(at++); left > 0; --left)
-            points.push_back(static_cast<std::int64_t>(faces.at(at++)));
-    std::ranges::sort(points);
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-}
+/// The corners of a cell: of one with faces their points, each once, ascending.
+class CornerList {
+public:
+    CornerList(const Cells& cells, const core::FaceReader& faces)
+        : faces_(faces), connectivity_(cells.connectivity), offsets_(cells.offsets) {}
+
+    const std::vector<std::int64_t>& of(std::size_t cell) {
+        corners_.clear();
+        if (faces_.begin(cell) == faces_.end(cell)) {
+            for (std::uint64_t i = offsets_[cell]; i < offsets_[cell + 1]; ++i)
+                corners_.push_back(static_cast<std::int64_t>(connectivity_[i]));
+            return corners_;
+        }
+        for (std::uint64_t at = faces_.begin(cell) + 1; at < faces_.end(cell);)
+            for (std::uint64_t left = faces_.at(at++); left > 0; --left)
+                corners_.push_back(static_cast<std::int64_t>(faces_.at(at++)));
+        std::ranges::sort(corners_);
+        corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+        return corners_;
+    }
+
+private:
+    const core::FaceReader& faces_;
+    core::IndexColumn connectivity_, offsets_;
+    std::vector<std::int64_t> corners_;
+};
 
 } // namespace
 
@@ -163,35 +180,32 @@ Result<void> write_out_faces(const SharedFaces& shared, Cells& cells) {
 }
 
 Result<void> list_points_of_faces(std::uint64_t points, Cells& cells) {
-    const std::size_t count = cells.face_offsets.empty() ? 0 : cells.face_offsets.size() - 1;
-    cells.types = Array::own(std::vector<std::uint8_t>(count, core::polyhedron_type));
-    cells.offsets = cells.face_offsets; // so that they can be counted
     const auto faces = core::FaceReader::open(cells);
     if (!faces) return faces.error();
+    if (!faces->has_faces()) return {};
     if (auto sound = check_face_streams(cells, points); !sound) return sound;
+    if (auto sound = check_ranges(cells.offsets, cells.connectivity.size(), "cell", "corners"); !sound) return sound;
+    const std::size_t count = cells.count();
     core::Buffer<std::int64_t> offsets(count + 1);
     offsets[0] = 0;
     core::parallel_ranges(count, cells_grain, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::int64_t> own;
-        for (std::size_t cell = begin; cell < end; ++cell) {
-            list_points(*faces, cell, own);
-            offsets[cell + 1] = static_cast<std::int64_t>(own.size());
-        }
+        CornerList corners(cells, *faces);
+        for (std::size_t cell = begin; cell < end; ++cell)
+            offsets[cell + 1] = static_cast<std::int64_t>(corners.of(cell).size());
     });
     for (std::size_t cell = 0; cell < count; ++cell) offsets[cell + 1] += offsets[cell];
     const auto fill = [&]<class Index>(core::Buffer<Index> connectivity) {
         core::parallel_ranges(count, cells_grain, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::int64_t> own;
+            CornerList corners(cells, *faces);
             for (std::size_t cell = begin; cell < end; ++cell) {
-                list_points(*faces, cell, own);
-                for (std::size_t i = 0; i < own.size(); ++i)
-                    connectivity[static_cast<std::size_t>(offsets[cell]) + i] = static_cast<Index>(own[i]);
+                Index* to = connectivity.data() + offsets[cell];
+                for (const std::int64_t corner : corners.of(cell)) *to++ = static_cast<Index>(corner);
             }
         });
         cells.connectivity = std::move(connectivity).to_array();
     };
     const auto size = static_cast<std::size_t>(offsets[count]);
-    if (cells.faces.type() == ScalarType::int32) fill(core::Buffer<std::int32_t>(size));
+    if (points <= std::uint64_t{std::numeric_limits<std::int32_t>::max()}) fill(core::Buffer<std::int32_t>(size));
     else fill(core::Buffer<std::int64_t>(size));
     cells.offsets = std::move(offsets).to_array();
     return {};

@@ -28,10 +28,10 @@ ISOTET_API Result<void> check_shared_faces(const SharedFaces& shared);
 /// Cost     O(n), all threads
 ISOTET_API Result<void> write_out_faces(const SharedFaces& shared, Cells& cells);
 
-/// Gives polyhedra the points of their faces, ascending, as connectivity, and offsets and types. All cells must have faces
-/// that were written out.
+/// Gives cells with faces the points of these as corners, ascending, in place of those they have. Types and offsets must be
+/// there.
 ///
-/// Errors   invalid_data: as core::fault_of_faces()
+/// Errors   invalid_data: as core::fault_of_faces(); offsets that fall or leave the connectivity
 /// Cost     O(n log n) in the size of a cell, all threads
 ISOTET_API Result<void> list_points_of_faces(std::uint64_t points, Cells& cells);
 

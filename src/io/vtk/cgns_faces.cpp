@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "core/cell_faces.hpp"
 #include "core/errors.hpp"
 #include "io/own/escape.hpp"
 #include "io/own/loaded.hpp"
@@ -240,6 +241,9 @@ Result<Cells> ZoneReader::cells_of_parents() const {
     shared.faces = Array::own(std::move(faces));
     shared.cell_offsets = Array::own(std::move(offsets));
     Cells cells;
+    cells.types = Array::own(std::vector<std::uint8_t>(static_cast<std::size_t>(most) + 1, core::polyhedron_type));
+    cells.offsets = Array::own(Numbers(static_cast<std::size_t>(most) + 2, 0));
+    cells.connectivity = Array::own(Numbers());
     if (auto done = write_out_faces(shared, cells); !done) return done.error();
     if (auto done = list_points_of_faces(static_cast<std::uint64_t>(points_), cells); !done) return done.error();
     return cells;
