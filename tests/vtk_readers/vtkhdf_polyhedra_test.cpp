@@ -78,17 +78,16 @@ struct HdfColumns {
         integers["NumberOfPolyhedronToFaceIds"].push_back(static_cast<std::int64_t>(to_faces.size() - first_face));
     }
 
-    void write(Hdf5Writer& file) const {
-        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
-            file.group(name);
-        file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{2, 5});
-        file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
-        file.data("/VTKHDF/Points", points, {points.size() / 3, 3});
-        file.data("/VTKHDF/Types", types, {types.size()});
-        for (const auto& [name, numbers] : integers) file.data("/VTKHDF/" + name, numbers, {numbers.size()});
-        file.data("/VTKHDF/PointData/f", values[0], {values[0].size()});
-        file.data("/VTKHDF/PointData/g", values[1], {values[1].size()});
-        file.data("/VTKHDF/CellData/c", cell_values, {cell_values.size()});
+    void write(Hdf5Writer& file, const std::string& group = "/VTKHDF") const {
+        for (const char* name : {"", "/PointData", "/CellData", "/FieldData"}) file.group(group + name);
+        file.attribute(group, "Version", std::vector<std::int64_t>{2, 5});
+        file.attribute(group, "Type", "UnstructuredGrid");
+        file.data(group + "/Points", points, {points.size() / 3, 3});
+        file.data(group + "/Types", types, {types.size()});
+        for (const auto& [name, numbers] : integers) file.data(group + "/" + name, numbers, {numbers.size()});
+        file.data(group + "/PointData/f", values[0], {values[0].size()});
+        file.data(group + "/PointData/g", values[1], {values[1].size()});
+        file.data(group + "/CellData/c", cell_values, {cell_values.size()});
     }
 };
 
@@ -202,6 +201,58 @@ TEST(VtkhdfPolyhedra, OfStepsAreThoseOfTheirPartitions) {
             EXPECT_EQ(result->grid.cells.count(), (step == 0 ? first : second).cells.count());
             expect_sound_polyhedra(result->grid);
         }
+    }
+}
+
+/// Three data sets, whose order is that of their indices, and one of another type.
+std::string write_collection(const TemporaryFolder& folder, const Grid& sample, const char* type) {
+    const std::size_t cells = sample.cells.count();
+    Hdf5Writer file(folder.file("a.vtkhdf"));
+    file.group("/VTKHDF");
+    file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{2, 5});
+    file.attribute("/VTKHDF", "Type", type);
+    const std::vector<std::string> names{"rock", "fault", "ore body"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        HdfColumns columns;
+        columns.add(sample, cells * i / 3, cells * (i + 1) / 3);
+        columns.write(file, "/VTKHDF/" + names[i]);
+        file.attribute("/VTKHDF/" + names[i], "Index", std::vector<std::int64_t>{static_cast<std::int64_t>(i)});
+    }
+    file.group("/VTKHDF/surface");
+    file.attribute("/VTKHDF/surface", "Type", "PolyData");
+    file.group("/VTKHDF/Assembly");
+    return folder.file("a.vtkhdf");
+}
+
+TEST(VtkhdfCollections, AreBlocksThatFitAndCanBeChosen) {
+    const Grid sample = octree_for_files();
+    const std::size_t cells = sample.cells.count();
+    for (const char* type : {"PartitionedDataSetCollection", "MultiBlockDataSet"}) {
+        const TemporaryFolder folder;
+        const std::string path = write_collection(folder, sample, type);
+        const auto info = inspect(path);
+        ASSERT_TRUE(info) << info.error().message;
+        ASSERT_EQ(info->blocks.size(), 3u);
+        EXPECT_EQ(info->blocks[2].name, "ore body");
+        EXPECT_EQ(info->blocks[2].number, 3);
+        EXPECT_EQ(info->blocks[1].cells, cells * 2 / 3 - cells / 3);
+        const auto all = read(path);
+        ASSERT_TRUE(all) << all.error().message;
+        EXPECT_EQ(all->grid.cells.count(), cells);
+        expect_sound_polyhedra(all->grid);
+        ASSERT_FALSE(all->notes.empty());
+        EXPECT_NE(all->notes[0].find("\"surface\" is left out: it is of type PolyData"), std::string::npos)
+            << all->notes[0];
+        ReadOptions options;
+        options.blocks = {"fault", "3"};
+        const auto two = read(path, options);
+        ASSERT_TRUE(two) << two.error().message;
+        EXPECT_EQ(two->grid.cells.count(), cells - cells / 3);
+        options.blocks = {"gas"};
+        const auto none = read(path, options);
+        ASSERT_FALSE(none);
+        EXPECT_NE(none.error().message.find("which has 1 'rock', 2 'fault', 3 'ore body'"), std::string::npos)
+            << none.error().message;
     }
 }
 

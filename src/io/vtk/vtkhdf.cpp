@@ -1,8 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTKHDF: unstructured grids, versions 1 and 2, partitions and time steps by ourselves; image data by VTK's reader.
+// VTKHDF: unstructured grids, versions 1 and 2, alone or in collections, by ourselves; image data by VTK's reader.
+#include <algorithm>
+#include <limits>
+
+#include <fmt/core.h>
 #include <vtkHDFReader.h>
 #include <vtkNew.h>
 
+#include "io/own/block_choice.hpp"
+#include "io/own/escape.hpp"
 #include "io/vtk/hdf5_array.hpp"
 #include "io/vtk/hdf5_walk.hpp"
 #include "io/vtk/length_check.hpp"
@@ -31,6 +37,57 @@ Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, De
     return loaded;
 }
 
+/// The unstructured grids of a collection, in its order.
+std::vector<std::string> grids_of(const std::string& path, std::vector<std::string>& notes) {
+    std::vector<std::pair<std::int64_t, std::string>> found;
+    for (const std::string& name : groups_of(path, "/VTKHDF")) {
+        const std::string type = text_attribute(path, "/VTKHDF/" + name, "Type");
+        const auto index = integer_attribute(path, "/VTKHDF/" + name, "Index");
+        if (type == "UnstructuredGrid")
+            found.emplace_back(index.value_or(std::numeric_limits<std::int64_t>::max()), name);
+        else if (!type.empty())
+            notes.push_back(fmt::format("\"{}\" is left out: it is of type {}, not UnstructuredGrid", escaped(name),
+                                        escaped(type)));
+    }
+    std::ranges::sort(found);
+    std::vector<std::string> names;
+    for (auto& [index, name] : found) names.push_back(std::move(name));
+    return names;
+}
+
+/// A file of several grids, which are blocks.
+Result<Loaded> load_collection(const std::string& path, const ReadOptions& options, Depth depth) {
+    const auto rows = Hdf5Rows::open(path);
+    if (!rows) return rows.error();
+    Loaded loaded;
+    const std::vector<std::string> names = grids_of(path, loaded.notes);
+    std::vector<HdfGrid> grids;
+    for (const std::string& name : names) {
+        const HdfGrid& grid = grids.emplace_back(path, *rows, "/VTKHDF/" + name + "/");
+        if (auto done = grid.announce_all(loaded.info); !done) return done.error();
+    }
+    if (grids.empty()) return broken(path, "it has no unstructured grid");
+    if (depth == Depth::arrays) {
+        const auto step = choose_step(loaded.info, options);
+        if (!step) return step.error();
+        loaded.step = *step;
+    }
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        const auto cells = grids[i].count_cells(loaded.step);
+        if (!cells) return cells.error();
+        loaded.info.blocks.push_back({static_cast<std::int64_t>(i + 1), names[i], "data set", *cells});
+    }
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    for (std::size_t i = 0; i < grids.size() && depth == Depth::arrays; ++i) {
+        if (!(*chosen)[i]) continue;
+        auto pieces = grids[i].load(options, loaded.step, names[i] + ", ");
+        if (!pieces) return pieces.error();
+        for (Piece& piece : *pieces) loaded.pieces.push_back(std::move(piece));
+    }
+    return loaded;
+}
+
 Result<Loaded> load_by_vtk(const std::string& path, const ReadOptions& options, Depth depth) {
     vtkNew<vtkHDFReader> reader;
     reader->SetFileName(path.c_str());
@@ -51,7 +108,10 @@ Result<Loaded> load_by_vtk(const std::string& path, const ReadOptions& options, 
 Result<Loaded> load_vtkhdf(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
-    if (text_attribute(path, "/VTKHDF", "Type") != "UnstructuredGrid") return load_by_vtk(path, options, depth);
+    const std::string type = text_attribute(path, "/VTKHDF", "Type");
+    if (type == "PartitionedDataSetCollection" || type == "MultiBlockDataSet")
+        return load_collection(path, options, depth);
+    if (type != "UnstructuredGrid") return load_by_vtk(path, options, depth);
     return load_grid(path, options, depth);
 }
 
