@@ -3,7 +3,8 @@
 
     python3 tests/corruption/make_samples.py tests/corruption/samples
 
-Needs VTK's Python package, which writes VTK's own formats.
+Needs VTK's Python package, which writes VTK's own formats: 9.4 or later for VTKHDF. Polyhedra in
+other formats are written by make_polyhedral_samples.cpp.
 """
 import os
 import struct
@@ -110,6 +111,63 @@ def write_ensight(folder):
             file.write(content)
 
 
+HEX_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]  # corners by bits
+
+
+def polyhedra():
+    """Points and, for each cell, its faces: the box of cubes, one of which is cut off at a corner."""
+    n = SIDE + 1
+    points = [(i, j, k) for k in range(n) for j in range(n) for i in range(n)]
+    cells = []
+    for k in range(SIDE):
+        for j in range(SIDE):
+            for i in range(SIDE):
+                corner = [i + a + n * (j + b + n * (k + c)) for c in (0, 1) for b in (0, 1) for a in (0, 1)]
+                cells.append([[corner[at] for at in face] for face in HEX_FACES])
+    first = len(points)
+    points += [(0.5, 0, 0), (0, 0.5, 0), (0, 0, 0.5)]
+    cut = {1: first, n: first + 1, n * n: first + 2}
+    faces = []
+    for face in cells[0]:
+        if 0 not in face:
+            faces.append(face)
+            continue
+        at = face.index(0)
+        faces.append([cut[face[at - 1]], cut[face[(at + 1) % 4]], *face[at + 1:], *face[:at]])
+    cells[0] = faces + [[first, first + 1, first + 2]]
+    return points, cells
+
+
+def vtk_polyhedra(first, end):
+    points, cells = polyhedra()
+    grid = vtk.vtkUnstructuredGrid()
+    places = vtk.vtkPoints()
+    for point in points:
+        places.InsertNextPoint(point)
+    grid.SetPoints(places)
+    for cell in cells[first:end]:
+        stream = vtk.vtkIdList()
+        for number in [len(cell)] + [number for face in cell for number in [len(face), *face]]:
+            stream.InsertNextId(number)
+        grid.InsertNextCell(vtk.VTK_POLYHEDRON, stream)
+    add_fields(grid)
+    return grid
+
+
+def write_vtkhdf_polyhedra(path):
+    parts = vtk.vtkPartitionedDataSet()
+    half = SIDE ** 3 // 2
+    for i, (first, end) in enumerate([(0, half), (half, SIDE ** 3)]):
+        parts.SetPartition(i, vtk_polyhedra(first, end))
+    writer = vtk.vtkHDFWriter()
+    writer.SetInputData(parts)
+    writer.SetFileName(path)
+    writer.SetChunkSize(64)
+    writer.SetCompressionLevel(0)
+    if writer.Write() != 1:
+        raise RuntimeError(path)
+
+
 def foam(folder, path, kind, location, body):
     path = os.path.join(folder, path)
     os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -189,6 +247,8 @@ def main():
     write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(True), at('inline.vtu'), 'Binary')
     write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(True), at('appended.vtu'), 'Appended')
     write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(False), at('appended_lz4.vtu'), 'Appended', 'LZ4')
+    os.makedirs(at('polyhedra'), exist_ok=True)
+    write_vtkhdf_polyhedra(at('polyhedra/partitions.vtkhdf'))
     os.makedirs(at('ensight'), exist_ok=True)
     write_ensight(at('ensight'))
     write_openfoam(at('openfoam'))

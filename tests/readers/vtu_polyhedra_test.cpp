@@ -109,10 +109,13 @@ TEST(VtuPolyhedra, WithBrokenSharedFacesAreErrors) {
     };
     constexpr std::string_view points = "1 2 3 1 2 4 1 3 4 2 3 4";
     EXPECT_NE(error(points, "3 6 9 12", "3 2 1 9", "0 4"), "no error");
-    EXPECT_EQ(error(points, "3 6 9 12", "3 2 1 -1", "0 4"), "Cells 'polyhedron_to_faces' has a negative face");
-    EXPECT_EQ(error(points, "3 9 6 12", "3 2 1 0", "0 4"), "the offsets of faces fall");
-    EXPECT_EQ(error(points, "-3 6 9 12", "3 2 1 0", "0 4"), "the offsets of faces fall");
-    EXPECT_EQ(error(points, "3 6 9 12", "3 2 1 0", "5 4"), "the offsets of faces fall");
+    EXPECT_EQ(error(points, "3 6 9 12", "3 2 1 -1", "0 4"), "a polyhedron has face -1, but there are 4 faces");
+    EXPECT_EQ(error(points, "3 9 6 12", "3 2 1 0", "0 4"),
+              "face 2 has points 9 to 6 of 12, but offsets must not fall or leave the list");
+    EXPECT_EQ(error(points, "-3 6 9 12", "3 2 1 0", "0 4"),
+              "face 0 has points 0 to -3 of 12, but offsets must not fall or leave the list");
+    EXPECT_EQ(error(points, "3 6 9 12", "3 2 1 0", "5 4"),
+              "cell 0 has faces 0 to 5 of 4, but offsets must not fall or leave the list");
     EXPECT_NE(error(points, "3 6 9 13", "3 2 1 0", "0 4"), "no error");
     EXPECT_EQ(error("1 2 3 1 2 4 1 3 4 2 3 5", "3 6 9 12", "3 2 1 0", "0 4"),
               "cells[1] (polyhedron) has a face with point 5, but the grid has 5 points");

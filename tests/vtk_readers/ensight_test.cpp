@@ -10,59 +10,13 @@
 #include <isotet/read.hpp>
 
 #include "support/temporary_folder.hpp"
+#include "vtk_readers/gold_text.hpp"
 
 namespace isotet::test {
 namespace {
 
-enum class Form { ascii, c, c_swapped, fortran };
-
-/// A file of EnSight Gold that grows at its end.
-class GoldText {
-public:
-    explicit GoldText(Form form, bool geometry = false) : form_(form) {
-        if (geometry && form == Form::fortran) line("Fortran Binary");
-        else if (geometry && form != Form::ascii) line("C Binary");
-    }
-    GoldText& line(std::string text) {
-        if (form_ == Form::ascii) text_ += text + "\n";
-        else {
-            text.resize(80, ' ');
-            record(text);
-        }
-        return *this;
-    }
-    /// `row`   so many stand in a line
-    GoldText& integers(const std::vector<std::int32_t>& values, std::size_t row = 1) { return add(values, row); }
-    GoldText& floats(const std::vector<float>& values) { return add(values, 1); }
-    const std::string& text() const { return text_; }
-
-private:
-    template <class T>
-    GoldText& add(const std::vector<T>& values, std::size_t row) {
-        std::string bytes;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (form_ == Form::ascii) {
-                text_ += fmt::format("{}{}", values[i], (i + 1) % row == 0 ? '\n' : ' ');
-                continue;
-            }
-            const std::string raw(reinterpret_cast<const char*>(&values[i]), sizeof(T));
-            bytes += form_ == Form::c_swapped ? std::string(raw.rbegin(), raw.rend()) : raw;
-        }
-        if (form_ != Form::ascii) record(bytes);
-        return *this;
-    }
-    void record(const std::string& bytes) {
-        const auto size = static_cast<std::uint32_t>(bytes.size());
-        const std::string mark(reinterpret_cast<const char*>(&size), sizeof size);
-        text_ += form_ == Form::fortran ? mark + bytes + mark : bytes;
-    }
-
-    Form form_;
-    std::string text_;
-};
-
 /// Two tetrahedra and a pyramid in two parts, with a scalar and a vector of nodes and a scalar of elements.
-class EnsightFiles : public testing::TestWithParam<Form> {
+class EnsightFiles : public testing::TestWithParam<GoldForm> {
 protected:
     static std::string geometry() {
         GoldText file(GetParam(), true);
@@ -120,7 +74,7 @@ TEST_P(EnsightFiles, VariablesThatAreCutAreErrorsThatNameTheFile) {
     for (const auto& [name, whole] :
          {std::pair("t.scl", of_nodes(1)), {"v.vec", of_nodes(3)}, {"e.scl", of_elements()}}) {
         const std::size_t second_part = whole.find("part", whole.find("part") + 1);
-        const std::size_t first_end = second_part - (GetParam() == Form::fortran ? 4 : 0);
+        const std::size_t first_end = second_part - (GetParam() == GoldForm::fortran ? 4 : 0);
         std::vector<std::size_t> lengths{first_end + 3, whole.size() - 6};
         if (whole == of_nodes(1)) lengths.insert(lengths.end(), {0, 3, first_end - 3, whole.size() - 2});
         for (const std::size_t length : lengths) {
@@ -172,13 +126,14 @@ TEST_P(EnsightFiles, VariablesOfOtherElementsOrPartsAreErrors) {
     EXPECT_NE(part.error().message.find("the geometry has no part 3"), std::string::npos) << part.error().message;
 }
 
-std::string name_of(const testing::TestParamInfo<Form>& form) {
+std::string name_of_form(const testing::TestParamInfo<GoldForm>& form) {
     constexpr const char* names[] = {"Ascii", "C", "CSwapped", "Fortran"};
     return names[static_cast<std::size_t>(form.param)];
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, EnsightFiles, testing::Values(Form::ascii, Form::c, Form::c_swapped, Form::fortran),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Forms, EnsightFiles,
+                         testing::Values(GoldForm::ascii, GoldForm::c, GoldForm::c_swapped, GoldForm::fortran),
+                         name_of_form);
 
 TEST(EnsightSteps, AreLookedAtInTheFilesOfTheStep) {
     const TemporaryFolder folder;

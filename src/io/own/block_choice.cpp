@@ -2,10 +2,12 @@
 #include "io/own/block_choice.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "core/cell_faces.hpp"
 #include "io/own/escape.hpp"
 
 namespace isotet::io {
@@ -36,6 +38,21 @@ std::string list_of(const std::vector<BlockInfo>& blocks) {
     }
     if (blocks.size() > max_shown) list += fmt::format(" and {} more", blocks.size() - max_shown);
     return list;
+}
+
+/// Streams that do not fit stay: the checks of what was read say so.
+template <class Number>
+void renumber_faces(Cells& cells, const Number& number) {
+    const auto faces = core::FaceReader::open(cells);
+    if (!faces || !faces->has_faces()) return;
+    std::vector<std::int64_t> stream(cells.faces.size());
+    for (std::size_t i = 0; i < stream.size(); ++i) stream[i] = static_cast<std::int64_t>(faces->at(i));
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        if (!core::fault_of_faces(*faces, cell, std::numeric_limits<std::uint64_t>::max()).empty()) return;
+        for (std::uint64_t at = faces->begin(cell) + 1; at < faces->end(cell);)
+            for (std::uint64_t left = faces->at(at++); left > 0; --left, ++at) stream[at] = number(faces->at(at));
+    }
+    cells.faces = Array::own(std::move(stream));
 }
 
 /// The tuples of `values` whose number `kept` marks.
@@ -97,6 +114,7 @@ void drop_unused_points(Piece& piece) {
         if (static_cast<std::size_t>(corner) < count) corner = place[static_cast<std::size_t>(corner)];
         else corner = next; // still no point: the checks of what was read say so
     const auto kept = static_cast<std::size_t>(next);
+    renumber_faces(grid.cells, [&](std::uint64_t point) { return point < count ? place[point] : next; });
     grid.cells.connectivity = Array::own(std::move(corners));
     grid.points = kept_tuples(grid.points, used, kept);
     grid.point_numbers = kept_tuples(grid.point_numbers, used, kept);

@@ -8,12 +8,15 @@
 #include <vtkCGNSReader.h>
 #include <vtkNew.h>
 
+#include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
+#include "io/vtk/cgns_faces.hpp"
 #include "io/vtk/hdf5_walk.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/unset_memory.hpp"
 #include "io/vtk/vtk_load.hpp"
+#include "io/vtk/vtk_log.hpp"
 
 namespace isotet::io::vtk {
 namespace {
@@ -98,13 +101,50 @@ void name_pyramids(Cells& cells) {
     cells.types = Array::own(std::move(named));
 }
 
+bool has_polygons(const std::vector<CgnsFaceZone>& zones) {
+    return std::ranges::any_of(zones, [](const CgnsFaceZone& zone) { return !zone.cells.types.empty(); });
+}
+
+/// Switches a cell array off.
+void leave_to_us(vtkCGNSReader& reader, int array, FileInfo& info) {
+    const std::string name = reader.GetCellArrayName(array);
+    reader.SetCellArrayStatus(name.c_str(), 0);
+    announce(info, {name, Association::cell, ScalarType::float64, 1});
+}
+
+/// VTK makes polygons of cells that only their faces tell of, and refuses fields on these cells: both are put in here.
+Result<void> replace_polygons(const std::string& path, const std::vector<CgnsFaceZone>& zones,
+                              const ReadOptions& options, Loaded& loaded) {
+    if (!has_polygons(zones)) return {};
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    std::size_t next = 0;
+    for (std::size_t block = 0; block < loaded.info.blocks.size(); ++block) {
+        BlockInfo& info = loaded.info.blocks[block];
+        const auto zone = std::ranges::find(zones, info.name, &CgnsFaceZone::name);
+        const bool replaced = zone != zones.end() && !zone->cells.types.empty();
+        if (replaced) info.cells = zone->cells.count();
+        if (!(*chosen)[block] || next >= loaded.pieces.size()) continue;
+        Piece& piece = loaded.pieces[next++];
+        if (replaced) piece.grid.cells = zone->cells;
+        auto fields = cgns_cell_fields(path, info.name, loaded.step, loaded.info.times.size());
+        if (!fields) return fields.error();
+        std::erase_if(*fields, [&](const Field& field) { return !wanted(options, Association::cell, field.name); });
+        piece.grid.cell_fields = *std::move(fields);
+    }
+    return {};
+}
+
 } // namespace
 
 Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     if (auto complete = check_adf_length(path); !complete) return complete.error();
     if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
+    const auto face_zones = check_cgns_faces(path);
+    if (!face_zones) return face_zones.error();
     const MarkedMemory marked;
+    const ExpectedVtkError expected(has_polygons(*face_zones) ? "Mismatch in number of cells" : "");
     vtkNew<vtkCGNSReader> reader;
     reader->SetFileName(path.c_str());
     reader->SetUse3DVector(false); // no third component where the file has two
@@ -116,6 +156,8 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
         [&](const ReadOptions& chosen, FileInfo& info) {
             choose_bases(*reader, options, depth, notes);
             choose_arrays_by_name(*reader, chosen, info);
+            for (int i = 0; i < reader->GetNumberOfCellArrays() && has_polygons(*face_zones); ++i)
+                leave_to_us(*reader, i, info);
         },
         "zone");
     if (!loaded) return loaded;
@@ -127,6 +169,7 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
         piece.grid.point_fields = unglued(std::move(piece.grid.point_fields), options, Association::point);
         piece.grid.cell_fields = unglued(std::move(piece.grid.cell_fields), options, Association::cell);
     }
+    if (auto done = replace_polygons(path, *face_zones, options, *loaded); !done) return done.error();
     return loaded;
 }
 

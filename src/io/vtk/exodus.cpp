@@ -10,6 +10,7 @@
 #include "io/reader.hpp"
 #include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
+#include "io/own/shared_faces.hpp"
 #include "io/vtk/exodus_file.hpp"
 #include "io/vtk/exodus_parts.hpp"
 #include "io/vtk/hdf5_walk.hpp"
@@ -73,6 +74,49 @@ Result<void> append_corners(const std::vector<std::int64_t>& nodes, const Exodus
     return {};
 }
 
+/// Numbers of the file, from 1 to `most`, become numbers from 0.
+Result<void> count_from_0(std::vector<std::int64_t>& numbers, std::uint64_t most, const std::string& owner,
+                          const char* what) {
+    for (std::int64_t& number : numbers) {
+        if (number < 1 || static_cast<std::uint64_t>(number) > most)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("{} has {} {}, but the {}s are 1 to {}", owner, what, number, what, most)};
+        --number;
+    }
+    return {};
+}
+
+void append_offsets(const std::vector<int>& counts, std::vector<std::int64_t>& offsets) {
+    for (const int count : counts) offsets.push_back(offsets.back() + count);
+}
+
+/// Gives polyhedra their faces, and the points of these.
+Result<void> read_faces(ExodusFile& file, Cells& cells) {
+    auto faces = file.faces();
+    if (!faces) return faces.error();
+    const std::uint64_t face_count = faces->counts.size();
+    if (auto fits = count_from_0(faces->numbers, file.points(), "a face", "node"); !fits) return fits;
+    std::vector<std::int64_t> face_offsets{0}, of_cells, cell_offsets{0};
+    append_offsets(faces->counts, face_offsets);
+    for (const auto& block : file.blocks()) {
+        if (!block.has_faces()) {
+            cell_offsets.insert(cell_offsets.end(), block.cells, cell_offsets.back());
+            continue;
+        }
+        auto own = file.faces_of(block);
+        if (!own) return own.error();
+        if (auto fits = count_from_0(own->numbers, face_count, fmt::format("an element of block {}", block.id), "face");
+            !fits)
+            return fits;
+        append_offsets(own->counts, cell_offsets);
+        of_cells.insert(of_cells.end(), own->numbers.begin(), own->numbers.end());
+    }
+    const SharedFaces shared{Array::own(std::move(faces->numbers)), Array::own(std::move(face_offsets)),
+                             Array::own(std::move(of_cells)), Array::own(std::move(cell_offsets))};
+    if (auto done = write_out_faces(shared, cells); !done) return done;
+    return list_points_of_faces(file.points(), cells);
+}
+
 Result<Cells> read_cells(ExodusFile& file) {
     Cells cells;
     std::uint8_t uniform_type = 0;
@@ -100,6 +144,8 @@ Result<Cells> read_cells(ExodusFile& file) {
         cells.offsets = Array::own(std::move(offsets));
         cells.types = Array::own(std::move(types));
     }
+    if (std::ranges::any_of(file.blocks(), &ExodusFile::Block::has_faces))
+        if (auto read = read_faces(file, cells); !read) return read.error();
     return cells;
 }
 
@@ -198,7 +244,8 @@ Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOp
     if (!points) return points.error();
     piece.grid.points = std::move(*points);
     auto cells = read_cells(file);
-    if (!cells) return broken(path, cells.error().message);
+    if (!cells) // what the library says names the file already
+        return cells.error().message.starts_with(escaped(path)) ? cells.error() : broken(path, cells.error().message);
     piece.grid.cells = std::move(*cells);
     if (auto read = read_fields(file, options, loaded.step, piece.grid, loaded.notes); !read) return read.error();
     if (auto read = read_displacement(file, options.displace, loaded.step, piece.grid); !read) return read.error();

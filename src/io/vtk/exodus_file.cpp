@@ -121,6 +121,9 @@ Result<void> ExodusFile::read_blocks(std::size_t count) {
         result.cells = static_cast<std::uint64_t>(block.num_entry);
         const bool ragged = result.topology.starts_with("NFACED") || result.topology.starts_with("NSIDED");
         result.corners = ragged ? 0 : static_cast<std::uint64_t>(block.num_nodes_per_entry);
+        if (block.num_faces_per_entry < 0 || static_cast<std::uint64_t>(block.num_faces_per_entry) > max_plausible)
+            return failed(fmt::format("element block {} with {} faces", id, block.num_faces_per_entry));
+        result.faces = static_cast<std::uint64_t>(block.num_faces_per_entry);
         if (result.corners > 1000)
             return failed(fmt::format("element block {} with {} nodes an element", id, result.corners));
         char name[max_name + 1] = {};

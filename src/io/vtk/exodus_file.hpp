@@ -20,6 +20,9 @@ public:
         std::string topology; ///< upper case
         std::uint64_t cells = 0;
         std::uint64_t corners = 0; ///< of each cell; 0 where cells differ (polyhedra, polygons)
+        std::uint64_t faces = 0;   ///< of polyhedra: of all cells together
+
+        bool has_faces() const { return topology.starts_with("NFACED"); }
     };
 
     static Result<ExodusFile> open(const std::string& path);
@@ -41,6 +44,17 @@ public:
     Result<Array> coordinates();
     /// Node numbers from 1, of all cells of a block; empty where `corners` is 0.
     Result<std::vector<std::int64_t>> connectivity(const Block& block);
+    /// Numbers from 1, and how many belong to each face or cell.
+    struct Ragged {
+        std::vector<std::int64_t> numbers;
+        std::vector<int> counts;
+    };
+    /// The nodes of the faces of all face blocks, one after another.
+    Result<Ragged> faces();
+    /// The faces of the polyhedra of a block.
+    ///
+    /// Errors   invalid_data: what the library does not read; counts whose sum is not that of the numbers
+    Result<Ragged> faces_of(const Block& block);
     Result<Array> point_variable(std::size_t variable, std::size_t step);
     /// One value a cell of all blocks; NaN in blocks that do not have the variable, which are counted.
     Result<Array> cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);
@@ -52,6 +66,7 @@ private:
     Error failed(std::string_view what) const;
     Result<void> read_contents();
     Result<void> read_blocks(std::size_t count);
+    Result<Ragged> read_ragged(int entity, std::int64_t id, std::uint64_t count, std::uint64_t size) const;
     Result<std::vector<std::string>> variable_names(int entity);
     template <class T>
     Result<Array> read_coordinates();

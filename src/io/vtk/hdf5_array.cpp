@@ -121,20 +121,49 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     });
 }
 
-std::vector<std::string> data_sets_of(const std::string& file, const std::string& group) {
+namespace {
+
+struct NamesOfKind {
+    H5I_type_t kind;
+    std::vector<std::string> names = {};
+};
+
+std::vector<std::string> objects_of(const std::string& file, const std::string& group, H5I_type_t kind) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    std::vector<std::string> names;
+    NamesOfKind found{kind};
     const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     const Handle inside(opened.good() ? H5Gopen2(opened, group.c_str(), H5P_DEFAULT) : -1, H5Gclose);
-    if (!inside.good()) return names;
+    if (!inside.good()) return {};
     const auto add = [](hid_t at, const char* name, const H5L_info_t*, void* data) -> herr_t {
+        auto* const to = static_cast<NamesOfKind*>(data);
         const Handle object(H5Oopen(at, name, H5P_DEFAULT), H5Oclose);
-        if (object.good() && H5Iget_type(object) == H5I_DATASET)
-            static_cast<std::vector<std::string>*>(data)->emplace_back(name);
+        if (object.good() && H5Iget_type(object) == to->kind) to->names.emplace_back(name);
         return 0;
     };
-    H5Literate(inside, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
-    return names;
+    H5Literate(inside, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &found);
+    return found.names;
+}
+
+} // namespace
+
+std::vector<std::string> data_sets_of(const std::string& file, const std::string& group) {
+    return objects_of(file, group, H5I_DATASET);
+}
+
+std::vector<std::string> groups_of(const std::string& file, const std::string& group) {
+    return objects_of(file, group, H5I_GROUP);
+}
+
+std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!opened.good() || H5Aexists_by_name(opened, group.c_str(), name, H5P_DEFAULT) <= 0) return std::nullopt;
+    const Handle attribute(H5Aopen_by_name(opened, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const Handle space(attribute.good() ? H5Aget_space(attribute) : -1, H5Sclose);
+    std::int64_t value = 0;
+    if (!space.good() || H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_INT64, &value) < 0)
+        return std::nullopt;
+    return value;
 }
 
 std::string text_attribute(const std::string& file, const std::string& group, const char* name) {

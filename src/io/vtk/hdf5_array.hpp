@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,12 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
 
 /// Names of the data sets in a group; none where there is no such group.
 std::vector<std::string> data_sets_of(const std::string& file, const std::string& group);
+
+/// Names of the groups in a group.
+std::vector<std::string> groups_of(const std::string& file, const std::string& group);
+
+/// An integer attribute of a group; nothing where there is none.
+std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name);
 
 /// A text attribute of a group; empty where there is none.
 std::string text_attribute(const std::string& file, const std::string& group, const char* name);

@@ -101,6 +101,7 @@ void announce_blocks(vtkDataObject* data, FileInfo& info, const char* kind) {
         BlockInfo& block = info.blocks.emplace_back();
         block.number = static_cast<std::int64_t>(next + 1);
         block.name = next < paths.size() ? paths[next] : name;
+        block.name.erase(block.name.find_last_not_of(" \t\n") + 1); // binary EnSight pads with spaces
         block.kind = kind;
         block.cells = static_cast<std::uint64_t>(set->GetNumberOfCells());
         ++next;

@@ -12,6 +12,7 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "io/own/face_streams.hpp"
+#include "io/own/shared_faces.hpp"
 #include "io/own/narrow_indices.hpp"
 #include "io/own/old_hexahedra.hpp"
 #include "io/own/surface_scalars.hpp"
@@ -128,39 +129,30 @@ private:
     Result<void> read_shared_faces(Cells& cells) const {
         const auto cell_ends = numbers("polyhedron_offsets", count_);
         if (!cell_ends) return cell_ends.error();
-        const auto faces = numbers("polyhedron_to_faces", last_end(*cell_ends));
+        auto faces = indices("polyhedron_to_faces", last_end(*cell_ends));
         if (!faces) return faces.error();
-        const std::int64_t most = faces->empty() ? -1 : *std::ranges::max_element(*faces);
-        const auto face_ends = numbers("face_offsets", static_cast<std::uint64_t>(most + 1));
+        const auto face_ends = numbers("face_offsets", faces_in(*faces));
         if (!face_ends) return face_ends.error();
-        const auto points = numbers("face_connectivity", last_end(*face_ends));
+        auto points = indices("face_connectivity", last_end(*face_ends));
         if (!points) return points.error();
-        for (const auto* list : {&*cell_ends, &*face_ends})
-            if (!std::ranges::is_sorted(*list) || (!list->empty() && list->front() < 0))
-                return invalid_data("the offsets of faces fall");
-        if (std::ranges::any_of(*faces, [](std::int64_t face) { return face < 0; }))
-            return invalid_data("Cells 'polyhedron_to_faces' has a negative face");
-        std::vector<std::int64_t> stream, offsets{0};
-        std::int64_t next = 0;
-        for (const std::int64_t end : *cell_ends) {
-            if (end > next) stream.push_back(end - next);
-            for (; next < end; ++next) {
-                const auto face = static_cast<std::size_t>((*faces)[static_cast<std::size_t>(next)]);
-                const std::int64_t from = face ? (*face_ends)[face - 1] : 0, to = (*face_ends)[face];
-                if (stream.size() + static_cast<std::size_t>(to - from) > max_stream(points->size(), faces->size()))
-                    return invalid_data("polyhedra share their faces more often than twice");
-                stream.push_back(to - from);
-                stream.insert(stream.end(), points->begin() + from, points->begin() + to);
-            }
-            offsets.push_back(static_cast<std::int64_t>(stream.size()));
-        }
-        cells.faces = Array::own(std::move(stream));
-        cells.face_offsets = Array::own(std::move(offsets));
-        return {};
+        return write_out_faces({*std::move(points), offsets_of(*face_ends), *std::move(faces), offsets_of(*cell_ends)},
+                               cells);
     }
 
-    /// Faces have two sides: what is longer would let a small file fill any memory.
-    static std::size_t max_stream(std::size_t points, std::size_t faces) { return 16 * (points + faces) + 1024; }
+    /// One more than the highest number of a face.
+    static std::uint64_t faces_in(const Array& faces) {
+        std::int64_t most = -1;
+        faces.visit([&](auto values) {
+            for (const auto face : values) most = std::max(most, static_cast<std::int64_t>(face));
+        });
+        return static_cast<std::uint64_t>(most + 1);
+    }
+
+    static Array offsets_of(const std::vector<std::int64_t>& ends) {
+        std::vector<std::int64_t> offsets{0};
+        offsets.insert(offsets.end(), ends.begin(), ends.end());
+        return Array::own(std::move(offsets));
+    }
 
     static std::uint64_t last_end(const std::vector<std::int64_t>& ends) {
         return ends.empty() || ends.back() < 0 ? 0 : static_cast<std::uint64_t>(ends.back());
