@@ -72,11 +72,16 @@ inline void write_polyhedral_exodus(const Grid& grid, const std::string& path, i
     ex_put_coord(file, axes[0].data(), axes[1].data(), axes[2].data());
     for (int b = 0; b < 2; ++b) {
         const auto& block = blocks.faces[static_cast<std::size_t>(b)];
+        // Of other topologies the library writes as many nodes for each face as are stated.
+        const bool ragged = blocks.face_topology == "nsided";
+        const std::size_t stated = ragged ? block.numbers.size() : 4;
+        auto numbers = block.numbers;
+        if (!ragged) numbers.resize(4 * block.counts.size());
         ASSERT_GE(ex_put_block(file, EX_FACE_BLOCK, b + 1, blocks.face_topology.c_str(),
-                               static_cast<std::int64_t>(block.counts.size()),
-                               static_cast<std::int64_t>(block.numbers.size()), 0, 0, 0),
+                               static_cast<std::int64_t>(block.counts.size()), static_cast<std::int64_t>(stated), 0, 0,
+                               0),
                   0);
-        ex_put_conn(file, EX_FACE_BLOCK, b + 1, block.numbers.data(), nullptr, nullptr);
+        ex_put_conn(file, EX_FACE_BLOCK, b + 1, numbers.data(), nullptr, nullptr);
         ex_put_entity_count_per_polyhedra(file, EX_FACE_BLOCK, b + 1, block.counts.data());
     }
     if (!blocks.hexahedra.empty()) {
