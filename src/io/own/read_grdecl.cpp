@@ -210,7 +210,8 @@ private:
         if (auto read = grdecl::read_values(*record, 0, p, progress_); !read) return read.error();
         MapAxes axes{{p[2], p[3]}, {p[4] - p[2], p[5] - p[3]}, {p[0] - p[2], p[1] - p[3]}};
         for (auto* axis : {&axes.x, &axes.y}) {
-            const double length = std::hypot((*axis)[0], (*axis)[1]);
+            // Not hypot(): its digits, and the C library that it asks for, differ between machines.
+            const double length = std::sqrt((*axis)[0] * (*axis)[0] + (*axis)[1] * (*axis)[1]);
             if (!(length > 0) || !std::isfinite(length))
                 return record->fail("has an axis whose length is zero or not finite");
             for (double& part : *axis) part /= length;
