@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "number_format.hpp"
+#include <isotet/jobs/number_text.hpp>
+
 #include "report.hpp"
 
 namespace isotet::cli {

@@ -8,18 +8,17 @@
 #include <fmt/format.h>
 
 #include <isotet/field_statistics.hpp>
+#include <isotet/jobs/device_choice.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/levels.hpp>
 #include <isotet/make.hpp>
 
 #include "bench_report.hpp"
 #include "commands.hpp"
 #include "console.hpp"
-#include "device_choice.hpp"
-#include "field_choice.hpp"
-#include "grid_source.hpp"
 #include "json_output.hpp"
-#include "output_names.hpp"
-#include "thread_count.hpp"
 
 namespace isotet::cli {
 
@@ -76,7 +75,7 @@ Result<void> BenchRun::choose_pairs() {
     if (!command_.indexes.empty() &&
         std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
         return usage_error("--indexes was given, but none of the methods takes lists of tets: registers, "
-                     "registers_instanced, textures and mesh do");
+                           "registers_instanced, textures and mesh do");
     pairs_ = pairs_of(methods, indexes);
     return {};
 }
@@ -101,8 +100,7 @@ Result<void> BenchRun::run_file() {
     const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
     if (!steps) return steps.error();
     Grid grid;
-    const Result<PointField> field =
-        read_field(*source, steps->front(), command_.field, {}, console_, grid);
+    const Result<PointField> field = read_field(*source, steps->front(), command_.field, {}, console_, grid);
     if (!field) return field.error();
     numbers_.field = field->name;
     const ValueRange range = typical_range(field->values);
@@ -156,16 +154,12 @@ Result<void> BenchRun::run_paper() {
 }
 
 Result<void> BenchRun::run() {
-    if (command_.paper == !command_.grid.file.empty())
-        return usage_error("isotet bench takes a FILE, or --paper");
+    if (command_.paper == !command_.grid.file.empty()) return usage_error("isotet bench takes a FILE, or --paper");
     if (command_.device.name == "none" && command_.device.memory)
         return usage_error("--device-memory is given, but --device is none");
-    if (Result<void> paths =
-            check_output_paths({command_.grid.file}, {command_.common.json});
-        !paths)
-        return paths;
+    if (Result<void> paths = check_output_paths({command_.grid.file}, {command_.common.json}); !paths) return paths;
     numbers_.command = &command_;
-    numbers_.threads = thread_count(command_.common.threads);
+    numbers_.threads = console_.threads();
     if (Result<void> opened = open_device(); !opened) return opened;
     if (Result<void> chosen = choose_pairs(); !chosen) return chosen;
     return command_.paper ? run_paper() : run_file();

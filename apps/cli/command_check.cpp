@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 
 #include <isotet/check.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/read.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "field_choice.hpp"
-#include "grid_source.hpp"
 #include "json_output.hpp"
-#include "number_format.hpp"
-#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -41,7 +41,7 @@ Result<Origin> read_origin(const CheckCommand& command, Console& console) {
         found = *std::move(chosen);
     } else if (!source->info().fields.empty()) {
         console.note(
-            "no field was named with --grid: every tet counts, also where the field has no data; -f names one");
+            "no field was named with --grid: every tet counts, also where the field has no data; `field` names one");
     }
     Result<Grid> grid = source->read(fields, steps->front(), console);
     if (!grid) return grid.error();

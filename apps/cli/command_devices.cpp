@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <isotet/device.hpp>
+#include <isotet/jobs/device_choice.hpp>
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "device_choice.hpp"
 #include "json_output.hpp"
-#include "number_format.hpp"
-#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {

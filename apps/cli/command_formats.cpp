@@ -1,11 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet formats`: what can be read and written.
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/read.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "json_output.hpp"
-#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {

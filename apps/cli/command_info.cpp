@@ -4,15 +4,15 @@
 
 #include <isotet/field_statistics.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/refine.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "grid_source.hpp"
 #include "info_chart.hpp"
 #include "json_output.hpp"
-#include "number_format.hpp"
-#include "output_names.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {

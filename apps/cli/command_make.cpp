@@ -2,14 +2,14 @@
 // `isotet make`: test grids in files.
 #include <fmt/format.h>
 
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/make.hpp>
 #include <isotet/write.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "json_output.hpp"
-#include "number_format.hpp"
-#include "output_names.hpp"
 #include "report.hpp"
 #include "stopwatch.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "number_format.hpp"
+#include <isotet/jobs/number_text.hpp>
 
 namespace isotet::cli {
 

@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 
 #include <isotet/field_statistics.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/number_text.hpp>
 #include <isotet/version.hpp>
 
 #include "browser.hpp"
 #include "commands.hpp"
 #include "console.hpp"
-#include "field_choice.hpp"
-#include "grid_source.hpp"
 #include "json_output.hpp"
-#include "number_format.hpp"
 #include "signals.hpp"
 #include "standard_streams.hpp"
 #include "text.hpp"

@@ -19,7 +19,8 @@ Console::Console(const CommonOptions& options)
     run_.progress.cancel = &stop_requested;
 }
 
-void Console::note(const std::string& sentence) {
+void Console::note(const std::string& told) {
+    const std::string sentence = with_options(told);
     const std::lock_guard lock(mutex_);
     if (sentence.empty() || std::find(noted_.begin(), noted_.end(), sentence) != noted_.end()) return;
     noted_.push_back(sentence);
@@ -28,15 +29,11 @@ void Console::note(const std::string& sentence) {
     write_to_stderr("isotet: note: " + printable(sentence) + "\n");
 }
 
-void Console::notes(const std::vector<std::string>& sentences) {
-    for (const std::string& sentence : sentences) note(sentence);
-}
-
 void Console::detail(const std::string& sentence) {
     if (!verbose_) return;
     const std::lock_guard lock(mutex_);
     bar_.clear();
-    write_to_stderr("isotet: " + printable(sentence) + "\n");
+    write_to_stderr("isotet: " + printable(with_options(sentence)) + "\n");
 }
 
 Result<void> Console::print(std::string_view text) {
@@ -44,6 +41,6 @@ Result<void> Console::print(std::string_view text) {
     return table_ ? write_to_stdout(text) : Result<void>{};
 }
 
-void say_error(std::string_view message) { write_to_stderr("isotet: " + printable(message) + "\n"); }
+void say_error(std::string_view message) { write_to_stderr("isotet: " + printable(with_options(message)) + "\n"); }
 
 } // namespace isotet::cli

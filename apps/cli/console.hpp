@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <isotet/progress.hpp>
+#include <isotet/jobs/job.hpp>
 #include <isotet/result.hpp>
 
 #include "options.hpp"
@@ -16,30 +16,26 @@
 namespace isotet::cli {
 
 /// Threads   note(), notes(), detail(): any
-class Console {
+/// run() has the threads that were asked for, draws the bar and stops at Ctrl-C; the console must outlive it.
+class Console : public Caller {
 public:
     explicit Console(const CommonOptions& options);
 
     /// A sentence for the user, on standard error and in the JSON; once however often it is noted. Not with --quiet.
-    void note(const std::string& sentence);
-    void notes(const std::vector<std::string>& sentences);
+    void note(const std::string& sentence) override;
 
     /// A sentence for --verbose, on standard error.
-    void detail(const std::string& sentence);
+    void detail(const std::string& sentence) override;
 
     /// Text for people on standard output: not with --quiet, and not where the JSON goes there.
     Result<void> print(std::string_view text);
 
     const std::vector<std::string>& noted() const noexcept { return noted_; }
 
-    /// Threads as asked for; progress draws the bar and stops at Ctrl-C. The console must outlive it.
-    const Run& run() const noexcept { return run_; }
-    bool cancelled() const noexcept { return run_.progress.cancelled(); }
 
 private:
     bool quiet_, verbose_, table_;
     ProgressBar bar_;
-    Run run_;
     std::mutex mutex_; ///< of what is written while working
     std::vector<std::string> noted_;
 };

@@ -5,35 +5,17 @@
 
 #include <fmt/format.h>
 
-#include <isotet/process_memory.hpp>
+#include <isotet/jobs/number_text.hpp>
 
-#include "number_format.hpp"
 #include "report.hpp"
 
 namespace isotet::cli {
 
-std::uint64_t ExtractNumbers::transient_peak() const {
-    std::uint64_t peak = 0;
-    for (const SurfaceNumbers& surface : surfaces) peak = std::max(peak, surface.report.transient_bytes);
-    return peak;
-}
-
-double ExtractNumbers::work_seconds() const {
-    double seconds = pack_seconds + look_seconds;
-    for (const SurfaceNumbers& surface : surfaces) seconds += surface.extract_seconds;
-    return seconds;
-}
-
 namespace {
-
-/// The system's own count is reset when the first grid is there.
-std::uint64_t process_peak_bytes(const ExtractNumbers& numbers) {
-    return std::max(numbers.peak_before, peak_resident_memory().value_or(0));
-}
 
 std::string memory_text(const ExtractNumbers& numbers) {
     const std::string rest = fmt::format("extracting {}, whole process {}", format_bytes(numbers.transient_peak()),
-                                         format_bytes(process_peak_bytes(numbers)));
+                                         format_bytes(numbers.process_bytes));
     if (!numbers.pack) return rest;
     const PackReport& pack = *numbers.pack;
     std::string text = "packed " + format_bytes(pack.bytes);

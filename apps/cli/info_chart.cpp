@@ -1,8 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "info_chart.hpp"
 
-#include "field_choice.hpp"
-#include "number_format.hpp"
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/number_text.hpp>
+
 #include "report.hpp"
 
 namespace isotet::cli {
@@ -12,8 +13,9 @@ Result<std::optional<InfoChart>> make_chart(const InfoCommand& command, const Gr
     std::string name = command.field.name;
     if (name.empty()) name = default_field(grid).name;
     if (name.empty())
-        return Error{ErrorCode::invalid_data,
-                     "no field has two different values: there is nothing to chart; -f x, y or z charts a coordinate"};
+        return Error{
+            ErrorCode::invalid_data,
+            "no field has two different values: there is nothing to chart; `field` x, y or z charts a coordinate"};
     const Result<PointField> field = find_chosen(grid, name, command.field, console);
     if (!field) return field.error();
     Result<ContourSpectrum> spectrum = contour_spectrum_over_range(grid, *field, *command.chart, console.run());

@@ -50,7 +50,8 @@ std::string man_page(const std::vector<CommandText>& commands) {
     const CommandText& program = commands.front();
     text += ".SH NAME\nisotet \\- " + roff(program.summary) + "\n.SH SYNOPSIS\n";
     for (const CommandText& command : commands) text += ".B " + roff(command.usage) + "\n.br\n";
-    text += ".SH DESCRIPTION\n" + man_details(program.details) + ".SH OPTIONS\n" + man_options(program) + ".SH COMMANDS\n";
+    text +=
+        ".SH DESCRIPTION\n" + man_details(program.details) + ".SH OPTIONS\n" + man_options(program) + ".SH COMMANDS\n";
     for (const CommandText& command : commands) {
         if (command.word.empty()) continue;
         text += ".SS " + roff(command.usage) + "\n" + roff(command.summary) + ".\n" + man_options(command) +

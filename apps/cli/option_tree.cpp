@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 
 #include <isotet/grid.hpp>
+#include <isotet/jobs/number_text.hpp>
 
 #include "command_options.hpp"
 #include "exit_code.hpp"
-#include "number_format.hpp"
 #include "options.hpp"
 
 namespace isotet::cli {

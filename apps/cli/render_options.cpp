@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <isotet/jobs/number_text.hpp>
+
 #include "command_options.hpp"
-#include "number_format.hpp"
 
 namespace isotet::cli {
 
@@ -241,7 +242,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
         {{"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"vulkan", EngineChoice::vulkan}},
         "What extracts: auto is the device that draws if it is a graphics card, so that surfaces stay there, else the "
         "CPU; vulkan draws, too");
-    std::vector<std::pair<std::string, RenderMethod>> methods{
+    std::vector<std::pair<std::string, DrawHow>> methods{
         {"auto", {}}, {"direct", {Method::direct, {}}}, {"clusters", {Method::clusters, {}}}};
     for (const DrawMethod method : all_draw_methods) methods.push_back({std::string(name_of(method)), {{}, method}});
     command.add_choice("--method", render.method, methods,

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "text.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include <fmt/format.h>
@@ -35,16 +36,36 @@ std::string printable(std::string_view text) {
     return rewritten(text, [](std::string& result, char32_t code, std::string_view bytes) {
         if (code == '\n') result += "\\n";
         else if (code == '\t') result += "\\t";
-        else if (code < 0x20 || code == 0x7F)
-            result += fmt::format("\\x{:02x}", std::uint32_t{code});
-        else if (misleads_a_terminal(code))
-            result += fmt::format("\\u{{{:04x}}}", std::uint32_t{code});
+        else if (code < 0x20 || code == 0x7F) result += fmt::format("\\x{:02x}", std::uint32_t{code});
+        else if (misleads_a_terminal(code)) result += fmt::format("\\u{{{:04x}}}", std::uint32_t{code});
         else result += bytes;
     });
 }
 
 std::string valid_utf8(std::string_view text) {
     return rewritten(text, [](std::string& result, char32_t, std::string_view bytes) { result += bytes; });
+}
+
+std::string with_options(std::string_view sentence) {
+    std::string result;
+    while (!sentence.empty()) {
+        const std::size_t name = sentence.find('`') + 1; // 0: none
+        const std::size_t end = name == 0 ? name : sentence.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", name);
+        const bool is_option = name > 0 && end != std::string_view::npos && end > name && sentence[end] == '`';
+        if (!is_option) {
+            const std::size_t copied = name == 0 ? sentence.size() : name;
+            result += sentence.substr(0, copied);
+            sentence.remove_prefix(copied);
+            continue;
+        }
+        std::string option(sentence.substr(name, end - name));
+        std::ranges::replace(option, '_', '-');
+        result += sentence.substr(0, name - 1);
+        result += "--";
+        result += option;
+        sentence.remove_prefix(end + 1);
+    }
+    return result;
 }
 
 std::size_t width_of(std::string_view printable_text) noexcept {

@@ -15,6 +15,10 @@ std::string printable(std::string_view text);
 /// For JSON: valid UTF-8 stays as it is, every other byte becomes \xNN, so that different names stay different.
 std::string valid_utf8(std::string_view text);
 
+/// Options as the command line has them: "`merge_points` 0" becomes "--merge-points 0". Backquotes around anything but
+/// small letters and underscores stay.
+std::string with_options(std::string_view sentence);
+
 /// Characters of printable text, for aligning columns.
 std::size_t width_of(std::string_view printable_text) noexcept;
 

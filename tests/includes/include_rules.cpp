@@ -34,6 +34,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/device/", {"device/", "api/", "vulkan/", "ops/", "core/"}},
         {"src/session/", {"session/", "core/", "linear/"}},
         {"src/scene/", {"scene/", "core/"}},
+        {"src/jobs/", {"jobs/", "core/"}},
         {"src/view/", {"view/"}},
         {"src/io/own/", {"io/own/", "io/reader.hpp", "core/"}},
         {"src/io/process/", {"io/own/", "io/process/", "io/reader.hpp", "core/"}},
@@ -79,9 +80,9 @@ const std::vector<LibraryRule>& library_rules() {
 }
 
 /// Folders that includes begin with; what begins otherwise is a public header, a library, or a neighbour in a test.
-constexpr std::array<std::string_view, 17> folders_of_includes = {
+constexpr std::array<std::string_view, 18> folders_of_includes = {
     "core/", "check/",  "make/",   "ops/",    "reference/", "cpu/",   "api/", "device/", "session/",
-    "io/",   "linear/", "search/", "vulkan/", "render/",    "scene/", "cli/", "view/"};
+    "io/",   "jobs/",   "linear/", "search/", "vulkan/", "render/",    "scene/", "cli/", "view/"};
 
 bool begins_with_any(std::string_view text, std::span<const std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(),

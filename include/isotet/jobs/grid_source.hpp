@@ -7,15 +7,28 @@
 #include <string>
 #include <vector>
 
+#include <isotet/jobs/job.hpp>
 #include <isotet/make.hpp>
+#include <isotet/pack.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
-#include "console.hpp"
-#include "options.hpp"
+namespace isotet::jobs {
 
-namespace isotet::cli {
+/// Which grid, and how it is read.
+struct GridOptions {
+    std::string file; ///< or "make:SHAPE:SIDE[:FIELDS]"
+    std::string format;
+    std::optional<double> time;
+    std::optional<std::uint64_t> step;
+    std::optional<double> merge_points; ///< tolerance
+    MergedValues merge_values = MergedValues::lowest;
+    bool keep_pieces = false;
+    bool allow_outside = false;
+    std::string displace;
+    std::vector<std::string> blocks; ///< names or numbers; empty: all
+};
 
 /// Names of the fields to read; nothing: all of them.
 struct FieldsToRead {
@@ -35,7 +48,7 @@ std::string quoted_list(const std::vector<std::string>& names);
 class GridSource {
 public:
     /// Finds out what the file holds, or what the grid to make will hold.
-    static Result<GridSource> open(const GridOptions& options, const Console& console);
+    static Result<GridSource> open(const GridOptions& options, Caller& caller);
 
     const FileInfo& info() const noexcept { return info_; }
 
@@ -46,10 +59,10 @@ public:
     Error no_such_field(const std::string& name) const;
 
     /// Reads one time step, merges points if asked to, and notes what the reader reports, and points that coincide.
-    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console) const {
-        return read(fields, step, console, console.run());
+    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller) const {
+        return read(fields, step, caller, caller.run());
     }
-    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Console& console, const Run& run) const;
+    Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
 private:
     GridOptions options_;
@@ -62,7 +75,7 @@ private:
 /// Errors   invalid_argument: a step or time that the file does not have, with those that it has
 enum class Steps { one, all };
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
-                                              Console& console);
+                                              Caller& caller);
 
 /// "cells left out, their types are not contoured: 12 triangle, 40 polyhedron"; empty when there are none.
 std::string cells_left_out_note(const Grid& grid);
@@ -70,4 +83,4 @@ std::string cells_left_out_note(const Grid& grid);
 /// The time of a step; nothing where the file knows no time.
 std::optional<double> time_of(const FileInfo& info, std::size_t step);
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "grid_source.hpp"
+#include <isotet/jobs/grid_source.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -8,12 +8,13 @@
 #include <fmt/format.h>
 
 #include <isotet/grid_counts.hpp>
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/linear_cells.hpp>
 
-#include "exit_code.hpp"
-#include "number_format.hpp"
-#include "output_names.hpp"
+#include "jobs/refuse.hpp"
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 namespace {
 
@@ -32,7 +33,7 @@ FileInfo info_of(const MakeOptions& made) {
 std::string coincident_points_note(const Grid& grid) {
     const CoincidentPoints found = estimate_coincident_points(grid);
     if (found.points == 0) return {};
-    return fmt::format("{}{} coincide{} with other points: the surface has seams there; --merge-points 0 joins them",
+    return fmt::format("{}{} coincide{} with other points: the surface has seams there; `merge_points` 0 joins them",
                        found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "");
 }
 
@@ -46,22 +47,22 @@ std::string jumps_note(const MergedPoints& merged, MergedValues values) {
     return fmt::format("values of merged points differ: {}; {}", list,
                        values == MergedValues::mean
                            ? "they have the mean"
-                           : "they have that of the lowest number, --merge-values mean takes means");
+                           : "they have that of the lowest number, `merge_values` mean takes means");
 }
 
 /// Merges points, and notes what that did.
-Result<Grid> merged(const Grid& grid, const MergeOptions& options, Console& console, const Run& run) {
+Result<Grid> merged(const Grid& grid, const MergeOptions& options, Caller& caller, const Run& run) {
     Result<MergedPoints> result = merge_points(grid, options, run);
     if (!result && result.error().code == ErrorCode::invalid_argument)
-        return Error{result.error().code, "--merge-points: " + result.error().message};
+        return Error{result.error().code, "`merge_points`: " + result.error().message};
     if (!result) return result.error();
-    console.note(fmt::format("{} merged with others",
-                             result->merged == 1 ? "1 point was" : grouped(result->merged) + " points were"));
+    caller.note(fmt::format("{} merged with others",
+                            result->merged == 1 ? "1 point was" : grouped(result->merged) + " points were"));
     if (result->collapsed_cells > 0)
-        console.note(fmt::format("--merge-points {} is longer than edges of {}, which collapse: there the surface is "
-                                 "not that of the grid",
-                                 shortest(options.tolerance), counted(result->collapsed_cells, "cell")));
-    console.note(jumps_note(*result, options.values));
+        caller.note(fmt::format("`merge_points` {} is longer than edges of {}, which collapse: there the surface is "
+                                "not that of the grid",
+                                shortest(options.tolerance), counted(result->collapsed_cells, "cell")));
+    caller.note(jumps_note(*result, options.values));
     return std::move(result->grid);
 }
 
@@ -88,13 +89,13 @@ std::string quoted_list(const std::vector<std::string>& names) {
     return list;
 }
 
-Result<GridSource> GridSource::open(const GridOptions& options, const Console& console) {
+Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) {
     GridSource source;
     source.options_ = options;
     if (options.file.starts_with(made_prefix)) {
         if (!options.blocks.empty())
             return Error{ErrorCode::invalid_argument,
-                         fmt::format("--block {}: a made grid has no blocks", options.blocks.front())};
+                         fmt::format("`block` {}: a made grid has no blocks", options.blocks.front())};
         Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
         if (!made) return made.error();
         source.info_ = info_of(*made);
@@ -107,7 +108,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, const Console& c
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
     read_options.blocks = options.blocks;
-    Result<FileInfo> info = inspect(options.file, read_options, console.run());
+    Result<FileInfo> info = inspect(options.file, read_options, caller.run());
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);
         if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
@@ -121,7 +122,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, const Console& c
     const std::vector<std::string> points = source.names(Association::point);
     if (!options.displace.empty() && std::ranges::find(points, options.displace) == points.end()) {
         Error error = source.no_such_field(options.displace);
-        error.message = "--displace takes a point field: " + error.message;
+        error.message = "`displace` takes a point field: " + error.message;
         return error;
     }
     return source;
@@ -144,7 +145,7 @@ std::vector<std::string> GridSource::names(Association association) const {
     return names;
 }
 
-Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Console& console, const Run& run) const {
+Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const {
     Grid grid;
     if (made_) {
         MakeOptions made = *made_;
@@ -159,11 +160,11 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Cons
         if (!info_.times.empty()) read_options.step = step;
         Result<ReadResult> result = isotet::read(options_.file, read_options, run);
         if (!result) return result.error();
-        console.notes(result->notes);
+        caller.notes(result->notes);
         grid = std::move(result->grid);
     }
-    if (options_.merge_points) return merged(grid, {*options_.merge_points, options_.merge_values}, console, run);
-    console.note(coincident_points_note(grid));
+    if (options_.merge_points) return merged(grid, {*options_.merge_points, options_.merge_values}, caller, run);
+    caller.note(coincident_points_note(grid));
     return grid;
 }
 
@@ -201,18 +202,18 @@ Result<std::size_t> step_at(const std::vector<double>& times, double time) {
     }
     constexpr double tolerance = 1e-12; // relative: a time that went through text and back
     if (times.empty()) {
-        return usage_error("time {} was asked for, but the file knows no time", shortest(time));
+        return refusal("time {} was asked for, but the file knows no time", shortest(time));
     }
     if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
         return nearest;
-    return usage_error("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
-                       times.size(), list_of(times), shortest(times[nearest]));
+    return refusal("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
+                   times.size(), list_of(times), shortest(times[nearest]));
 }
 
 } // namespace
 
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
-                                              Console& console) {
+                                              Caller& caller) {
     const std::size_t count = std::max<std::size_t>(info.times.size(), 1);
     if (steps == Steps::all) {
         std::vector<std::size_t> all(count);
@@ -226,15 +227,15 @@ Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOp
     }
     if (options.step) {
         if (*options.step < count) return std::vector<std::size_t>{static_cast<std::size_t>(*options.step)};
-        return usage_error("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step,
-                           count, count == 1 ? "" : "s");
+        return refusal("step {} was asked for, but the file has {} time step{}, numbered from 0", *options.step, count,
+                       count == 1 ? "" : "s");
     }
     if (count > 1) {
-        console.note(
-            fmt::format("the file has {} time steps: step 0, time {}, was taken; --time and --step choose another",
+        caller.note(
+            fmt::format("the file has {} time steps: step 0, time {}, was taken; `time` and `step` choose another",
                         count, shortest(info.times[0])));
     }
     return std::vector<std::size_t>{0};
 }
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

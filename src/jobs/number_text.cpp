@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "number_format.hpp"
+#include <isotet/jobs/number_text.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 std::string shortest(double value) { return fmt::format("{}", value); }
 
@@ -79,4 +79,4 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) noexcept {
     return static_cast<std::uint64_t>(*number * unit + 0.5);
 }
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

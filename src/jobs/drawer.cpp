@@ -1,19 +1,17 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "drawer.hpp"
+#include "jobs/drawer.hpp"
 
 #include <isotet/draw.hpp>
+#include <isotet/jobs/device_choice.hpp>
 
-#include "device_choice.hpp"
+namespace isotet::jobs {
 
-namespace isotet::cli {
-
-Result<Drawer> Drawer::open(const RenderCommand& command, Console& console) {
+Result<Drawer> Drawer::open(const DrawJob& job, Caller& caller) {
     Drawer drawer;
-    const std::string& name = command.device.name;
-    const bool wanted =
-        (!name.empty() && name != "none") || command.engine == EngineChoice::vulkan || command.method.draw;
+    const std::string& name = job.device.name;
+    const bool wanted = (!name.empty() && name != "none") || job.engine == EngineChoice::vulkan || job.method.draw;
     if (!wanted) return drawer;
-    Result<Device> device = open_drawing_device(command.device, console);
+    Result<Device> device = open_drawing_device(job.device, caller);
     if (!device) return device.error();
     Result<Renderer> renderer = Renderer::create(*device);
     if (!renderer) return renderer.error();
@@ -26,4 +24,4 @@ Result<Picture> Drawer::draw(const Scene& scene, const PictureOptions& options, 
     return renderer_ ? renderer_->draw(scene, options, run) : isotet::draw(scene, options, run);
 }
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "output_names.hpp"
+#include <isotet/jobs/output_names.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include <isotet/jobs/number_text.hpp>
 #include <isotet/write_file.hpp>
 
-#include "exit_code.hpp"
-#include "number_format.hpp"
+#include "jobs/refuse.hpp"
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 namespace {
 
@@ -67,8 +67,8 @@ Result<void> check_placeholders(const std::string& out, const std::vector<std::s
         if (close == std::string::npos) break;
         const std::string mark = out.substr(open, close - open + 1);
         if (std::find(known.begin(), known.end(), mark) != known.end()) continue;
-        return usage_error("OUT, '{}', has {}, but here only {} can stand for something", out, mark,
-                           fmt::join(known, " and "));
+        return refusal("OUT, '{}', has {}, but here only {} can stand for something", out, mark,
+                       fmt::join(known, " and "));
     }
     return {};
 }
@@ -87,13 +87,13 @@ Result<Format> format_for_writing(const std::string& path, Writes what, Compress
         if (!(what == Writes::surface ? format.writes_surface : format.writes_grid)) continue;
         if (std::find(format.extensions.begin(), format.extensions.end(), ending) != format.extensions.end()) {
             if (compression != Compression::none && format.name != "vtp" && format.name != "vtu")
-                return usage_error("--compress {} was asked for, but {} has no compression: {} has",
-                                   name_of(compression), ending, what == Writes::surface ? ".vtp" : ".vtu");
+                return refusal("`compress` {} was asked for, but {} has no compression: {} has", name_of(compression),
+                               ending, what == Writes::surface ? ".vtp" : ".vtu");
             return format;
         }
         for (const std::string& other : format.extensions) endings += (endings.empty() ? "" : ", ") + other;
     }
-    return usage_error("the name of the output is '{}', but it must end in one of {}", path, endings);
+    return refusal("the name of the output is '{}', but it must end in one of {}", path, endings);
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -111,15 +111,15 @@ Result<void> check_output_paths(const std::vector<std::string>& inputs, const st
         if (output.empty() || output == "-") continue;
         for (const std::string& input : inputs) {
             if (!input.empty() && same_file(input, output))
-                return usage_error("the output '{}' is the input '{}': it would be overwritten", output, input);
+                return refusal("the output '{}' is the input '{}': it would be overwritten", output, input);
         }
         for (std::size_t j = 0; j < i; ++j) {
             if (!outputs[j].empty() && same_file(outputs[j], output))
-                return usage_error("two outputs are the same file, '{}'", output);
+                return refusal("two outputs are the same file, '{}'", output);
         }
         if (auto writable = check_writable(output); !writable) return writable; // before hours of work
     }
     return {};
 }
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

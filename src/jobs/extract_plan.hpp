@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What `isotet extract` will do, decided and checked before anything large is read.
+// What extract_files() will do, decided and checked before anything large is read.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,11 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
+#include <isotet/jobs/extract_files.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/result.hpp>
 
-#include "console.hpp"
-#include "field_choice.hpp"
-#include "grid_source.hpp"
-#include "options.hpp"
-#include "output_names.hpp"
-
-namespace isotet::cli {
+namespace isotet::jobs {
 
 struct ExtractPlan {
     OutputNames names{""};
@@ -30,12 +26,12 @@ struct ExtractPlan {
 };
 
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
-Result<ExtractPlan> plan_extract(const ExtractCommand& command, const GridSource& source, Console& console);
+Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source, Caller& caller);
 
 /// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
 /// Errors   invalid_data: levels of a field without a finite value
-Result<std::vector<double>> choose_isovalues(const ExtractCommand& command, const Array& field,
-                                             const FieldReport& packed, Console& console);
+Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const Array& field, const FieldReport& packed,
+                                             Caller& caller);
 
 /// The fields of the plan, taken from the grid of one step.
 struct StepFields {
@@ -43,4 +39,13 @@ struct StepFields {
 };
 Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run);
 
-} // namespace isotet::cli
+/// What all steps are expected to take, from a look at the first; nothing where the field cannot be contoured.
+///
+/// `together`   isovalues extracted in one pass
+std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
+                                std::size_t together);
+
+/// Files that must not be each other: `output` and those of the caller.
+std::vector<std::string> with_others(const ExtractJob& job, const std::string& output);
+
+} // namespace isotet::jobs

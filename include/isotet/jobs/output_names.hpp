@@ -12,7 +12,7 @@
 #include <isotet/result.hpp>
 #include <isotet/write.hpp>
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 /// A file of `isotet extract`.
 struct OutputKey {
@@ -61,4 +61,4 @@ Result<void> check_output_paths(const std::vector<std::string>& inputs, const st
 /// True when both names lead to the same file, or would once it is there.
 bool same_file(const std::string& a, const std::string& b);
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

@@ -6,13 +6,17 @@
 #include <vector>
 
 #include <isotet/grid.hpp>
+#include <isotet/jobs/grid_source.hpp>
 #include <isotet/read.hpp>
 #include <isotet/result.hpp>
 
-#include "grid_source.hpp"
-#include "options.hpp"
+namespace isotet::jobs {
 
-namespace isotet::cli {
+/// A field's name, and what it is when a point field and a cell field have it.
+struct FieldChoice {
+    std::string name; ///< empty: the only one there is
+    bool cell_field = false;
+};
 
 /// A field as find_field() will look for it, and the arrays that it is made of.
 struct FoundField {
@@ -39,8 +43,7 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
 void add_names(std::vector<std::string>& names, const std::vector<std::string>& more);
 
 /// find_field() as a FieldChoice means it, with its note.
-Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice,
-                               Console& console);
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller);
 
 /// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which the one
 /// that varies most is taken, with a note.
@@ -48,6 +51,6 @@ Result<PointField> find_chosen(const Grid& grid, const std::string& name, const 
 /// `beside`   the name of another field, or empty
 /// Errors     as choose_field() and find_field(); invalid_data when none is named and none varies
 Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
-                              const std::string& beside, Console& console, Grid& grid);
+                              const std::string& beside, Caller& caller, Grid& grid);
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// The pictures of one `isotet render`: one, or with --sweep and --orbit many; and the files that they go to.
+// The pictures of one job: one, or with `sweep` and `orbit` many; and the files that they go to.
 #pragma once
 
 #include <future>
@@ -9,26 +9,24 @@
 #include <vector>
 
 #include <isotet/animation.hpp>
+#include <isotet/jobs/draw_files.hpp>
 #include <isotet/picture.hpp>
 
-#include "options.hpp"
-
-namespace isotet::cli {
+namespace isotet::jobs {
 
 /// One of the pictures.
-struct RenderFrame {
+struct Frame {
     std::vector<double> isovalues;
-    double azimuth = 0;   ///< degrees to the right of --view
+    double azimuth = 0;   ///< degrees to the right of `view`
     std::size_t step = 0; ///< of those that are drawn
 };
 
-/// With --sweep a picture for each isovalue, with --orbit one from each side, else one for each step.
-/// Errors   invalid_argument when --sweep does not make sense
-Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues,
-                                           std::size_t steps);
+/// With `sweep` a picture for each isovalue, with `orbit` one from each side, else one for each step.
+/// Errors   invalid_argument when `sweep` does not make sense
+Result<std::vector<Frame>> frames_of(const DrawJob& job, const std::vector<double>& isovalues, std::size_t steps);
 
 /// How many those will be.
-Result<std::size_t> count_frames(const RenderCommand& command, std::size_t steps);
+Result<std::size_t> count_frames(const DrawJob& job, std::size_t steps);
 
 /// OUT: a PNG file; numbered ones, where it holds {frame}; or one animated WebP file.
 class PictureFiles {
@@ -75,4 +73,4 @@ private:
     std::future<Result<void>> writing_; ///< waits when it goes
 };
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

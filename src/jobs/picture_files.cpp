@@ -1,18 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "render_frames.hpp"
+#include "jobs/picture_files.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/picture_file.hpp>
 
-#include "exit_code.hpp"
-#include "number_format.hpp"
-#include "output_names.hpp"
+#include "jobs/refuse.hpp"
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 namespace {
 
@@ -21,31 +21,30 @@ constexpr double max_frames = 100'000;
 
 } // namespace
 
-Result<std::size_t> count_frames(const RenderCommand& command, std::size_t steps) {
-    if (command.orbit > 0) return static_cast<std::size_t>(command.orbit);
-    if (command.sweep.empty()) return steps;
-    if (command.sweep.size() != 3)
-        return usage_error("--sweep takes three numbers, not {}: the first isovalue, the last one, and how many, such "
-                           "as 0,1,50",
-                           command.sweep.size());
-    const double count = command.sweep[2];
+Result<std::size_t> count_frames(const DrawJob& job, std::size_t steps) {
+    if (job.orbit > 0) return static_cast<std::size_t>(job.orbit);
+    if (job.sweep.empty()) return steps;
+    if (job.sweep.size() != 3)
+        return refusal("`sweep` takes three numbers, not {}: the first isovalue, the last one, and how many, such "
+                       "as 0,1,50",
+                       job.sweep.size());
+    const double count = job.sweep[2];
     if (count < 2 || count > max_frames || count != std::floor(count))
-        return usage_error("--sweep ends with {}, but there must be 2 to {} isovalues", shortest(count),
-                           shortest(max_frames));
+        return refusal("`sweep` ends with {}, but there must be 2 to {} isovalues", shortest(count),
+                       shortest(max_frames));
     return static_cast<std::size_t>(count);
 }
 
-Result<std::vector<RenderFrame>> frames_of(const RenderCommand& command, const std::vector<double>& isovalues,
-                                           std::size_t steps) {
-    const Result<std::size_t> count = count_frames(command, steps);
+Result<std::vector<Frame>> frames_of(const DrawJob& job, const std::vector<double>& isovalues, std::size_t steps) {
+    const Result<std::size_t> count = count_frames(job, steps);
     if (!count) return count.error();
-    std::vector<RenderFrame> frames(*count, {isovalues, 0, 0});
+    std::vector<Frame> frames(*count, {isovalues, 0, 0});
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (command.orbit > 0) frames[i].azimuth = 360 * static_cast<double>(i) / static_cast<double>(frames.size());
+        if (job.orbit > 0) frames[i].azimuth = 360 * static_cast<double>(i) / static_cast<double>(frames.size());
         if (steps > 1) frames[i].step = i;
-        if (command.sweep.empty()) continue;
+        if (job.sweep.empty()) continue;
         const double part = static_cast<double>(i) / static_cast<double>(frames.size() - 1);
-        frames[i].isovalues = {(1 - part) * command.sweep[0] + part * command.sweep[1]};
+        frames[i].isovalues = {(1 - part) * job.sweep[0] + part * job.sweep[1]};
     }
     return frames;
 }
@@ -55,10 +54,10 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
     PictureFiles files(out, pictures);
     const bool numbered = out.find(number_mark) != std::string::npos;
     if (pictures == 1) {
-        if (!out.ends_with(".png")) return usage_error("the name of the output is '{}', but it must end in .png", out);
+        if (!out.ends_with(".png")) return refusal("the name of the output is '{}', but it must end in .png", out);
         if (numbered)
-            return usage_error(
-                "the name of the output is '{}', but only pictures of --sweep, --orbit and --all-steps have numbers",
+            return refusal(
+                "the name of the output is '{}', but only pictures of `sweep`, `orbit` and `all_steps` have numbers",
                 out);
         return files;
     }
@@ -69,9 +68,9 @@ Result<PictureFiles> PictureFiles::open(const std::string& out, std::size_t pict
         return files;
     }
     if (out.ends_with(".png") && numbered) return files;
-    return usage_error("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} "
-                       "and ends in .png",
-                       out, pictures, number_mark);
+    return refusal("the name of the output is '{}', but {} pictures need one that ends in .webp, or that holds {} "
+                   "and ends in .png",
+                   out, pictures, number_mark);
 }
 
 std::string PictureFiles::name(std::size_t picture) const {
@@ -127,4 +126,4 @@ Result<void> PictureWriter::finish() {
 
 Result<void> PictureWriter::wait() { return writing_.valid() ? writing_.get() : Result<void>(); }
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

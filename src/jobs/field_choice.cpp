@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "field_choice.hpp"
+#include <isotet/jobs/field_choice.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include <isotet/field_statistics.hpp>
 
-#include "exit_code.hpp"
+#include "jobs/refuse.hpp"
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 namespace {
 
@@ -34,7 +34,7 @@ Result<void> add_carried(const GridSource& source, const std::string& name, Carr
     else if (const auto match = match_field_name(name, point)) carried.components.push_back({name, {match->field}, {}});
     else if (is_coordinate(name)) carried.components.push_back({name, {}, {}});
     else if (match_field_name(name, cell))
-        return usage_error("--with got '{}', a component of a cell field, but cell fields are carried whole", name);
+        return refusal("`with` got '{}', a component of a cell field, but cell fields are carried whole", name);
     else if (const std::size_t comma = name.find(','); comma != std::string::npos) {
         if (auto first = add_carried(source, name.substr(0, comma), carried); !first) return first;
         return add_carried(source, name.substr(comma + 1), carried);
@@ -55,10 +55,10 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
     if (found.name.empty()) {
         const std::vector<std::string> names = all_names(source);
         if (names.size() != 1) {
-            const std::string there = names.empty()
-                                          ? "none; -f x, y or z contours a coordinate"
-                                          : fmt::format("{}: {}; -f chooses one", names.size(), quoted_list(names));
-            return usage_error("no field was named, and the grid has {}", there);
+            const std::string there =
+                names.empty() ? "none; `field` x, y or z contours a coordinate"
+                              : fmt::format("{}: {}; `field` chooses one", names.size(), quoted_list(names));
+            return refusal("no field was named, and the grid has {}", there);
         }
         found.name = names.front();
     }
@@ -67,7 +67,7 @@ Result<FoundField> choose_field(const GridSource& source, const FieldChoice& cho
     if (found.point.empty() && found.cell.empty() && !is_coordinate(found.name))
         return source.no_such_field(found.name);
     if (choice.cell_field && found.cell.empty()) {
-        return usage_error("--cell-field was asked for, but '{}' is no cell field", found.name);
+        return refusal("`cell_field` was asked for, but '{}' is no cell field", found.name);
     }
     return found;
 }
@@ -79,15 +79,15 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
     return carried;
 }
 
-Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Console& console) {
+Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller) {
     const auto prefer = choice.cell_field ? Association::cell : Association::point;
-    Result<PointField> field = find_field(grid, name, {prefer}, console.run());
-    if (field) console.note(field->note);
+    Result<PointField> field = find_field(grid, name, {prefer}, caller.run());
+    if (field) caller.note(field->note);
     return field;
 }
 
 Result<PointField> read_field(const GridSource& source, std::size_t step, const FieldChoice& choice,
-                              const std::string& beside, Console& console, Grid& grid) {
+                              const std::string& beside, Caller& caller, Grid& grid) {
     FieldsToRead read;
     std::string name = choice.name;
     const std::size_t fields = source.info().fields.size();
@@ -103,7 +103,7 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
             add_names(*read.cell, other->cell);
         }
     }
-    Result<Grid> all = source.read(read, step, console);
+    Result<Grid> all = source.read(read, step, caller);
     if (!all) return all.error();
     grid = *std::move(all);
     if (name.empty()) {
@@ -111,11 +111,11 @@ Result<PointField> read_field(const GridSource& source, std::size_t step, const 
         if (name.empty())
             return Error{ErrorCode::invalid_data,
                          fmt::format("none of the {} fields has two different values: there is nothing to contour; "
-                                     "-f x, y or z contours a coordinate",
+                                     "`field` x, y or z contours a coordinate",
                                      fields)};
-        console.note(fmt::format("no field was named: '{}', which varies most, was taken; -f names another", name));
+        caller.note(fmt::format("no field was named: '{}', which varies most, was taken; `field` names another", name));
     }
-    return find_chosen(grid, name, choice, console);
+    return find_chosen(grid, name, choice, caller);
 }
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

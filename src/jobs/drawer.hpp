@@ -1,21 +1,18 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What draws the pictures of `isotet render`: the CPU, or the device that was asked for.
+// What draws the pictures of draw_files(): the CPU, or the device that was asked for.
 #pragma once
 
 #include <optional>
 
-#include <isotet/render.hpp>
+#include <isotet/jobs/draw_files.hpp>
 
-#include "console.hpp"
-#include "options.hpp"
-
-namespace isotet::cli {
+namespace isotet::jobs {
 
 class Drawer {
 public:
-    /// The CPU, unless --device, --engine vulkan or a method that draws tets asks for a device.
+    /// The CPU, unless a device, `engine` vulkan or a method that draws tets asks for a device.
     /// Errors   no_device when one is asked for and there is none
-    static Result<Drawer> open(const RenderCommand& command, Console& console);
+    static Result<Drawer> open(const DrawJob& job, Caller& caller);
 
     const std::optional<Device>& device() const noexcept { return device_; } ///< nothing: the CPU draws
     DeviceWork work() const { return renderer_ ? renderer_->work() : DeviceWork(); }
@@ -27,4 +24,4 @@ private:
     std::optional<Renderer> renderer_;
 };
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

@@ -10,7 +10,7 @@
 
 #include <isotet/text.hpp>
 
-namespace isotet::cli {
+namespace isotet::jobs {
 
 /// The shortest decimal that reads back as the same double: "0.7", "1e-05".
 std::string shortest(double value);
@@ -41,4 +41,4 @@ std::optional<std::uint64_t> parse_bytes(std::string_view text) noexcept;
 std::optional<double> parse_number(std::string_view text) noexcept;
 std::optional<std::uint64_t> parse_count(std::string_view text) noexcept;
 
-} // namespace isotet::cli
+} // namespace isotet::jobs

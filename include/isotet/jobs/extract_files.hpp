@@ -1,0 +1,99 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// From a grid file to surface files: what `isotet extract` does.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <isotet/contour.hpp>
+#include <isotet/jobs/device_choice.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/pieces.hpp>
+#include <isotet/write.hpp>
+
+namespace isotet::jobs {
+
+struct ExtractJob {
+    GridOptions grid;
+    bool all_steps = false;
+    std::string out;                        ///< with {value}, {time} and {step}; empty: only numbers
+    std::vector<std::string> other_outputs; ///< of the caller: no surface may overwrite them
+    FieldChoice field;
+    std::vector<double> isovalues;
+    std::uint64_t levels = 0; ///< 0: `isovalues` say it
+    bool snap = false;
+    Normals normals = Normals::none;
+    std::optional<std::vector<std::string>> with; ///< nothing: all point fields that the format can hold
+    bool keep_degenerate = false;
+    bool fail_if_empty = false;
+    bool edge_ends = false;
+    bool source_cells = false;
+    bool split_cells = false;
+    bool exact_vertices = false;
+    Precision precision = Precision::float32;
+    std::optional<Method> method; ///< nothing: by the rule
+    EngineChoice engine = EngineChoice::automatic;
+    DeviceChoice device; ///< `name` is empty where none is asked for
+    std::optional<PieceOf> piece;
+    Compression compression = Compression::none;
+    std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
+};
+
+/// One isosurface.
+struct SurfaceNumbers {
+    double isovalue = 0;
+    std::optional<double> time;
+    ExtractReport report;
+    std::uint64_t vertices = 0, triangles = 0;
+    double area = 0;
+    double extract_seconds = 0;
+    std::optional<DeviceWork> device;
+    double write_seconds = 0; ///< of several surfaces in one file the last has it all
+    std::string file;         ///< empty without OUT
+};
+
+/// What was done.
+struct ExtractNumbers {
+    std::string grid, format;
+    std::size_t cells = 0;
+    std::optional<PackReport> pack; ///< of the last packing; nothing where nothing is packed
+    std::uint64_t cells_left_out = 0;
+    FieldReport field;     ///< of the last time step
+    std::size_t steps = 1; ///< time steps
+    bool averaged = false;
+    Precision precision = Precision::float32;
+    Method method = Method::direct;          ///< of the last surface
+    std::string why;                         ///< the method, in words
+    std::optional<Estimate> predicted;       ///< nothing for devices and the reference engine
+    std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, if the system tells
+    std::string_view engine;                 ///< of the last surface
+    std::string device;                      ///< its name
+    unsigned threads = 1;
+    double read_seconds = 0;
+    double pack_seconds = 0;         ///< uploading included
+    double look_seconds = 0;         ///< for the range of the field, where isovalues follow it
+    double measure_seconds = 0;      ///< for the areas
+    std::uint64_t process_bytes = 0; ///< most that the whole process had
+    std::vector<SurfaceNumbers> surfaces;
+    std::string collection;           ///< of a series; empty: none
+    RefinementReport refinement = {}; ///< of the last surface
+
+    std::uint64_t transient_peak() const;
+    double work_seconds() const; ///< packing, uploading, extracting: what is predicted
+    bool on_device() const { return engine == "vulkan"; }
+};
+
+/// Reads the steps one after another, extracts, and writes each file as soon as it is complete. Files that were
+/// complete before an error or a cancelled run stay.
+///
+/// Memory   one step, and the surfaces that are extracted in one pass or go into one file
+/// Errors   invalid_argument: what is asked for does not fit together or with the file, told before anything large is
+///          read where that can be known; as of reading, Contour and writing
+Result<ExtractNumbers> extract_files(const ExtractJob& job, Caller& caller);
+
+} // namespace isotet::jobs

@@ -1,0 +1,158 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/draw_files.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <isotet/compare_pictures.hpp>
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/picture_file.hpp>
+
+#include "core/stopwatch.hpp"
+#include "jobs/frame_drawer.hpp"
+#include "jobs/picture_files.hpp"
+#include "jobs/picture_source.hpp"
+#include "jobs/picture_text.hpp"
+#include "jobs/refuse.hpp"
+
+namespace isotet::jobs {
+
+namespace {
+
+/// "run/grid.vtu" gives "grid.png", "make:kuhn:64" gives "kuhn.png".
+std::string name_of_picture(const DrawJob& job) {
+    if (!job.out.empty()) return job.out;
+    const std::string& file = job.grid.file;
+    constexpr std::string_view made = "make:";
+    if (file.starts_with(made)) return file.substr(made.size(), file.find(':', made.size()) - made.size()) + ".png";
+    return std::filesystem::path(file).stem().string() + ".png";
+}
+
+/// Extracts, draws and writes one picture after another; returns the last one.
+Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job, Drawer& drawer, PictureSource& source,
+                            DrawInput& input, PictureFiles& files, PictureNumbers& numbers, Caller& caller) {
+    std::shared_ptr<const Picture> last;
+    FrameDrawer frame_drawer(job, drawer, caller);
+    PictureWriter writer(files, frames.size() > 1 && caller.run().threads != 1);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (frames.size() > 1) caller.detail(fmt::format("picture {} of {}", i + 1, frames.size()));
+        const bool next_step = i > 0 && frames[i].step != frames[i - 1].step;
+        if (next_step) {
+            Result<DrawInput> next = source.read(frames[i].step, drawer.device(), caller);
+            if (!next) return next.error();
+            next->read_seconds += input.read_seconds;
+            input = *std::move(next);
+        }
+        if (i == 0 || next_step || frames[i].isovalues != frames[i - 1].isovalues) {
+            if (auto shown = input.scene->show(frames[i].isovalues, caller.run()); !shown) return shown.error();
+            caller.notes(input.scene->take_notes());
+            note_empty_surfaces(input, caller);
+        }
+        const core::Stopwatch drawing;
+        Result<Picture> picture = frame_drawer.draw(input, frames[i].azimuth);
+        if (!picture) return picture;
+        last = std::make_shared<const Picture>(*std::move(picture));
+        numbers.draw_seconds += drawing.seconds();
+        const core::Stopwatch writing;
+        if (Result<void> added = writer.add(last); !added) return added.error();
+        numbers.write_seconds += writing.seconds();
+    }
+    const core::Stopwatch writing;
+    if (Result<void> finished = writer.finish(); !finished) return finished.error();
+    numbers.write_seconds += writing.seconds();
+    numbers.bytes = files.bytes();
+    numbers.drawing = drawer.work();
+    numbers.camera = to_text(frame_drawer.camera());
+    caller.detail("`camera` " + numbers.camera);
+    if (const std::string film = files.film_command(job.frames_per_second); !film.empty())
+        caller.note("a film of them: " + film);
+    return *last;
+}
+
+/// Compares with the reference.
+Result<void> compare(const Picture& picture, const Picture& reference, const DrawJob& job, PictureNumbers& numbers,
+                     Caller& caller) {
+    const Result<double> differs = difference(picture, reference);
+    if (!differs) return differs.error();
+    numbers.differs = *differs;
+    if (*differs > job.threshold)
+        caller.note(fmt::format("{} of the pixels differ from {}, but {} are allowed", percent_text(*differs),
+                                job.reference, percent_text(job.threshold)));
+    return {};
+}
+
+/// Looks at the names of all files before anything is done.
+Result<PictureFiles> open_files(const DrawJob& job, std::size_t steps) {
+    const Result<std::size_t> pictures = count_frames(job, steps);
+    if (!pictures) return pictures.error();
+    Result<PictureFiles> files = PictureFiles::open(name_of_picture(job), *pictures, job.frames_per_second);
+    if (!files) return files;
+    std::vector<std::string> outputs = files->names();
+    outputs.insert(outputs.end(), job.other_outputs.begin(), job.other_outputs.end());
+    if (Result<void> paths = check_output_paths({job.grid.file, job.reference}, outputs); !paths) return paths.error();
+    return files;
+}
+
+/// Refuses options that say how surfaces are extracted, or coloured, where tets are drawn, and an index without them.
+Result<void> check_method(const DrawJob& job) {
+    if (!job.method.draw) {
+        if (job.index)
+            return refusal("`index` finds the tets for a method that draws tets, but surfaces are drawn: `method`");
+        return {};
+    }
+    const std::string_view name = name_of(*job.method.draw);
+    if (!job.color_by.empty()) return refusal("`color_by` colours surfaces, but `method` {} makes none", name);
+    if (job.engine != EngineChoice::automatic)
+        return refusal("`engine` says what extracts, but `method` {} extracts nothing", name);
+    return {};
+}
+
+} // namespace
+
+Result<DrawReport> draw_files(const DrawJob& job, Caller& caller) {
+    if (Result<void> fits = check_method(job); !fits) return fits.error();
+    // The number of steps is known only when the file was looked into; all else is checked before.
+    std::optional<PictureFiles> files;
+    const auto open = [&](std::size_t steps) -> Result<void> {
+        Result<PictureFiles> opened = open_files(job, steps);
+        if (!opened) return opened.error();
+        files = *std::move(opened);
+        return {};
+    };
+    if (!job.all_steps)
+        if (Result<void> opened = open(1); !opened) return opened.error();
+    std::optional<Picture> reference;
+    if (!job.reference.empty()) {
+        Result<Picture> read = read_picture(job.reference);
+        if (!read) return read.error();
+        reference = *std::move(read);
+    }
+    Result<Drawer> drawer = Drawer::open(job, caller);
+    if (!drawer) return drawer.error();
+    Result<PictureSource> source = PictureSource::open(job, caller);
+    if (!source) return source.error();
+    if (!files)
+        if (Result<void> opened = open(source->steps()); !opened) return opened.error();
+    DrawReport report;
+    if (drawer->device()) report.device = drawer->device()->info();
+    Result<DrawInput> input = source->read(0, drawer->device(), caller);
+    if (!input) return input.error();
+    report.input = *std::move(input);
+    const Result<std::vector<Frame>> frames = frames_of(job, report.input.isovalues, source->steps());
+    if (!frames) return frames.error();
+    report.pictures.file = files->out();
+    report.pictures.pictures = frames->size();
+    const Result<Picture> last =
+        draw_frames(*frames, job, *drawer, *source, report.input, *files, report.pictures, caller);
+    if (!last) return last.error();
+    if (reference)
+        if (Result<void> compared = compare(*last, *reference, job, report.pictures, caller); !compared)
+            return compared.error();
+    return report;
+}
+
+} // namespace isotet::jobs

@@ -1,0 +1,340 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/extract_files.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <isotet/device_grid.hpp>
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/process_memory.hpp>
+#include <isotet/write_file.hpp>
+
+#include "core/stopwatch.hpp"
+#include "jobs/extract_notes.hpp"
+#include "jobs/extract_plan.hpp"
+#include "jobs/refuse.hpp"
+
+namespace isotet::jobs {
+
+namespace {
+
+/// What the steps of one job share.
+class ExtractRun {
+public:
+    ExtractRun(const ExtractJob& job, Caller& caller) : job_(job), caller_(caller) {}
+
+    Result<void> run();
+    ExtractNumbers take_numbers() { return std::move(numbers_); }
+
+private:
+    Result<void> open();
+    Result<void> open_device();
+    Result<void> load(std::size_t step);
+    Result<Contour> start(ContourInput input);
+    Result<void> take_piece_of(ContourInput& input);
+    bool goes_into_one_file() const {
+        return !plan_.names.none() && !plan_.names.by_value();
+    } ///< of a step, all surfaces
+    std::size_t isovalues_together(std::size_t isovalues) const;
+    Result<void> choose_values(std::size_t step);
+    Result<void> extract_step(std::size_t step);
+    Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::size_t step);
+    Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
+    OutputKey key(double isovalue, std::size_t step) const;
+
+    const ExtractJob& job_;
+    Caller& caller_;
+    std::optional<GridSource> source_;
+    ExtractPlan plan_;
+    std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
+    std::optional<Contour> contour_;
+    Grid grid_;                                    ///< of the step at hand
+    Array field_;                                  ///< its values
+    std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
+    std::uint64_t first_cell_ = 0;                 ///< of the piece
+    std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
+    std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
+    std::vector<CollectionEntry> series_;          ///< files so far
+    ExtractNumbers numbers_;
+};
+
+/// `engine` vulkan needs a device; where the engine is left open and a device is named, the CPU may stand in for it.
+Result<void> ExtractRun::open_device() {
+    const bool required = job_.engine == EngineChoice::vulkan;
+    const bool named = !job_.device.name.empty() || job_.device.memory;
+    if (named && (job_.engine == EngineChoice::cpu || job_.engine == EngineChoice::reference))
+        return refusal("a device is asked for, but only `engine` vulkan and auto use one");
+    const bool wanted = required || (!job_.device.name.empty() && job_.device.name != "none");
+    if (!wanted) return {};
+    if (job_.method == Method::direct)
+        return refusal("`method` direct was asked for, but devices take packed grids only: clusters");
+    if (job_.device.name == "none") return refusal("`engine` vulkan needs a device, but `device` is none");
+    Result<std::optional<Device>> device = jobs::open_device(job_.device, caller_);
+    if (device) {
+        device_ = vulkan_engine(**device);
+        numbers_.device = (*device)->info().name;
+        return {};
+    }
+    if (required || !is_of_device(device.error().code)) return device.error();
+    caller_.note(device.error().message + ": the CPU extracts instead");
+    return {};
+}
+
+Result<void> ExtractRun::open() {
+    const core::Stopwatch reading;
+    if (auto known = check_placeholders(job_.out, {"{value}", "{time}", "{step}"}); !known) return known;
+    const bool fixed_name = OutputNames(job_.out).fixed();
+    if (auto paths = check_output_paths({job_.grid.file}, with_others(job_, fixed_name ? job_.out : "")); !paths)
+        return paths;
+    if (Result<void> opened = open_device(); !opened) return opened;
+    caller_.detail("looking at " + job_.grid.file);
+    Result<GridSource> source = GridSource::open(job_.grid, caller_);
+    if (!source) return source.error();
+    source_ = *std::move(source);
+    if (auto paths = check_output_paths(source_->info().files, with_others(job_, fixed_name ? job_.out : "")); !paths)
+        return paths;
+    Result<ExtractPlan> plan = plan_extract(job_, *source_, caller_);
+    if (!plan) return plan.error();
+    plan_ = *std::move(plan);
+    numbers_.grid = job_.grid.file;
+    numbers_.format = source_->info().format;
+    numbers_.steps = plan_.steps.size();
+    numbers_.precision = job_.precision;
+    numbers_.threads = caller_.threads();
+    numbers_.read_seconds = reading.seconds();
+    return {};
+}
+
+/// Several isovalues are cheaper in one pass; but each of their surfaces takes memory until it is written. What goes
+/// into one file is in memory together anyway.
+std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
+    constexpr std::size_t per_pass = 8;
+    return goes_into_one_file() ? isovalues : per_pass;
+}
+
+Result<Contour> ExtractRun::start(ContourInput input) {
+    ContourOptions& options = plan_.contour;
+    const std::size_t isovalues =
+        job_.isovalues.empty() ? std::max<std::uint64_t>(job_.levels, 1) : job_.isovalues.size();
+    options.surfaces = isovalues * plan_.steps.size();
+    if (device_) options.engine = device_;
+    options.engine_required = job_.engine == EngineChoice::vulkan;
+    numbers_.why = device_          ? "devices take packed grids"
+                   : options.method ? "asked for"
+                                    : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
+    if (!device_ && job_.engine != EngineChoice::reference)
+        numbers_.predicted = predict(job_, plan_, input, isovalues_together(isovalues));
+    numbers_.process_bytes = peak_resident_memory().value_or(0);
+    if (reset_peak_memory()) resident_before_ = resident_memory();
+    return Contour::create(std::move(input), options);
+}
+
+/// The piece, and the frame of the whole.
+Result<void> ExtractRun::take_piece_of(ContourInput& input) {
+    Result<FramedPiece> piece = take_piece(input, *job_.piece, {job_.split_cells}, caller_.run());
+    if (!piece) return piece.error();
+    plan_.contour.frame = piece->frame;
+    first_cell_ = piece->first_cell;
+    input = std::move(piece->input);
+    grid_ = input.grid;
+    field_ = input.field.values;
+    numbers_.cells = grid_.cells.count();
+    return {};
+}
+
+/// Reads one step and gives it to the session.
+Result<void> ExtractRun::load(std::size_t step) {
+    const core::Stopwatch reading;
+    caller_.detail(fmt::format("reading step {}", step));
+    grid_ = {};
+    Result<Grid> grid = source_->read(plan_.read, step, caller_);
+    if (!grid) return grid.error();
+    Result<PointField> field = find_chosen(*grid, plan_.field.name, job_.field, caller_);
+    if (!field) return field.error();
+    Result<StepFields> fields = carried_fields(plan_, *grid, caller_.run());
+    if (!fields) return fields.error();
+    numbers_.read_seconds += reading.seconds();
+    numbers_.cells = grid->cells.count();
+    numbers_.averaged = field->averaged;
+    field_ = field->values;
+    grid_ = *std::move(grid);
+    coarse_tets_ = 0;
+    ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    if (job_.piece && has_curved_cells(input.grid.cells))
+        return refusal("`piece` takes grids without quadratic cells only");
+    if (job_.piece)
+        if (Result<void> taken = take_piece_of(input); !taken) return taken;
+    if (!contour_) {
+        Result<Contour> started = start(std::move(input));
+        if (!started) return started.error();
+        contour_ = *std::move(started);
+    } else {
+        const Result<ContourUpdate> update = job_.piece ? contour_->set(std::move(input), plan_.contour, caller_.run())
+                                                        : contour_->set(std::move(input), caller_.run());
+        if (!update) return update.error();
+        if (*update != ContourUpdate::grid) caller_.detail("the cells are those of the step before: not packed again");
+    }
+    if (contour_->method() == Method::clusters) {
+        caller_.detail("packing");
+        if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready;
+    }
+    if (job_.isovalues.empty()) {
+        const core::Stopwatch looking;
+        caller_.detail("looking at the field");
+        const Result<FieldReport> range = contour_->field(caller_.run());
+        if (!range) return range.error();
+        numbers_.field = *range;
+        if (plan_.contour.frame) { // levels are those of the whole grid
+            const FieldSurvey& whole = *plan_.contour.frame->find(range->name);
+            numbers_.field.lower = whole.lower;
+            numbers_.field.upper = whole.upper;
+        }
+        if (contour_->method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
+    }
+    if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
+    return choose_values(step);
+}
+
+Result<void> ExtractRun::choose_values(std::size_t step) {
+    Result<std::vector<double>> isovalues = choose_isovalues(job_, field_, numbers_.field, caller_);
+    if (!isovalues) return isovalues.error();
+    isovalues_ = *std::move(isovalues);
+    if (plan_.names.fixed()) return {};
+    for (const double isovalue : isovalues_) {
+        const std::string name = plan_.names.name(key(isovalue, step));
+        std::vector<std::string> others = source_->info().files;
+        others.insert(others.end(), {job_.grid.file, plan_.collection});
+        others.insert(others.end(), job_.other_outputs.begin(), job_.other_outputs.end());
+        if (auto path = check_output_paths(others, {name}); !path) return path;
+        if (!plan_.names.by_value()) break; // all values go into the same file
+    }
+    return {};
+}
+
+OutputKey ExtractRun::key(double isovalue, std::size_t step) const {
+    return {isovalue, time_of(source_->info(), step), step, std::max<std::size_t>(source_->info().times.size(), 1)};
+}
+
+Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> isovalues, std::size_t step) {
+    for (const double isovalue : isovalues) caller_.detail("extracting " + shortest(isovalue));
+    Result<ContourResult> result = contour_->extract(isovalues, caller_.run());
+    if (!result) return result.error();
+    caller_.notes(result->notes);
+    const double seconds = result->extract_seconds / static_cast<double>(isovalues.size());
+    numbers_.method = result->method;
+    numbers_.engine = result->engine;
+    numbers_.field = result->field;
+    numbers_.cells_left_out = result->cells_left_out;
+    numbers_.pack_seconds += result->pack_seconds;
+    if (const auto packed = contour_->packed()) numbers_.pack = packed->report();
+    coarse_tets_ += result->coarse_tets;
+    numbers_.refinement = result->refinement;
+    std::vector<Surface> surfaces;
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        Surface& surface = surfaces.emplace_back(std::move(result->surfaces[i].surface));
+        if (job_.piece) {
+            Result<Surface> numbered = number_as_whole(surface, grid_.point_numbers, first_cell_);
+            if (!numbered) return numbered.error();
+            surface = *std::move(numbered);
+        }
+        SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
+        numbers.extract_seconds = seconds;
+        if (result->engine == "vulkan") numbers.device = result->work;
+        numbers.isovalue = isovalues[i];
+        numbers.time = time_of(source_->info(), step);
+        numbers.report = result->surfaces[i].report;
+        numbers.vertices = surface.vertex_count();
+        numbers.triangles = surface.triangle_count();
+        const core::Stopwatch measuring;
+        numbers.area = area(surface);
+        numbers_.measure_seconds += measuring.seconds();
+        if (numbers.triangles == 0 && job_.fail_if_empty)
+            return Error{ErrorCode::invalid_data, "`fail_if_empty`: " + why_empty(numbers_.field, isovalues[i])};
+        note_what_extracting_found(numbers_, numbers, caller_);
+    }
+    return surfaces;
+}
+
+Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
+    const core::Stopwatch writing;
+    caller_.detail("writing " + numbers.file);
+    std::error_code ignored;
+    const bool replaces = surface.triangle_count() == 0 && std::filesystem::exists(numbers.file, ignored);
+    const Result<WriteReport> written =
+        write_surface(surface, numbers.file, {.compression = job_.compression}, caller_.run());
+    if (!written) return written.error();
+    caller_.notes(written->notes);
+    if (replaces) caller_.note(fmt::format("'{}' was replaced by an empty surface", numbers.file));
+    numbers.write_seconds = writing.seconds();
+    const double time = numbers.time.value_or(static_cast<double>(series_.size()));
+    const auto same_time = std::ranges::count(series_, time, &CollectionEntry::time);
+    series_.push_back({time, static_cast<std::size_t>(same_time), numbers.file});
+    return {};
+}
+
+Result<void> ExtractRun::extract_step(std::size_t step) {
+    const bool one_file = goes_into_one_file();
+    std::size_t at_once = contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
+    std::vector<Surface> joined;
+    for (std::span<const double> left = isovalues_; !left.empty();) {
+        const std::span<const double> pass = left.first(std::min(at_once, left.size()));
+        Result<std::vector<Surface>> surfaces = extract_pass(pass, step);
+        if (!surfaces && surfaces.error().code == ErrorCode::out_of_memory && pass.size() > 1 && !one_file) {
+            at_once = pass.size() / 2;
+            continue;
+        }
+        if (!surfaces) return surfaces.error();
+        left = left.subspan(pass.size());
+        const std::size_t first = numbers_.surfaces.size() - pass.size();
+        for (std::size_t i = 0; i < pass.size() && !plan_.names.none(); ++i) {
+            SurfaceNumbers& numbers = numbers_.surfaces[first + i];
+            numbers.file = plan_.names.name(key(pass[i], step));
+            if (one_file) joined.push_back(std::move((*surfaces)[i]));
+            else if (Result<void> written = write((*surfaces)[i], numbers); !written) return written;
+        }
+    }
+    note_what_the_step_holds(numbers_, grid_, coarse_tets_, caller_);
+    if (!one_file) return {};
+    return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());
+}
+
+Result<void> ExtractRun::run() {
+    if (Result<void> opened = open(); !opened) return opened;
+    for (const std::size_t step : plan_.steps) {
+        if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (Result<void> loaded = load(step); !loaded) return loaded;
+        if (Result<void> extracted = extract_step(step); !extracted) return extracted;
+    }
+    if (const auto peak = peak_resident_memory()) {
+        if (resident_before_) numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
+        numbers_.process_bytes = std::max(numbers_.process_bytes, *peak);
+    }
+    if (plan_.collection.empty()) return {};
+    numbers_.collection = plan_.collection;
+    return write_collection(series_, plan_.collection, caller_.run());
+}
+
+} // namespace
+
+std::uint64_t ExtractNumbers::transient_peak() const {
+    std::uint64_t peak = 0;
+    for (const SurfaceNumbers& surface : surfaces) peak = std::max(peak, surface.report.transient_bytes);
+    return peak;
+}
+
+double ExtractNumbers::work_seconds() const {
+    double seconds = pack_seconds + look_seconds;
+    for (const SurfaceNumbers& surface : surfaces) seconds += surface.extract_seconds;
+    return seconds;
+}
+
+Result<ExtractNumbers> extract_files(const ExtractJob& job, Caller& caller) {
+    ExtractRun run(job, caller);
+    if (Result<void> done = run.run(); !done) return done.error();
+    return run.take_numbers();
+}
+
+} // namespace isotet::jobs

@@ -1,0 +1,62 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "jobs/extract_notes.hpp"
+
+#include <fmt/format.h>
+
+#include <isotet/jobs/number_text.hpp>
+
+namespace isotet::jobs {
+
+/// After the surfaces of a step: what was left out, and what rounding did.
+void note_what_the_step_holds(const ExtractNumbers& numbers, const Grid& grid, std::uint64_t coarse_tets,
+                              Caller& caller) {
+    if (const std::string note = cells_left_out_note(grid); numbers.cells_left_out > 0 && !note.empty())
+        caller.note(note);
+    if (numbers.field.flushed > 0) {
+        caller.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0",
+                                grouped(numbers.field.flushed), numbers.field.name));
+    }
+    std::string where;
+    if (numbers.pack && numbers.pack->coarse_clusters > 0)
+        where = fmt::format("in {} of {} clusters", grouped(numbers.pack->coarse_clusters),
+                            grouped(numbers.pack->clusters));
+    else if (coarse_tets > 0) where = fmt::format("in {} active tets", grouped(coarse_tets));
+    if (where.empty()) return;
+    caller.note(
+        where +
+        " rounding to float32 moves points by over a thousandth of the shortest edge; `precision` double keeps them");
+}
+
+std::string why_empty(const FieldReport& field, double isovalue) {
+    const std::string value = shortest(isovalue);
+    if (!(field.lower <= field.upper))
+        return fmt::format("isovalue {} gives no surface: field '{}' has no finite value", value, field.name);
+    if (isovalue == field.lower)
+        return fmt::format("{} is the smallest value of '{}': nothing is below it, the surface is empty", value,
+                           field.name);
+    const std::string range =
+        fmt::format("the range of '{}', {} to {}", field.name, shortest(field.lower), shortest(field.upper));
+    if (isovalue < field.lower || isovalue > field.upper)
+        return fmt::format("isovalue {} is outside {}: the surface is empty", value, range);
+    return fmt::format("isovalue {} is within {}, but no tet has values on both sides of it: the surface is empty",
+                       value, range);
+}
+
+void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller) {
+    const FieldReport& field = numbers.field;
+    if (surface.triangles == 0) caller.note(why_empty(field, surface.isovalue));
+    if (const std::uint64_t ties = surface.report.false_ties.value_or(0); ties > 0) {
+        const bool double_helps = numbers.precision == Precision::float32 && !field.unchanged;
+        caller.note(fmt::format("isovalue {}: {} point{} tied (equal to it) only by rounding{}",
+                                shortest(surface.isovalue), grouped(ties), ties == 1 ? " is" : "s are",
+                                double_helps ? "; `precision` double keeps them apart" : ""));
+    }
+    if (surface.report.near_tie) {
+        caller.note(fmt::format(
+            "no point has the value {}, but points have the nearest one that the type of '{}' can hold; `snap` "
+            "takes that",
+            shortest(surface.isovalue), field.name));
+    }
+}
+
+} // namespace isotet::jobs

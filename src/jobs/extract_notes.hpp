@@ -1,0 +1,19 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What the user should know of extracted surfaces.
+#pragma once
+
+#include <isotet/jobs/extract_files.hpp>
+
+namespace isotet::jobs {
+
+/// Why an isovalue gives no surface: a sentence.
+std::string why_empty(const FieldReport& field, double isovalue);
+
+/// Notes of one surface: that it is empty, ties that only rounding made.
+void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller);
+
+/// Notes of a step: what was left out, and what rounding did.
+void note_what_the_step_holds(const ExtractNumbers& numbers, const Grid& grid, std::uint64_t coarse_tets,
+                              Caller& caller);
+
+} // namespace isotet::jobs

@@ -1,0 +1,214 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "jobs/extract_plan.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <isotet/jobs/number_text.hpp>
+#include <isotet/levels.hpp>
+
+#include "jobs/refuse.hpp"
+
+namespace isotet::jobs {
+
+namespace {
+
+/// What the format of OUT can hold.
+struct Holds {
+    bool fields = true;
+    bool edge_ends = true; ///< and source cells
+};
+
+Result<Holds> holds(const ExtractJob& job) {
+    if (job.out.empty()) return Holds{false, true};
+    const Result<Format> format = format_for_writing(job.out, Writes::surface, job.compression);
+    if (!format) return format.error();
+    const bool vtk = format->name == "vtp" || format->name == "vtk";
+    for (const auto& [asked, option] :
+         {std::pair{job.edge_ends, "`edge_ends`"}, {job.source_cells, "`source_cells`"}}) {
+        if (asked && !vtk) {
+            return refusal("{} was asked for, but {} holds no such array: .vtp and .vtk do", option, format->name);
+        }
+    }
+    return Holds{format->name != "stl" && format->name != "obj", vtk};
+}
+
+Result<void> check_names(const ExtractJob& job, const ExtractPlan& plan, const FileInfo& info) {
+    if (plan.names.none()) return {};
+    if (plan.steps.size() > 1 && !plan.names.by_step())
+        return refusal("`all_steps` has {} time steps, but OUT, '{}', has neither {{step}} nor {{time}}: there is "
+                       "one file for each step",
+                       plan.steps.size(), job.out);
+    if (!plan.names.by_time()) return {};
+    std::set<double> times;
+    for (const std::size_t step : plan.steps) {
+        const std::optional<double> time = time_of(info, step);
+        if (!time)
+            return refusal("OUT, '{}', has {{time}}, but the grid knows no time; {{step}} is its number", job.out);
+        if (!times.insert(*time).second)
+            return refusal("several time steps have the time {}, but each needs a file of its own: {{step}} in "
+                           "OUT tells them apart",
+                           shortest(*time));
+    }
+    return {};
+}
+
+/// The collection of a series that ParaView opens; nothing where there is no series.
+Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& plan, Caller& caller) {
+    if (plan.steps.size() < 2 || ending_of(job.out) != ".vtp") return std::string();
+    std::string collection = plan.names.collection();
+    if (same_file(collection, job.grid.file)) {
+        caller.note(fmt::format("no collection of the series is written: '{}' is the input", collection));
+        return std::string();
+    }
+    if (auto paths = check_output_paths({job.grid.file}, with_others(job, collection)); !paths) return paths.error();
+    return collection;
+}
+
+/// --with, or all point fields that the format can hold; nothing means all.
+Result<std::optional<CarriedFields>> plan_carried(const ExtractJob& job, const GridSource& source,
+                                                  bool format_holds_fields) {
+    if (!job.with && format_holds_fields) return std::optional<CarriedFields>{};
+    Result<CarriedFields> carried = choose_carried(source, job.with.value_or(std::vector<std::string>{}));
+    if (!carried) return carried.error();
+    return std::optional<CarriedFields>{*std::move(carried)};
+}
+
+FieldsToRead fields_to_read(const ExtractPlan& plan) {
+    FieldsToRead read;
+    read.cell = plan.field.cell;
+    if (!plan.carried) return read; // all point fields
+    read.point = plan.field.point;
+    add_names(*read.point, plan.carried->point);
+    add_names(*read.cell, plan.carried->cell);
+    for (const FoundField& component : plan.carried->components) add_names(*read.point, component.point);
+    return read;
+}
+
+} // namespace
+
+Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source, Caller& caller) {
+    ExtractPlan plan;
+    plan.names = OutputNames(job.out);
+    const Result<Holds> format = holds(job);
+    if (!format) return format.error();
+
+    auto steps = choose_steps(source.info(), job.grid, job.all_steps ? Steps::all : Steps::one, caller);
+    if (!steps) return steps.error();
+    plan.steps = *std::move(steps);
+    if (Result<void> names = check_names(job, plan, source.info()); !names) return names.error();
+    Result<std::string> collection = plan_collection(job, plan, caller);
+    if (!collection) return collection.error();
+    plan.collection = *std::move(collection);
+
+    Result<FoundField> field = choose_field(source, job.field);
+    if (!field) return field.error();
+    plan.field = *std::move(field);
+    auto carried = plan_carried(job, source, format->fields);
+    if (!carried) return carried.error();
+    plan.carried = *std::move(carried);
+    plan.read = fields_to_read(plan);
+
+    plan.contour.method = job.method;
+    if (job.engine == EngineChoice::reference) plan.contour.engine = reference_engine();
+    plan.contour.precision = job.precision;
+    plan.contour.ties = job.keep_degenerate ? Ties::keep : Ties::merge;
+    plan.contour.normals = job.normals;
+    plan.contour.edge_ends = job.edge_ends;
+    plan.contour.source_cells = job.source_cells;
+    plan.contour.split_cells = job.split_cells;
+    plan.contour.refine = job.refine;
+    plan.contour.exact_vertices = job.exact_vertices;
+    return plan;
+}
+
+Result<std::vector<double>> choose_isovalues(const ExtractJob& job, const Array& field, const FieldReport& packed,
+                                             Caller& caller) {
+    std::vector<double> isovalues = job.isovalues;
+    if (isovalues.empty()) {
+        if (!(packed.lower <= packed.upper)) {
+            return Error{
+                ErrorCode::invalid_data,
+                fmt::format("field '{}' has no finite value at the points of the tets: without an isovalue there "
+                            "is nothing to choose one from",
+                            packed.name)};
+        }
+        isovalues = evenly_spaced_levels(packed.lower, packed.upper, std::max<std::uint64_t>(job.levels, 1));
+        if (job.levels == 0) {
+            caller.note(fmt::format("no isovalue was given: {}, the middle of the range {} to {}, was taken",
+                                    shortest(isovalues.front()), shortest(packed.lower), shortest(packed.upper)));
+        }
+    }
+    std::vector<double> distinct;
+    std::set<double> seen;
+    for (double value : isovalues) {
+        if (job.snap) value = snap(field, value);
+        if (value == 0) value = 0; // -0 equals +0, and is called 0
+        if (seen.insert(value).second) {
+            distinct.push_back(value);
+        } else if (!job.isovalues.empty()) { // levels of a constant field are all the same, too
+            caller.note(fmt::format("the isovalue {} was given more than once: it is extracted once", shortest(value)));
+        }
+    }
+    return distinct;
+}
+
+Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run) {
+    StepFields fields;
+    if (!plan.carried) {
+        fields.point = grid.point_fields;
+        return fields;
+    }
+    const auto has = [](const std::vector<std::string>& names, const Field& field) {
+        return std::find(names.begin(), names.end(), field.name) != names.end();
+    };
+    for (const Field& field : grid.point_fields) {
+        if (has(plan.carried->point, field)) fields.point.push_back(field);
+    }
+    for (const Field& field : grid.cell_fields) {
+        if (has(plan.carried->cell, field)) fields.cell.push_back(field);
+    }
+    for (const FoundField& component : plan.carried->components) {
+        const Result<PointField> found = find_field(grid, component.name, {}, run);
+        if (!found) return found.error();
+        fields.point.push_back({component.name, found->values});
+    }
+    return fields;
+}
+
+std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
+                                std::size_t together) {
+    const Result<FieldSample> sample = FieldSample::create(input.grid, input.field, job.split_cells);
+    if (!sample) return std::nullopt; // an error that Contour::create() gives, too
+    const std::vector<double> levels =
+        evenly_spaced_levels(sample->lower(), sample->upper(), std::max<std::uint64_t>(job.levels, 1));
+    const std::vector<double>& isovalues = job.isovalues.empty() ? levels : job.isovalues;
+    double all = 0;
+    Workload work;
+    for (std::size_t i = 0; i < isovalues.size(); i += together) {
+        double pass = 0;
+        for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k)
+            pass += sample->triangles(isovalues[k]);
+        all += pass;
+        work.triangles_together = std::max(work.triangles_together, pass);
+    }
+    work.points = sample->points();
+    work.tets = sample->tets();
+    work.surfaces = static_cast<double>(isovalues.size() * plan.steps.size());
+    work.gradients = job.normals == Normals::gradient;
+    work.find_range = job.isovalues.empty();
+    work.triangles = all / static_cast<double>(isovalues.size());
+    const Method method = job.method.value_or(method_for(isovalues.size() * plan.steps.size(), work.gradients));
+    return estimate(method, work);
+}
+
+std::vector<std::string> with_others(const ExtractJob& job, const std::string& output) {
+    std::vector<std::string> outputs{output};
+    outputs.insert(outputs.end(), job.other_outputs.begin(), job.other_outputs.end());
+    return outputs;
+}
+
+} // namespace isotet::jobs

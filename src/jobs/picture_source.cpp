@@ -1,0 +1,299 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "jobs/picture_source.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <isotet/color_field.hpp>
+#include <isotet/field_statistics.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/levels.hpp>
+
+#include "core/stopwatch.hpp"
+#include "jobs/refuse.hpp"
+
+namespace isotet::jobs {
+
+namespace {
+
+/// Whether isovalues were asked for.
+bool names_isovalues(const DrawJob& job) {
+    return !job.isovalues.empty() || job.levels > 0 || !job.sweep.empty() || job.method.draw;
+}
+
+Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field) {
+    if (!job.isovalues.empty()) return job.isovalues;
+    const ValueRange range = typical_range(field.values);
+    std::vector<double> levels = evenly_spaced_levels(
+        range.lower, range.upper, job.levels > 0 ? job.levels : default_levels, LevelRounding::short_decimals);
+    if (!levels.empty()) return levels;
+    return Error{ErrorCode::invalid_data,
+                 fmt::format("field '{}' has no finite value: there is nothing to contour", field.name)};
+}
+
+/// The scale that is asked for.
+Result<ColorOptions> color_options(const DrawJob& job) {
+    ColorOptions options{job.scale, {}};
+    if (job.range.empty()) return options;
+    if (job.range.size() != 2 || !(job.range[0] < job.range[1]))
+        return refusal("`range` takes two numbers, the smaller one first, such as 0,100");
+    options.range = ValueRange{job.range[0], job.range[1]};
+    return options;
+}
+
+/// A field of `from`, a grid or a surface, that colours.
+template <class From>
+Result<ColorField> colors_of(const From& from, const std::string& name, const std::vector<RegionName>& regions,
+                             const DrawJob& job, Caller& caller) {
+    Result<ColorOptions> options = color_options(job);
+    if (!options) return options.error();
+    for (const RegionName& region : regions)
+        if (region.field == name) options->names[static_cast<double>(region.number)] = region.name;
+    Result<FoundColors> found = find_colors(from, name, *options, caller.run());
+    if (!found) return found.error();
+    caller.notes(found->notes);
+    return std::move(found->field);
+}
+
+/// Points with their axes stretched.
+Array stretched(const Array& points, const std::vector<double>& factors) {
+    return points.visit([&]<class Scalar>(std::span<const Scalar> scalars) {
+        std::vector<Scalar> out(scalars.size());
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = static_cast<Scalar>(static_cast<double>(scalars[i]) * factors[i % 3]);
+        return Array::own(std::move(out), 3);
+    });
+}
+
+} // namespace
+
+struct PictureSource::Contents {
+    Grid grid;
+    std::optional<PointField> field; ///< that is contoured
+    std::optional<ColorField> colors;
+    bool model = false; ///< the boundary is what is shown: opaque, coloured where there are colours
+};
+
+Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
+    PictureSource source(job);
+    if (!job.color_by.empty() && !job.boundary_color_by.empty() && job.color_by != job.boundary_color_by)
+        return refusal("`color_by` is '{}' and `boundary_color_by` '{}', but a picture has one colour scale",
+                       job.color_by, job.boundary_color_by);
+    const FileKinds kinds = kinds_of(job.grid.file);
+    if (kinds.surface && job.grid.format.empty()) {
+        const core::Stopwatch reading;
+        Result<SurfaceFile> file = read_surface(job.grid.file, {}, caller.run());
+        if (file) {
+            source.surface_ = std::move(file->surface);
+            source.surface_format_ = file->format;
+            source.surface_seconds_ = reading.seconds();
+            return source;
+        }
+        // A name such as grid.vtk can be either.
+        if (!kinds.grid || file.error().code != ErrorCode::invalid_data) return file.error();
+    }
+    Result<GridSource> grid = GridSource::open(job.grid, caller);
+    if (!grid) return grid.error();
+    if (auto paths = check_output_paths(grid->info().files, job.other_outputs); !paths) return paths.error();
+    source.source_ = *std::move(grid);
+    auto steps = choose_steps(source.source_->info(), job.grid, job.all_steps ? Steps::all : Steps::one, caller);
+    if (!steps) return steps.error();
+    source.steps_ = *std::move(steps);
+    return source;
+}
+
+SceneLook PictureSource::look_of(const Contents& contents) const {
+    SceneLook look;
+    if (contents.field || !job_.slices.empty() || surface_) look.colors = contents.colors;
+    if (contents.model) look.boundary_colors = contents.colors;
+    if (contents.field && !look.colors && job_.sweep.size() == 3)
+        look.isovalue_range = {std::min(job_.sweep[0], job_.sweep[1]), std::max(job_.sweep[0], job_.sweep[1])};
+    look.map = job_.scale.map;
+    look.opacity = job_.opacity;
+    look.boundary_opacity = job_.boundary.value_or(contents.model ? 1 : default_boundary_opacity);
+    look.outline = job_.outline;
+    look.line_width = std::max(1.0, job_.picture.height / 600.0);
+    look.edges = job_.edges;
+    look.shade_by = job_.shade_by;
+    look.clips = job_.clips;
+    look.slices = job_.slices;
+    for (std::vector<Plane>* planes : {&look.clips, &look.slices})
+        for (Plane& plane : *planes)
+            for (std::size_t axis = 0; axis < 3 && !job_.stretch.empty(); ++axis)
+                plane.normal[axis] /= job_.stretch[axis];
+    return look;
+}
+
+Result<DrawInput> PictureSource::take_surface(const std::optional<Device>& device, Caller& caller) {
+    if (names_isovalues(job_) || !job_.field.name.empty() || job_.boundary || job_.method.extract ||
+        !job_.boundary_color_by.empty() || !job_.slices.empty()) {
+        return refusal("{} is a surface: it has no isovalues, no field to contour (`color_by` colours it), no "
+                       "boundary, no slices and no tets",
+                       job_.grid.file);
+    }
+    DrawInput input;
+    input.is_surface = true;
+    input.format = surface_format_;
+    input.read_seconds = surface_seconds_;
+    Contents contents;
+    if (!job_.color_by.empty()) {
+        Result<ColorField> colors = colors_of(*surface_, job_.color_by, {}, job_, caller);
+        if (!colors) return colors.error();
+        input.colors = contents.colors = *std::move(colors);
+    }
+    Surface surface = *surface_;
+    if (!job_.stretch.empty()) {
+        surface.positions = stretched(surface.positions, job_.stretch);
+        surface.normals_kind = Normals::none;
+    }
+    Result<IsosurfaceScene> scene = IsosurfaceScene::create(device, std::move(surface), look_of(contents));
+    if (!scene) return scene.error();
+    input.scene = *std::move(scene);
+    return input;
+}
+
+/// The range of a field that colours over all steps becomes --range.
+Result<void> PictureSource::widen_range(const std::string& color, Caller& caller) {
+    if (steps_.size() < 2 || color.empty() || !job_.range.empty()) return {};
+    const Result<FoundField> found = choose_field(*source_, {color, false});
+    if (!found) return found.error();
+    ValueRange all{INFINITY, -INFINITY};
+    for (const std::size_t step : steps_) {
+        const Result<Grid> grid = source_->read({found->point, found->cell}, step, caller);
+        if (!grid) return grid.error();
+        Result<ColorField> colors = colors_of(*grid, color, source_->info().regions, job_, caller);
+        if (!colors) return colors.error();
+        if (!colors->classes.empty()) return {};
+        const Result<ValueRange> one = colored_range(colors->values, job_.scale.logarithmic, caller.run());
+        if (!one) return one.error();
+        all = {std::min(all.lower, one->lower), std::max(all.upper, one->upper)};
+    }
+    if (all.lower < all.upper) job_.range = {all.lower, all.upper};
+    return {};
+}
+
+/// A step that was read ahead, or reads it.
+Result<Grid> PictureSource::read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller) {
+    const bool is_there = ahead_.valid() && ahead_step_ == step && fields == last_read_;
+    last_read_ = fields;
+    return is_there ? ahead_.get() : source_->read(fields, step, caller);
+}
+
+void PictureSource::read_ahead(std::size_t step, Caller& caller) {
+    Run run = caller.run();
+    run.progress.report = {}; // the bar is that of the picture
+    ahead_step_ = step;
+    ahead_ = std::async(std::launch::async, [source = *source_, fields = last_read_, step, run, &caller] {
+        return source.read(fields, step, caller, run);
+    });
+}
+
+/// Reads what the picture needs of a step, and decides what it shows.
+Result<PictureSource::Contents> PictureSource::read_contents(std::size_t step, Caller& caller) {
+    Contents contents;
+    const bool asked = names_isovalues(job_);
+    std::string color = job_.color_by.empty() ? job_.boundary_color_by : job_.color_by;
+    std::string field = job_.field.name;
+    contents.model = !job_.boundary_color_by.empty();
+    bool contours = asked || (job_.slices.empty() && (!contents.model || !field.empty()));
+    if (!contours && color.empty()) color = field; // of slices
+    const bool unnamed = contours ? field.empty() : color.empty();
+    const std::size_t fields = source_->info().fields.size();
+
+    FieldsToRead read;
+    if (!unnamed || fields == 0) read = {std::vector<std::string>(), std::vector<std::string>()};
+    for (const auto& [name, is_contoured] : {std::pair(field, true), std::pair(color, false)}) {
+        if (unnamed || name.empty() || (is_contoured && !contours)) continue;
+        const Result<FoundField> found = choose_field(*source_, {name, is_contoured && job_.field.cell_field});
+        if (!found) return found.error();
+        add_names(*read.point, found->point);
+        add_names(*read.cell, found->cell);
+    }
+    Result<Grid> grid = read_grid(read, step, caller);
+    if (!grid) return grid.error();
+    contents.grid = *std::move(grid);
+    if (unnamed) {
+        const DefaultField chosen = default_field(contents.grid);
+        if (chosen.name.empty() && asked)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("none of the {} fields has two different values: there is nothing to contour; "
+                                     "`field` x, y or z contours a coordinate",
+                                     fields)};
+        const bool as_model = contours && !asked && color.empty() && (chosen.name.empty() || chosen.whole_numbers);
+        if (as_model) {
+            contours = false;
+            contents.model = true;
+            color = chosen.name;
+            caller.note(
+                chosen.name.empty()
+                    ? std::string("no field varies: the boundary of the grid is drawn")
+                    : fmt::format("no field was named: '{}', whole numbers, colours the boundary; `field` contours a "
+                                  "field",
+                                  chosen.name));
+        } else {
+            (contours ? field : color) = chosen.name;
+            caller.note(fmt::format("no field was named: '{}', which varies most, was taken; `field` names another",
+                                    chosen.name));
+        }
+    }
+    if (contours) {
+        Result<PointField> found = find_chosen(contents.grid, field, job_.field, caller);
+        if (!found) return found.error();
+        contents.field = *std::move(found);
+    }
+    if (!color.empty()) {
+        if (auto widened = widen_range(color, caller); !widened) return widened.error();
+        Result<ColorField> colors = colors_of(contents.grid, color, source_->info().regions, job_, caller);
+        if (!colors) return colors.error();
+        contents.colors = *std::move(colors);
+    }
+    return contents;
+}
+
+Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Device>& device, Caller& caller) {
+    if (surface_) return take_surface(device, caller);
+    DrawInput input;
+    const core::Stopwatch reading;
+    const std::size_t step = steps_[which];
+    Result<Contents> contents = read_contents(step, caller);
+    if (!contents) return contents.error();
+    input.read_seconds = reading.seconds();
+    if (which + 1 < steps_.size() && caller.run().threads != 1) read_ahead(steps_[which + 1], caller);
+    input.format = source_->info().format;
+    input.time = time_of(source_->info(), step);
+    if (source_->info().times.size() > 1) input.step = step;
+    input.cells = contents->grid.cells.count();
+    input.colors = contents->colors;
+    IsosurfaceOptions options;
+    if (contents->field) {
+        input.field = contents->field->name;
+        Result<std::vector<double>> levels = choose_levels(job_, *contents->field);
+        if (!levels) return levels.error();
+        input.isovalues = *std::move(levels);
+        if (steps_.size() > 1) job_.isovalues = input.isovalues;
+        options.field = *contents->field;
+    }
+    options.grid = contents->grid;
+    if (!job_.stretch.empty()) options.grid.points = stretched(options.grid.points, job_.stretch);
+    options.surfaces = job_.sweep.empty() ? input.isovalues.size() : static_cast<std::uint64_t>(job_.sweep[2]);
+    options.method = job_.method.extract;
+    options.draw = job_.method.draw;
+    options.split_cells = job_.split_cells;
+    options.refine = job_.refine;
+    options.index = job_.index.value_or(default_index);
+    options.picture = job_.picture;
+    options.where = job_.engine == EngineChoice::vulkan ? ExtractOn::device
+                    : job_.engine == EngineChoice::cpu  ? ExtractOn::cpu
+                                                        : ExtractOn::best;
+    const SceneLook look = look_of(*contents);
+    contents->grid = {};
+    Result<IsosurfaceScene> scene = IsosurfaceScene::create(device, std::move(options), look, caller.run());
+    if (!scene) return scene.error();
+    input.scene = *std::move(scene);
+    return input;
+}
+
+} // namespace isotet::jobs

@@ -1,0 +1,53 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What draw_files() draws: a scene of a surface from a file, or of a grid.
+#pragma once
+
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/jobs/draw_files.hpp>
+
+namespace isotet::jobs {
+
+/// The file, and the time steps that are drawn.
+class PictureSource {
+public:
+    /// Errors   as of reading; invalid_argument where options are for grids, but the file is a surface
+    static Result<PictureSource> open(const DrawJob& job, Caller& caller);
+
+    std::size_t steps() const noexcept { return steps_.empty() ? 1 : steps_.size(); }
+
+    /// Reads a step, chooses field and isovalues, and starts the scene. All steps have the isovalues and the colour scale
+    /// of the first that is read, whose range is that of all of them.
+    ///
+    /// The step behind is read while this one is drawn: then there are two in memory.
+    ///
+    /// `device`   draws, nothing: the CPU does; extracts too if it is a graphics card, or if `engine` vulkan asks for it
+    /// Errors     as of reading and packing; invalid_argument where a field to colour by is none
+    Result<DrawInput> read(std::size_t which, const std::optional<Device>& device, Caller& caller);
+
+private:
+    struct Contents; ///< of one step
+    explicit PictureSource(const DrawJob& job) : job_(job) {}
+    Result<DrawInput> take_surface(const std::optional<Device>& device, Caller& caller);
+    Result<Contents> read_contents(std::size_t step, Caller& caller);
+    Result<void> widen_range(const std::string& color, Caller& caller);
+    Result<Grid> read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller);
+    void read_ahead(std::size_t step, Caller& caller);
+    SceneLook look_of(const Contents& contents) const;
+
+    DrawJob job_; ///< with the isovalues and the range of the first step
+    std::string surface_format_;
+    std::optional<Surface> surface_;
+    double surface_seconds_ = 0;
+    std::optional<GridSource> source_;
+    std::vector<std::size_t> steps_;
+
+    FieldsToRead last_read_;          ///< of the last step
+    std::future<Result<Grid>> ahead_; ///< the next step, with the same fields
+    std::size_t ahead_step_ = 0;
+};
+
+} // namespace isotet::jobs

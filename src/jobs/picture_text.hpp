@@ -1,0 +1,16 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What is written in a picture, and said of it.
+#pragma once
+
+#include <isotet/annotation.hpp>
+#include <isotet/jobs/draw_files.hpp>
+
+namespace isotet::jobs {
+
+/// Scale, legend and caption; empty with `plain`.
+Annotation annotation_of(const DrawJob& job, const DrawInput& input);
+
+/// Notes the isovalues that give no surface.
+void note_empty_surfaces(const DrawInput& input, Caller& caller);
+
+} // namespace isotet::jobs

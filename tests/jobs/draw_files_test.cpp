@@ -1,0 +1,95 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/draw_files.hpp>
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <isotet/picture_file.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+DrawJob small_picture(const std::string& grid, const std::string& out) {
+    DrawJob job;
+    job.grid.file = grid;
+    job.out = out;
+    job.picture.width = 160;
+    job.picture.height = 120;
+    job.plain = true;
+    return job;
+}
+
+TEST(DrawFiles, DrawsAGridWithItsNumbers) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:6:sphere", folder.file("a.png"));
+    job.isovalues = {0.5, 0.75};
+    const DrawReport report = draw_files(job, listener).value();
+    EXPECT_EQ(report.input.field, "sphere");
+    EXPECT_FALSE(report.device) << "the CPU draws";
+    EXPECT_EQ(report.pictures.pictures, 1u);
+    EXPECT_EQ(report.pictures.bytes, std::filesystem::file_size(folder.file("a.png")));
+    EXPECT_EQ(isovalue_texts(*report.input.scene), (std::vector<std::string>{"0.5", "0.75"}));
+    EXPECT_EQ(read_picture(folder.file("a.png"))->width, 160u);
+}
+
+TEST(DrawFiles, TheCameraToldDrawsTheSamePicture) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:6:sphere", folder.file("a.png"));
+    job.isovalues = {0.5};
+    const DrawReport report = draw_files(job, listener).value();
+    job.camera = parse_camera(report.pictures.camera);
+    ASSERT_TRUE(job.camera);
+    job.out = folder.file("b.png");
+    job.reference = folder.file("a.png");
+    EXPECT_EQ(draw_files(job, listener).value().pictures.differs, 0);
+}
+
+TEST(DrawFiles, NumbersThePicturesOfASweep) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("p{frame}.png"));
+    job.field.name = "sphere";
+    job.sweep = {0.25, 0.75, 10};
+    const DrawReport report = draw_files(job, listener).value();
+    EXPECT_EQ(report.pictures.pictures, 10u);
+    for (const char* name : {"p01.png", "p10.png"}) EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
+    ASSERT_EQ(listener.noted.size(), 1u);
+    EXPECT_NE(listener.noted[0].find("p%02d.png"), std::string::npos) << listener.noted[0];
+}
+
+TEST(DrawFiles, RefusesNamesThatDoNotFitThePictures) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("p{frame}.png"));
+    EXPECT_NE(draw_files(job, listener).error().message.find("only pictures of `sweep`, `orbit` and `all_steps` have"),
+              std::string::npos);
+    job.out = folder.file("p.png");
+    job.orbit = 4;
+    EXPECT_EQ(draw_files(job, listener).error().code, ErrorCode::invalid_argument);
+    job.orbit = 0;
+    job.other_outputs = {folder.file("p.png")};
+    EXPECT_EQ(draw_files(job, listener).error().message, "two outputs are the same file, '" + job.out + "'");
+}
+
+TEST(DrawFiles, NotesIsovaluesWithoutASurface) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("a.png"));
+    job.field.name = "sphere";
+    job.isovalues = {9};
+    ASSERT_TRUE(draw_files(job, listener));
+    ASSERT_EQ(listener.noted.size(), 1u);
+    EXPECT_TRUE(listener.noted[0].starts_with("there is no surface at 9: the values of 'sphere' go from 0 to"))
+        << listener.noted[0];
+}
+
+} // namespace
+} // namespace isotet::jobs

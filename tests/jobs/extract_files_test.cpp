@@ -1,0 +1,102 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/extract_files.hpp>
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <isotet/read.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+ExtractJob job_of(const std::string& grid, const std::string& out) {
+    ExtractJob job;
+    job.grid.file = grid;
+    job.out = out;
+    return job;
+}
+
+TEST(ExtractFiles, WritesASurfaceAndTellsItsNumbers) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = job_of("make:kuhn:8:sphere", folder.file("out.vtp"));
+    job.isovalues = {0.5};
+    const ExtractNumbers numbers = extract_files(job, listener).value();
+    EXPECT_TRUE(listener.noted.empty());
+    ASSERT_EQ(numbers.surfaces.size(), 1u);
+    EXPECT_EQ(numbers.cells, 6u * 8 * 8 * 8);
+    EXPECT_EQ(numbers.method, Method::direct);
+    EXPECT_EQ(numbers.why, "1 surface");
+    const SurfaceFile read = read_surface(folder.file("out.vtp")).value();
+    EXPECT_EQ(read.surface.triangle_count(), numbers.surfaces[0].triangles);
+    EXPECT_GT(numbers.surfaces[0].triangles, 0u);
+    EXPECT_EQ(numbers.surfaces[0].file, folder.file("out.vtp"));
+}
+
+TEST(ExtractFiles, WritesAFileForEachIsovalue) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = job_of("make:kuhn:4:sphere", folder.file("s-{value}.ply"));
+    job.isovalues = {0.5, 0.25, 0.5, 7};
+    const ExtractNumbers numbers = extract_files(job, listener).value();
+    ASSERT_EQ(numbers.surfaces.size(), 3u);
+    for (const char* name : {"s-0.5.ply", "s-0.25.ply", "s-7.ply"})
+        EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
+    ASSERT_EQ(listener.noted.size(), 2u);
+    EXPECT_EQ(listener.noted[0], "the isovalue 0.5 was given more than once: it is extracted once");
+    EXPECT_EQ(listener.noted[1].substr(0, 41), "isovalue 7 is outside the range of 'spher");
+}
+
+TEST(ExtractFiles, WritesNoFileOfTheCallerAndNoInput) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = job_of("make:kuhn:4:sphere", folder.file("a-{value}.vtp"));
+    job.isovalues = {0.5};
+    job.other_outputs = {folder.file("a-0.5.vtp")};
+    EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::invalid_argument);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("a-0.5.vtp")));
+    job.out = job.other_outputs[0];
+    EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::invalid_argument);
+}
+
+TEST(ExtractFiles, AnEmptySurfaceIsAnErrorWhereAsked) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    ExtractJob job = job_of("make:kuhn:4:sphere", folder.file("a.vtp"));
+    job.isovalues = {7};
+    job.fail_if_empty = true;
+    const auto failed = extract_files(job, listener);
+    ASSERT_FALSE(failed);
+    EXPECT_TRUE(failed.error().message.starts_with("`fail_if_empty`: isovalue 7 is outside")) << failed.error().message;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("a.vtp")));
+}
+
+TEST(ExtractFiles, StopsWhenTold) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    listener.stop = true;
+    ExtractJob job = job_of("make:kuhn:4:sphere", folder.file("a.vtp"));
+    EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::cancelled);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("a.vtp")));
+}
+
+TEST(ExtractFiles, RefusesOptionsThatContradictEachOther) {
+    Listener listener;
+    ExtractJob job = job_of("make:kuhn:4:sphere", "");
+    job.engine = EngineChoice::vulkan;
+    job.device.name = "none";
+    EXPECT_EQ(extract_files(job, listener).error().message, "`engine` vulkan needs a device, but `device` is none");
+    job = job_of("make:kuhn:4:sphere", "a.stl");
+    job.edge_ends = true;
+    EXPECT_EQ(extract_files(job, listener).error().message,
+              "`edge_ends` was asked for, but stl holds no such array: .vtp and .vtk do");
+}
+
+} // namespace
+} // namespace isotet::jobs

@@ -1,0 +1,156 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+
+#include <gtest/gtest.h>
+
+#include <isotet/write.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+GridSource open(const GridOptions& options, Listener& listener) { return GridSource::open(options, listener).value(); }
+
+GridOptions made(const std::string& what) {
+    GridOptions options;
+    options.file = "make:" + what;
+    return options;
+}
+
+TEST(GridSource, TellsFieldsBeforeAnythingIsRead) {
+    Listener listener;
+    const GridSource source = open(made("kuhn:4:sphere,integer"), listener);
+    EXPECT_EQ(source.names(Association::point), (std::vector<std::string>{"sphere", "integer"}));
+    EXPECT_TRUE(source.names(Association::cell).empty());
+    const Error error = source.no_such_field("spere");
+    EXPECT_EQ(error.message, "there is no field 'spere': the grid has 'sphere', 'integer'") << "the nearest first";
+}
+
+TEST(GridSource, ReadsOnlyTheFieldsAskedFor) {
+    Listener listener;
+    const GridSource source = open(made("kuhn:4:sphere,gyroid"), listener);
+    const Grid grid = source.read({{{"gyroid"}}, {}}, 0, listener).value();
+    ASSERT_EQ(grid.point_fields.size(), 1u);
+    EXPECT_EQ(grid.point_fields[0].name, "gyroid");
+    EXPECT_EQ(source.read({}, 0, listener).value().point_fields.size(), 2u);
+}
+
+/// Two tets with a face in common, whose points are there twice.
+std::string torn(const test::TemporaryFolder& folder) {
+    return folder.write("torn.vtk", R"(# vtk DataFile Version 3.0
+two tets
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 float
+0 0 0 1 0 0 0 1 0 0 0 1
+0 0 0 1 0 0 0 1 0 0 0 -1
+CELLS 2 10
+4 0 1 2 3
+4 4 5 6 7
+CELL_TYPES 2
+10
+10
+POINT_DATA 8
+SCALARS t float 1
+LOOKUP_TABLE default
+0 1 2 3 0.5 1 2 4
+)");
+}
+
+TEST(GridSource, NotesPointsThatCoincideAndMergesThem) {
+    const test::TemporaryFolder folder;
+    GridOptions options;
+    options.file = torn(folder);
+    Listener apart;
+    EXPECT_EQ(open(options, apart).read({}, 0, apart)->points.tuples(), 8u);
+    ASSERT_EQ(apart.noted.size(), 1u);
+    EXPECT_NE(apart.noted[0].find("3 points coincide with other points"), std::string::npos) << apart.noted[0];
+    EXPECT_NE(apart.noted[0].find("`merge_points` 0 joins them"), std::string::npos);
+
+    Listener joined;
+    options.merge_points = 0;
+    const Grid grid = open(options, joined).read({}, 0, joined).value();
+    EXPECT_EQ(grid.cells.connectivity.visit([](auto numbers) { return static_cast<int>(numbers[4]); }), 0);
+    ASSERT_EQ(joined.noted.size(), 2u);
+    EXPECT_EQ(joined.noted[0], "3 points were merged with others");
+    EXPECT_EQ(joined.noted[1], "values of merged points differ: 't' by up to 0.5; they have that of the lowest "
+                               "number, `merge_values` mean takes means");
+}
+
+TEST(GridSource, RefusesWhatTheGridDoesNotHave) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    GridOptions options = made("kuhn:2");
+    options.blocks = {"a"};
+    EXPECT_EQ(GridSource::open(options, listener).error().message, "`block` a: a made grid has no blocks");
+    options = {};
+    options.file = torn(folder);
+    options.displace = "u";
+    EXPECT_NE(GridSource::open(options, listener).error().message.find("`displace` takes a point field"),
+              std::string::npos);
+    options.file = folder.file("none.vtu");
+    EXPECT_EQ(GridSource::open(options, listener).error().code, ErrorCode::file);
+}
+
+TEST(ChooseSteps, TakesOneByTimeOrNumberOrAll) {
+    FileInfo info;
+    info.times = {0, 0.5, 2};
+    Listener listener;
+    GridOptions options;
+    EXPECT_EQ(choose_steps(info, options, Steps::all, listener).value(), (std::vector<std::size_t>{0, 1, 2}));
+    EXPECT_TRUE(listener.noted.empty());
+    EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{0});
+    ASSERT_EQ(listener.noted.size(), 1u);
+    EXPECT_NE(listener.noted[0].find("3 time steps: step 0, time 0, was taken"), std::string::npos);
+    options.time = 0.5;
+    EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{1});
+    options.time = 0.6;
+    EXPECT_NE(choose_steps(info, options, Steps::one, listener).error().message.find("the nearest is 0.5"),
+              std::string::npos);
+    options = {};
+    options.step = 2;
+    EXPECT_EQ(choose_steps(info, options, Steps::one, listener).value(), std::vector<std::size_t>{2});
+    options.step = 3;
+    EXPECT_FALSE(choose_steps(info, options, Steps::one, listener));
+    EXPECT_EQ(choose_steps(FileInfo{}, {}, Steps::all, listener).value(), std::vector<std::size_t>{0});
+}
+
+TEST(ChooseField, NeedsANameWhereThereAreSeveral) {
+    Listener listener;
+    const GridSource two = open(made("kuhn:2:sphere,gyroid"), listener);
+    EXPECT_EQ(choose_field(two, {"gyroid", false})->point, std::vector<std::string>{"gyroid"});
+    EXPECT_EQ(choose_field(two, {"y", false})->name, "y");
+    EXPECT_EQ(choose_field(two, {}).error().message,
+              "no field was named, and the grid has 2: 'sphere', 'gyroid'; `field` chooses one");
+    EXPECT_FALSE(choose_field(two, {"gyroid", true})) << "no cell field";
+    const GridSource one = open(made("kuhn:2:sphere"), listener);
+    EXPECT_EQ(choose_field(one, {})->name, "sphere");
+}
+
+TEST(ChooseCarried, TakesWholeFieldsComponentsAndLists) {
+    Listener listener;
+    const GridSource source = open(made("kuhn:2:sphere,gyroid"), listener);
+    const CarriedFields carried = choose_carried(source, {"sphere,x", "gyroid", ""}).value();
+    EXPECT_EQ(carried.point, (std::vector<std::string>{"sphere", "gyroid"}));
+    ASSERT_EQ(carried.components.size(), 1u);
+    EXPECT_EQ(carried.components[0].name, "x");
+    EXPECT_FALSE(choose_carried(source, {"sphere,nothing"}));
+}
+
+TEST(ReadField, TakesTheFieldThatVariesMost) {
+    Listener listener;
+    const GridSource source = open(made("kuhn:4:sphere,plane"), listener);
+    Grid grid;
+    const PointField field = read_field(source, 0, {}, {}, listener, grid).value();
+    ASSERT_EQ(listener.noted.size(), 1u);
+    EXPECT_EQ(listener.noted[0],
+              "no field was named: '" + field.name + "', which varies most, was taken; `field` names another");
+}
+
+} // namespace
+} // namespace isotet::jobs
