@@ -20,15 +20,14 @@ std::string count_or_nothing(std::optional<std::uint64_t> count) { return count 
 
 Json count_or_null(std::optional<std::uint64_t> count) { return count ? Json(*count) : Json(nullptr); }
 
-Table rows_table(const BenchNumbers& numbers) {
+Table rows_table(const BenchJob& job, const BenchNumbers& numbers) {
     using enum Table::Align;
     Table table({left, right, right, right, right, right, right, right, right, right, right, right, right});
-    table.row({numbers.command->paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut",
-               "triangles", "bytes sent", "search, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms",
-               "best, ms", "tets a second"});
+    table.row({job.paper ? "tets, method" : "method", "prepare", "stays here", "on the device", "tets cut", "triangles",
+               "bytes sent", "search, ms", "extract, ms", numbers.device ? "draw, ms" : "", "all, ms", "best, ms",
+               "tets a second"});
     for (const BenchRow& row : numbers.rows) {
-        const std::string name =
-            numbers.command->paper ? fmt::format("{} {}", grouped(row.tets), row.pair.name()) : row.pair.name();
+        const std::string name = job.paper ? fmt::format("{} {}", grouped(row.tets), row.pair.name()) : row.pair.name();
         if (!row.missing.empty()) {
             table.row({name, "not measured"});
             continue;
@@ -79,9 +78,9 @@ Json json_of(const BenchTimes& times) {
 
 } // namespace
 
-std::string bench_table(const BenchNumbers& numbers) {
+std::string bench_table(const BenchJob& job, const BenchNumbers& numbers) {
     Table table = facts();
-    if (numbers.command->paper) table.row({"grids", "regular, six tets a cube (make:kuhn), field gyroid"});
+    if (job.paper) table.row({"grids", "regular, six tets a cube (make:kuhn), field gyroid"});
     else if (!numbers.rows.empty()) {
         table.row({"grid", numbers.rows.front().grid});
         const BenchRow& first = numbers.rows.front();
@@ -99,17 +98,16 @@ std::string bench_table(const BenchNumbers& numbers) {
                                            name_of(numbers.device->kind), bench_picture().width, bench_picture().height)
                              : "none: nothing is drawn"});
     const std::string gains = gains_text(numbers.rows);
-    std::string text = table.text() + "\n" + rows_table(numbers).text() + "\n" + missing_text(numbers);
-    if (!numbers.command->paper) text += "fastest: " + advice_text(numbers) + "\n";
+    std::string text = table.text() + "\n" + rows_table(job, numbers).text() + "\n" + missing_text(numbers);
+    if (!job.paper) text += "fastest: " + advice_text(numbers) + "\n";
     if (!gains.empty())
-        text += fmt::format("with the interval tree: {}{}\n", gains,
-                            numbers.command->paper ? ", the mean over the grids" : "");
+        text += fmt::format("with the interval tree: {}{}\n", gains, job.paper ? ", the mean over the grids" : "");
     return text;
 }
 
-Json bench_json(const BenchNumbers& numbers) {
+Json bench_json(const BenchJob& job, const BenchNumbers& numbers) {
     Json report = json_report("bench");
-    report["paper"] = numbers.command->paper;
+    report["paper"] = job.paper;
     report["field"] = json_text(numbers.field);
     report["isovalues"] = numbers.isovalues;
     report["threads"] = numbers.threads;
@@ -141,7 +139,7 @@ Json bench_json(const BenchNumbers& numbers) {
     }
     report["rows"] = std::move(rows);
     Json advice = Json::array();
-    if (!numbers.command->paper)
+    if (!job.paper)
         for (const BenchAdvice& one : advice_of(numbers.rows))
             advice.push_back(
                 {{"row", one.row}, {"up_to_surfaces", std::isinf(one.upto) ? Json(nullptr) : Json(one.upto)}});

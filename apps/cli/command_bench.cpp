@@ -1,19 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// `isotet bench`: methods and search indexes against each other, on the user's grid or on those of the
-// paper's Figure 4.
+// `isotet bench`: methods and search indexes against each other.
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
-#include <fmt/format.h>
-
-#include <isotet/field_statistics.hpp>
-#include <isotet/jobs/device_choice.hpp>
-#include <isotet/jobs/field_choice.hpp>
-#include <isotet/jobs/grid_source.hpp>
-#include <isotet/jobs/output_names.hpp>
-#include <isotet/levels.hpp>
-#include <isotet/make.hpp>
+#include <isotet/jobs/measure_methods.hpp>
 
 #include "bench_report.hpp"
 #include "commands.hpp"
@@ -22,161 +11,17 @@
 
 namespace isotet::cli {
 
-namespace {
-
-constexpr double isovalue_of_paper = 0.25; ///< of the gyroid: near its middle, where the surface is large
-
-class BenchRun {
-public:
-    BenchRun(const BenchCommand& command, Console& console) : command_(command), console_(console) {}
-
-    Result<void> run();
-    const BenchNumbers& numbers() const noexcept { return numbers_; }
-
-private:
-    Result<void> open_device();
-    Result<void> choose_pairs();
-    Result<void> run_file();
-    Result<void> run_paper();
-    Result<void> measure_all(const std::string& name, const Grid& grid, const PointField& field);
-
-    const BenchCommand& command_;
-    Console& console_;
-    std::optional<Device> device_;
-    std::vector<BenchPair> pairs_;
-    BenchNumbers numbers_;
-};
-
-/// Without a device that can draw, what needs none is measured; unless a device was asked for.
-Result<void> BenchRun::open_device() {
-    if (command_.device.name == "none") return {};
-    Result<Device> device = open_drawing_device(command_.device, console_);
-    if (device) {
-        device_ = *std::move(device);
-        numbers_.device = device_->info();
-        return {};
-    }
-    if (!command_.device.name.empty() || !is_of_device(device.error().code)) return device.error();
-    console_.note(
-        fmt::format("{}: only what needs no device is measured, and no pictures are drawn", device.error().message));
-    return {};
-}
-
-Result<void> BenchRun::choose_pairs() {
-    std::vector<BenchMethod> methods = command_.methods;
-    if (methods.empty())
-        for (const BenchMethod method : all_bench_methods)
-            if (device_ || !needs_device(method)) methods.push_back(method);
-    for (const BenchMethod method : methods)
-        if (needs_device(method) && !device_)
-            return usage_error("--methods has {}, which needs a device, but there is none", name_of(method));
-    const std::vector<SearchIndex> indexes =
-        command_.indexes.empty() ? std::vector{SearchIndex::none, SearchIndex::interval_tree} : command_.indexes;
-    if (!command_.indexes.empty() &&
-        std::ranges::none_of(methods, [](BenchMethod method) { return draw_method_of(method).has_value(); }))
-        return usage_error("--indexes was given, but none of the methods takes lists of tets: registers, "
-                           "registers_instanced, textures and mesh do");
-    pairs_ = pairs_of(methods, indexes);
-    return {};
-}
-
-Result<void> BenchRun::measure_all(const std::string& name, const Grid& grid, const PointField& field) {
-    Result<GridBench> bench = GridBench::create(grid, field, device_);
-    if (!bench) return bench.error();
-    for (const BenchPair& pair : pairs_) {
-        console_.detail(fmt::format("measuring {}: {}", name, pair.name()));
-        Result<BenchRow> row = bench->measure(pair, numbers_.isovalues, command_.rounds, console_.run());
-        if (!row) return row.error();
-        row->grid = name;
-        numbers_.rows.push_back(*std::move(row));
-    }
-    return {};
-}
-
-Result<void> BenchRun::run_file() {
-    const Result<GridSource> source = GridSource::open(command_.grid, console_);
-    if (!source) return source.error();
-    if (auto paths = check_output_paths(source->info().files, {command_.common.json}); !paths) return paths;
-    const auto steps = choose_steps(source->info(), command_.grid, Steps::one, console_);
-    if (!steps) return steps.error();
-    Grid grid;
-    const Result<PointField> field = read_field(*source, steps->front(), command_.field, {}, console_, grid);
-    if (!field) return field.error();
-    numbers_.field = field->name;
-    const ValueRange range = typical_range(field->values);
-    numbers_.isovalues = command_.isovalues.empty() ? evenly_spaced_levels(range.lower, range.upper, default_levels,
-                                                                           LevelRounding::short_decimals)
-                                                    : command_.isovalues;
-    if (numbers_.isovalues.empty())
-        return Error{ErrorCode::invalid_data,
-                     fmt::format("field '{}' has no finite value: there is nothing to contour", field->name)};
-    for (double& isovalue : numbers_.isovalues)
-        if (isovalue == 0) isovalue = 0; // -0 is called 0
-    if (Result<void> done = measure_all(command_.grid.file, grid, *field); !done) return done;
-    const auto empty = [](const BenchRow& row) {
-        return row.missing.empty() && row.outcome.triangles == std::uint64_t{0};
-    };
-    if (std::ranges::any_of(numbers_.rows, empty))
-        console_.note("there is no surface: what was measured is how long it takes to find that out");
-    return {};
-}
-
-/// Sides of regular grids from 100 thousand tets on, the sizes of the figure and beyond, ascending: the last is the
-/// largest grid that has no more than `most` tets.
-std::vector<std::uint64_t> sides_of_paper(std::uint64_t most) {
-    const auto tets = [](std::uint64_t side) { return 6 * side * side * side; };
-    auto largest = static_cast<std::uint64_t>(std::lround(std::cbrt(static_cast<double>(most) / 6)));
-    while (largest > 1 && tets(largest) > most) --largest;
-    std::vector<std::uint64_t> sides;
-    for (double decade = 1e5; decade <= static_cast<double>(most); decade *= 10)
-        for (const double step : {1.0, 2.0, 4.0, 6.0})
-            if (const auto side = static_cast<std::uint64_t>(std::lround(std::cbrt(decade * step / 6))); side < largest)
-                sides.push_back(side);
-    sides.push_back(largest);
-    return sides;
-}
-
-Result<void> BenchRun::run_paper() {
-    numbers_.field = "gyroid";
-    numbers_.isovalues = {isovalue_of_paper};
-    for (const std::uint64_t side : sides_of_paper(command_.max_tets)) {
-        MakeOptions options;
-        options.side = side;
-        options.fields = {numbers_.field};
-        const Result<Grid> grid = make_grid(options, console_.run());
-        if (!grid) return grid.error();
-        const Result<PointField> field = find_field(*grid, numbers_.field);
-        if (!field) return field.error();
-        if (Result<void> done = measure_all(fmt::format("make:kuhn:{}:gyroid", side), *grid, *field); !done)
-            return done;
-    }
-    return {};
-}
-
-Result<void> BenchRun::run() {
-    if (command_.paper == !command_.grid.file.empty()) return usage_error("isotet bench takes a FILE, or --paper");
-    if (command_.device.name == "none" && command_.device.memory)
-        return usage_error("--device-memory is given, but --device is none");
-    if (Result<void> paths = check_output_paths({command_.grid.file}, {command_.common.json}); !paths) return paths;
-    numbers_.command = &command_;
-    numbers_.threads = console_.threads();
-    if (Result<void> opened = open_device(); !opened) return opened;
-    if (Result<void> chosen = choose_pairs(); !chosen) return chosen;
-    return command_.paper ? run_paper() : run_file();
-}
-
-} // namespace
-
 Result<ExitCode> run_bench(const BenchCommand& command) {
     Console console(command.common);
-    BenchRun run(command, console);
-    if (Result<void> done = run.run(); !done) return done.error();
+    BenchJob job = command;
+    job.other_outputs = {command.common.json};
+    const Result<BenchNumbers> numbers = measure_methods(job, console);
+    if (!numbers) return numbers.error();
     const Result<ExitCode> told =
-        finish(console, command.common, bench_table(run.numbers()), bench_json(run.numbers()));
+        finish(console, command.common, bench_table(job, *numbers), bench_json(job, *numbers));
     if (!told) return told;
-    const bool nothing =
-        std::ranges::none_of(run.numbers().rows, [](const BenchRow& row) { return row.missing.empty(); });
-    if (nothing) return Error{ErrorCode::system, "nothing could be measured: " + run.numbers().rows.front().missing};
+    const bool nothing = std::ranges::none_of(numbers->rows, [](const BenchRow& row) { return row.missing.empty(); });
+    if (nothing) return Error{ErrorCode::system, "nothing could be measured: " + numbers->rows.front().missing};
     return told;
 }
 

@@ -4,12 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <isotet/check.hpp>
-#include <isotet/jobs/field_choice.hpp>
-#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/check_files.hpp>
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/jobs/output_names.hpp>
-#include <isotet/read.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
@@ -19,39 +15,6 @@
 namespace isotet::cli {
 
 namespace {
-
-/// The grid that a surface came from, with the field whose holes count.
-struct Origin {
-    Grid grid;
-    std::optional<PointField> field;
-};
-
-Result<Origin> read_origin(const CheckCommand& command, Console& console) {
-    const Result<GridSource> source = GridSource::open(command.grid, console);
-    if (!source) return source.error();
-    if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
-    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
-    if (!steps) return steps.error();
-    FieldsToRead fields{std::vector<std::string>{}, std::vector<std::string>{}};
-    std::optional<FoundField> found;
-    if (!command.field.name.empty() || source->info().fields.size() == 1) {
-        Result<FoundField> chosen = choose_field(*source, command.field);
-        if (!chosen) return chosen.error();
-        fields = {chosen->point, chosen->cell};
-        found = *std::move(chosen);
-    } else if (!source->info().fields.empty()) {
-        console.note(
-            "no field was named with --grid: every tet counts, also where the field has no data; `field` names one");
-    }
-    Result<Grid> grid = source->read(fields, steps->front(), console);
-    if (!grid) return grid.error();
-    Origin origin{*std::move(grid), std::nullopt};
-    if (!found) return origin;
-    Result<PointField> field = find_chosen(origin.grid, found->name, command.field, console);
-    if (!field) return field.error();
-    origin.field = *std::move(field);
-    return origin;
-}
 
 /// "3 x 0, 1 x 2": how often each genus occurs, for surfaces of many components.
 std::string genus_text(const std::vector<std::int64_t>& genus) {
@@ -65,10 +28,11 @@ std::string genus_text(const std::vector<std::int64_t>& genus) {
     return text.empty() ? "no closed, manifold, oriented component" : text;
 }
 
-std::string check_table(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {
+std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
+    const SurfaceReport& report = checked.report;
     Table table = facts();
-    const std::string others = command.more.empty() ? "" : fmt::format(" and {} more", command.more.size());
-    table.row({"surface", fmt::format("{}{} ({})", command.surface, others, file.format)});
+    const std::string others = job.more.empty() ? "" : fmt::format(" and {} more", job.more.size());
+    table.row({"surface", fmt::format("{}{} ({})", job.surface, others, checked.format)});
     table.row({"vertices", grouped(report.vertices)});
     table.row({"triangles", grouped(report.triangles)});
     table.row({"closed", report.closed ? "yes" : "no"});
@@ -77,8 +41,7 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     };
     count("boundary edges", report.boundary_edges);
     count("inconsistent edges", report.inconsistent_edges);
-    if (command.closed || !command.grid.file.empty())
-        count("edges not allowed", report.blamed_edges, "of both kinds above");
+    if (job.closed || !job.grid.file.empty()) count("edges not allowed", report.blamed_edges, "of both kinds above");
     count("equal-corner triangles", report.equal_corner_triangles);
     count("repeated triangles", report.duplicate_triangles,
           report.duplicate_triangles == report.blamed_duplicates
@@ -97,7 +60,7 @@ std::string check_table(const SurfaceReport& report, const SurfaceFile& file, co
     table.row({"genus", genus_text(report.genus)});
     table.row({"area", rounded(report.area)});
     table.row({"volume", report.closed ? rounded(report.volume) : "not closed"});
-    const std::string unclean = command.strict ? "sound, but not clean" : "sound";
+    const std::string unclean = job.strict ? "sound, but not clean" : "sound";
     table.row({"verdict", !report.sound ? "not sound" : report.clean ? "sound and clean" : unclean});
     return table.text();
 }
@@ -111,12 +74,13 @@ std::string findings_table(const std::vector<Finding>& findings, bool sound) {
     return table.empty() ? "" : fmt::format("\n{}\n{}", sound ? "for information:" : "found:", table.text());
 }
 
-Json check_json(const SurfaceReport& report, const SurfaceFile& file, const CheckCommand& command) {
+Json check_json(const CheckedFiles& checked, const CheckJob& job) {
+    const SurfaceReport& report = checked.report;
     Json json = json_report("check");
-    json["file"] = json_text(command.surface);
+    json["file"] = json_text(job.surface);
     json["more_files"] = Json::array();
-    for (const std::string& more : command.more) json["more_files"].push_back(json_text(more));
-    json["format"] = file.format;
+    for (const std::string& more : job.more) json["more_files"].push_back(json_text(more));
+    json["format"] = checked.format;
     json["vertices"] = report.vertices;
     json["triangles"] = report.triangles;
     json["closed"] = report.closed;
@@ -147,54 +111,17 @@ Json check_json(const SurfaceReport& report, const SurfaceFile& file, const Chec
     return json;
 }
 
-/// All surfaces as one, of the format of the first.
-Result<SurfaceFile> read_surfaces(const CheckCommand& command, Console& console) {
-    std::vector<std::string> inputs{command.surface, command.grid.file};
-    inputs.insert(inputs.end(), command.more.begin(), command.more.end());
-    if (Result<void> paths = check_output_paths(inputs, {command.common.json}); !paths) return paths.error();
-    Result<SurfaceFile> file = read_surface(command.surface, {command.format}, console.run());
-    if (!file || command.more.empty()) return file;
-    std::vector<Surface> parts{std::move(file->surface)};
-    for (const std::string& more : command.more) {
-        Result<SurfaceFile> other = read_surface(more, {command.format}, console.run());
-        if (!other) return other;
-        parts.push_back(std::move(other->surface));
-    }
-    file->surface = join(parts, {});
-    return file;
-}
-
 } // namespace
 
 Result<ExitCode> run_check(const CheckCommand& command) {
     Console console(command.common);
-    const Result<SurfaceFile> file = read_surfaces(command, console);
-    if (!file) return file.error();
-
-    CheckOptions options;
-    options.closed = command.closed;
-    options.weld = file->format == "stl" || !command.more.empty(); // without vertex numbers that say what is the same
-    std::optional<Origin> origin;
-    if (!command.grid.file.empty()) {
-        if (file->surface.edge_ends.empty()) {
-            return usage_error("{} has no point array edge_ends, but --grid needs it: isotet extract --edge-ends "
-                               "writes it into .vtp and .vtk",
-                               command.surface);
-        }
-        Result<Origin> read = read_origin(command, console);
-        if (!read) return read.error();
-        origin = *std::move(read);
-        options.grid = &origin->grid;
-        options.split_cells = command.split_cells;
-        if (origin->field) options.field = &*origin->field;
-    }
-    const Result<SurfaceReport> report = check(file->surface, options, console.run());
-    if (!report) return report.error();
-
-    const bool passed = report->sound && (report->clean || !command.strict);
-    const std::string text = check_table(*report, *file, command) + findings_table(report->findings, passed);
-    return finish(console, command.common, text, check_json(*report, *file, command),
-                  passed ? ExitCode::done : ExitCode::check_failed);
+    CheckJob job = command;
+    job.other_outputs = {command.common.json};
+    const Result<CheckedFiles> checked = check_files(job, console);
+    if (!checked) return checked.error();
+    return finish(console, command.common,
+                  check_table(*checked, job) + findings_table(checked->report.findings, checked->passed),
+                  check_json(*checked, job), checked->passed ? ExitCode::done : ExitCode::check_failed);
 }
 
 } // namespace isotet::cli

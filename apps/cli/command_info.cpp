@@ -2,12 +2,8 @@
 // `isotet info`: what a grid file holds.
 #include <fmt/format.h>
 
-#include <isotet/field_statistics.hpp>
-#include <isotet/grid.hpp>
-#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/look_into.hpp>
 #include <isotet/jobs/number_text.hpp>
-#include <isotet/jobs/output_names.hpp>
-#include <isotet/refine.hpp>
 
 #include "commands.hpp"
 #include "console.hpp"
@@ -18,33 +14,6 @@
 namespace isotet::cli {
 
 namespace {
-
-/// What was found out about a file, before it is printed twice.
-struct Findings {
-    const FileInfo& file;
-    std::size_t step = 0;
-    const Grid& grid;
-    GridReport report;
-    bool surveyed = false; ///< whether faces and places were counted, too
-};
-
-struct DescribedField {
-    const Field& field;
-    const char* association;
-    std::vector<ComponentStatistics> components;
-};
-
-Result<std::vector<DescribedField>> describe_fields(const Grid& grid, const Run& run) {
-    std::vector<DescribedField> described;
-    for (const Field& field : grid.point_fields) described.push_back({field, "point", {}});
-    for (const Field& field : grid.cell_fields) described.push_back({field, "cell", {}});
-    for (DescribedField& one : described) {
-        auto components = statistics_of(one.field.values, run);
-        if (!components) return components.error();
-        one.components = *std::move(components);
-    }
-    return described;
-}
 
 /// "75, 0 to 7.4", or each of a few.
 std::string times_text(const std::vector<double>& times) {
@@ -74,37 +43,7 @@ std::string holes_text(const ComponentStatistics& component) {
     return text;
 }
 
-/// What it costs to contour a field without refining curved cells.
-struct CurvedCost {
-    std::string field;
-    double bound = 0; ///< of the error, in the unit of the field
-    double share = 0; ///< of the field's range
-};
-
-struct CurvedFindings {
-    std::uint64_t cells = 0, left_out = 0;
-    std::vector<CurvedCost> costs; ///< of scalar point fields
-};
-
-Result<CurvedFindings> look_at_curved_cells(const Grid& grid, const std::vector<DescribedField>& fields,
-                                            const Run& run) {
-    CurvedFindings found;
-    if (!has_curved_cells(grid.cells)) return found;
-    const auto linear = linearize(grid, {}, run);
-    if (!linear) return linear.error();
-    found.cells = linear->refinement.curved_cells;
-    found.left_out = linear->refinement.unknown_cells;
-    for (const DescribedField& described : fields) {
-        if (described.components.size() != 1 || described.association != std::string_view("point")) continue;
-        const auto bound = field_bound(*linear, described.field.values, run);
-        if (!bound) return bound.error();
-        const double range = described.components[0].upper - described.components[0].lower;
-        found.costs.push_back({described.field.name, *bound, range > 0 ? *bound / range : 0});
-    }
-    return found;
-}
-
-std::string curved_table(const CurvedFindings& found) {
+std::string curved_table(const CurvedSummary& found) {
     if (found.cells + found.left_out == 0) return {};
     Table table = facts();
     table.row({"curved cells", fmt::format("{}; extract and render refine them to --tolerance", grouped(found.cells))});
@@ -117,7 +56,7 @@ std::string curved_table(const CurvedFindings& found) {
     return table.text();
 }
 
-Json json_of(const CurvedFindings& found) {
+Json json_of(const CurvedSummary& found) {
     if (found.cells + found.left_out == 0) return nullptr;
     Json costs = Json::array();
     for (const CurvedCost& cost : found.costs)
@@ -125,11 +64,11 @@ Json json_of(const CurvedFindings& found) {
     return {{"cells", found.cells}, {"cells_left_out", found.left_out}, {"split_at_nodes", std::move(costs)}};
 }
 
-std::string grid_table(const Findings& found, const std::string& path) {
+std::string grid_table(const GridSummary& found, const std::string& path) {
     const GridReport& report = found.report;
     Table table = facts();
     table.row({"file", fmt::format("{} ({})", path, found.file.format)});
-    table.row({"points", fmt::format("{} ({})", grouped(report.points), name_of(found.grid.points.type()))});
+    table.row({"points", fmt::format("{} ({})", grouped(report.points), name_of(found.point_type))});
     table.row({"cells", grouped(report.cells)});
     for (const auto& [type, count] : report.cells_by_type)
         table.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
@@ -148,7 +87,7 @@ std::string grid_table(const Findings& found, const std::string& path) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
     if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
-    const ScalarType type = found.grid.points.type();
+    const ScalarType type = found.point_type;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         table.row(
             {axis == 0 ? "bounds" : "", fmt::format("{} {} to {}", "xyz"[axis], value_text(report.lower[axis], type),
@@ -196,28 +135,31 @@ Json json_of(const std::vector<BlockInfo>& blocks) {
     return list;
 }
 
-std::string field_table(const std::vector<DescribedField>& fields) {
+const char* association_of(const FieldSummary& field) {
+    return field.association == Association::point ? "point" : "cell";
+}
+
+std::string field_table(const std::vector<FieldSummary>& fields) {
     using enum Table::Align;
     Table table({left, left, left, right, left, left});
-    for (const DescribedField& described : fields) {
+    for (const FieldSummary& described : fields) {
         const std::size_t count = described.components.size();
-        const Array& values = described.field.values;
-        const std::string type = std::string(name_of(values.type())) + (count > 1 ? fmt::format(" x {}", count) : "");
-        table.row({"field", described.field.name, described.association, type,
-                   count == 1 ? range_text(described.components[0], values.type()) : "",
+        const std::string type = std::string(name_of(described.type)) + (count > 1 ? fmt::format(" x {}", count) : "");
+        table.row({"field", described.name, association_of(described), type,
+                   count == 1 ? range_text(described.components[0], described.type) : "",
                    count == 1 ? holes_text(described.components[0]) : ""});
         for (std::size_t c = 0; count > 1 && c < count; ++c) {
             const std::string component = count <= 3 ? std::string(1, "xyz"[c]) : std::to_string(c);
-            table.row({"", "  :" + component, "", "", range_text(described.components[c], values.type()),
+            table.row({"", "  :" + component, "", "", range_text(described.components[c], described.type),
                        holes_text(described.components[c])});
         }
     }
     return table.text();
 }
 
-Json json_of(const std::vector<DescribedField>& fields) {
+Json json_of(const std::vector<FieldSummary>& fields) {
     Json list = Json::array();
-    for (const DescribedField& described : fields) {
+    for (const FieldSummary& described : fields) {
         Json ranges = Json::array();
         Json not_a_number = Json::array();
         Json infinite = Json::array();
@@ -227,9 +169,9 @@ Json json_of(const std::vector<DescribedField>& fields) {
             not_a_number.push_back(component.not_a_number);
             infinite.push_back(component.infinite);
         }
-        list.push_back({{"name", json_text(described.field.name)},
-                        {"association", described.association},
-                        {"type", name_of(described.field.values.type())},
+        list.push_back({{"name", json_text(described.name)},
+                        {"association", association_of(described)},
+                        {"type", name_of(described.type)},
                         {"components", described.components.size()},
                         {"range", std::move(ranges)},
                         {"nan", std::move(not_a_number)},
@@ -238,7 +180,7 @@ Json json_of(const std::vector<DescribedField>& fields) {
     return list;
 }
 
-Json json_of(const Findings& found, const std::string& path) {
+Json json_of(const GridSummary& found, const std::string& path) {
     const GridReport& grid = found.report;
     Json report = json_report("info");
     report["file"] = json_text(path);
@@ -271,33 +213,21 @@ Json json_of(const Findings& found, const std::string& path) {
 
 Result<ExitCode> run_info(const InfoCommand& command) {
     Console console(command.common);
-    const std::string& path = command.grid.file;
-    if (Result<void> paths = check_output_paths({path}, {command.common.json}); !paths) return paths.error();
-    const Result<GridSource> source = GridSource::open(command.grid, console);
-    if (!source) return source.error();
-    if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
-    const auto steps = choose_steps(source->info(), command.grid, Steps::one, console);
-    if (!steps) return steps.error();
-    const Result<Grid> grid = source->read({}, steps->front(), console);
-    if (!grid) return grid.error();
-    Result<GridReport> surveyed = survey(*grid, {.faces = command.survey}, console.run());
-    if (!surveyed) return surveyed.error();
-    const Findings found{source->info(), steps->front(), *grid, *std::move(surveyed), command.survey};
-    const auto fields = describe_fields(*grid, console.run());
-    if (!fields) return fields.error();
-    const auto curved = look_at_curved_cells(*grid, *fields, console.run());
-    if (!curved) return curved.error();
-    const auto chart = make_chart(command, *grid, console);
-    if (!chart) return chart.error();
-    Json report = json_of(found, path);
-    report["curved"] = json_of(*curved);
-    report["blocks"] = json_of(source->info().blocks);
-    report["regions"] = json_of(source->info().regions);
-    report["fields"] = json_of(*fields);
-    if (*chart) report["chart"] = json_of(**chart);
+    InfoJob job = command;
+    job.other_outputs = {command.common.json};
+    const Result<GridSummary> found = look_into(job, console);
+    if (!found) return found.error();
+    const std::string& path = job.grid.file;
+    Json report = json_of(*found, path);
+    report["curved"] = json_of(found->curved);
+    report["blocks"] = json_of(found->file.blocks);
+    report["regions"] = json_of(found->file.regions);
+    report["fields"] = json_of(found->fields);
+    if (found->chart) report["chart"] = json_of(*found->chart);
     return finish(console, command.common,
-                  grid_table(found, path) + curved_table(*curved) + block_table(source->info()) +
-                      region_table(source->info()) + field_table(*fields) + (*chart ? chart_table(**chart) : ""),
+                  grid_table(*found, path) + curved_table(found->curved) + block_table(found->file) +
+                      region_table(found->file) + field_table(found->fields) +
+                      (found->chart ? chart_table(*found->chart) : ""),
                   std::move(report));
 }
 

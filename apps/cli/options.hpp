@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <isotet/grid_bench.hpp>
+#include <isotet/jobs/check_files.hpp>
 #include <isotet/jobs/draw_files.hpp>
 #include <isotet/jobs/extract_files.hpp>
+#include <isotet/jobs/look_into.hpp>
+#include <isotet/jobs/measure_methods.hpp>
 #include <isotet/make.hpp>
 
 namespace isotet::cli {
@@ -24,12 +26,8 @@ struct CommonOptions {
     int threads = 0;  ///< 0: all
 };
 
-struct InfoCommand {
+struct InfoCommand : InfoJob {
     CommonOptions common;
-    GridOptions grid;
-    bool survey = false;                ///< also what takes longer than reading
-    FieldChoice field;                  ///< of the chart; empty: the one that varies most
-    std::optional<std::uint64_t> chart; ///< steps; nothing: no chart
 };
 
 /// How curved cells are refined; nothing: at their nodes only.
@@ -57,29 +55,12 @@ struct ViewCommand {
     std::string listen; ///< an address to serve at, or a path of a Unix socket; empty: 127.0.0.1
 };
 
-struct BenchCommand {
+struct BenchCommand : BenchJob {
     CommonOptions common;
-    GridOptions grid; ///< `file` is empty with --paper
-    FieldChoice field;
-    std::vector<double> isovalues; ///< none: three
-    bool paper = false;
-    std::uint64_t max_tets = 5'000'000;
-    std::vector<BenchMethod> methods; ///< none: all that can be
-    std::vector<SearchIndex> indexes; ///< none: without and with the interval tree
-    std::uint64_t rounds = 5;
-    DeviceChoice device;
 };
 
-struct CheckCommand {
+struct CheckCommand : CheckJob {
     CommonOptions common;
-    std::string surface;
-    std::vector<std::string> more; ///< other pieces of the surface
-    std::string format;
-    bool closed = false;
-    bool strict = false;
-    bool split_cells = false;
-    GridOptions grid; ///< `file` is empty without --grid
-    FieldChoice field;
 };
 
 struct MakeCommand {

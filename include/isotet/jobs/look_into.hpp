@@ -1,0 +1,66 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// What is in a grid file: what `isotet info` does.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/contour_spectrum.hpp>
+#include <isotet/field_statistics.hpp>
+#include <isotet/jobs/field_choice.hpp>
+#include <isotet/jobs/grid_source.hpp>
+
+namespace isotet::jobs {
+
+struct InfoJob {
+    GridOptions grid;
+    std::vector<std::string> other_outputs; ///< of the caller: no file of the grid may be one
+    bool survey = false;                    ///< also what takes longer than reading
+    FieldChoice field;                      ///< of the chart; empty: the one that varies most
+    std::optional<std::uint64_t> chart;     ///< steps; nothing: no chart
+};
+
+struct FieldSummary {
+    std::string name;
+    Association association = Association::point;
+    ScalarType type = ScalarType::float32;
+    std::vector<ComponentStatistics> components;
+};
+
+/// What it costs to contour a field without refining curved cells.
+struct CurvedCost {
+    std::string field;
+    double bound = 0; ///< of the error, in the unit of the field
+    double share = 0; ///< of the field's range
+};
+
+struct CurvedSummary {
+    std::uint64_t cells = 0, left_out = 0;
+    std::vector<CurvedCost> costs; ///< of scalar point fields
+};
+
+/// Area and volume of a field's isosurfaces.
+struct FieldChart {
+    std::string field;
+    ContourSpectrum spectrum;
+};
+
+struct GridSummary {
+    FileInfo file;
+    std::size_t step = 0;
+    ScalarType point_type = ScalarType::float32;
+    GridReport report;
+    bool surveyed = false; ///< whether faces and places were counted, too
+    std::vector<FieldSummary> fields;
+    CurvedSummary curved;
+    std::optional<FieldChart> chart;
+};
+
+/// Reads a step whole, and counts.
+/// Errors   as of reading; invalid_argument: a step or field that there is not; invalid_data: nothing to chart
+Result<GridSummary> look_into(const InfoJob& job, Caller& caller);
+
+} // namespace isotet::jobs

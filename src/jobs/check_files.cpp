@@ -1,0 +1,91 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/check_files.hpp>
+
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/read.hpp>
+
+#include "jobs/refuse.hpp"
+
+namespace isotet::jobs {
+
+namespace {
+
+/// The grid that a surface came from, with the field whose holes count.
+struct Origin {
+    Grid grid;
+    std::optional<PointField> field;
+};
+
+Result<Origin> read_origin(const CheckJob& job, Caller& caller) {
+    const Result<GridSource> source = GridSource::open(job.grid, caller);
+    if (!source) return source.error();
+    if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
+    const auto steps = choose_steps(source->info(), job.grid, Steps::one, caller);
+    if (!steps) return steps.error();
+    FieldsToRead fields{std::vector<std::string>{}, std::vector<std::string>{}};
+    std::optional<FoundField> found;
+    if (!job.field.name.empty() || source->info().fields.size() == 1) {
+        Result<FoundField> chosen = choose_field(*source, job.field);
+        if (!chosen) return chosen.error();
+        fields = {chosen->point, chosen->cell};
+        found = *std::move(chosen);
+    } else if (!source->info().fields.empty()) {
+        caller.note(
+            "no field was named with `grid`: every tet counts, also where the field has no data; `field` names one");
+    }
+    Result<Grid> grid = source->read(fields, steps->front(), caller);
+    if (!grid) return grid.error();
+    Origin origin{*std::move(grid), std::nullopt};
+    if (!found) return origin;
+    Result<PointField> field = find_chosen(origin.grid, found->name, job.field, caller);
+    if (!field) return field.error();
+    origin.field = *std::move(field);
+    return origin;
+}
+
+/// All surfaces as one, of the format of the first.
+Result<SurfaceFile> read_surfaces(const CheckJob& job, Caller& caller) {
+    std::vector<std::string> inputs{job.surface, job.grid.file};
+    inputs.insert(inputs.end(), job.more.begin(), job.more.end());
+    if (Result<void> paths = check_output_paths(inputs, job.other_outputs); !paths) return paths.error();
+    Result<SurfaceFile> file = read_surface(job.surface, {job.format}, caller.run());
+    if (!file || job.more.empty()) return file;
+    std::vector<Surface> parts{std::move(file->surface)};
+    for (const std::string& more : job.more) {
+        Result<SurfaceFile> other = read_surface(more, {job.format}, caller.run());
+        if (!other) return other;
+        parts.push_back(std::move(other->surface));
+    }
+    file->surface = join(parts, {});
+    return file;
+}
+
+} // namespace
+
+Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
+    const Result<SurfaceFile> file = read_surfaces(job, caller);
+    if (!file) return file.error();
+
+    CheckOptions options;
+    options.closed = job.closed;
+    options.weld = file->format == "stl" || !job.more.empty(); // without vertex numbers that say what is the same
+    std::optional<Origin> origin;
+    if (!job.grid.file.empty()) {
+        if (file->surface.edge_ends.empty())
+            return refusal("{} has no point array edge_ends, but `grid` needs it: isotet extract `edge_ends` writes it "
+                           "into .vtp and .vtk",
+                           job.surface);
+        Result<Origin> read = read_origin(job, caller);
+        if (!read) return read.error();
+        origin = *std::move(read);
+        options.grid = &origin->grid;
+        options.split_cells = job.split_cells;
+        if (origin->field) options.field = &*origin->field;
+    }
+    Result<SurfaceReport> report = check(file->surface, options, caller.run());
+    if (!report) return report.error();
+    const bool passed = report->sound && (report->clean || !job.strict);
+    return CheckedFiles{*std::move(report), file->format, passed};
+}
+
+} // namespace isotet::jobs

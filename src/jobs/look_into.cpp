@@ -1,0 +1,88 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/look_into.hpp>
+
+#include <isotet/jobs/output_names.hpp>
+#include <isotet/refine.hpp>
+
+namespace isotet::jobs {
+
+namespace {
+
+Result<std::vector<FieldSummary>> summarize(const Grid& grid, const Run& run) {
+    std::vector<FieldSummary> summaries;
+    for (const auto& [fields, association] :
+         {std::pair{&grid.point_fields, Association::point}, {&grid.cell_fields, Association::cell}}) {
+        for (const Field& field : *fields) {
+            auto components = statistics_of(field.values, run);
+            if (!components) return components.error();
+            summaries.push_back({field.name, association, field.values.type(), *std::move(components)});
+        }
+    }
+    return summaries;
+}
+
+Result<CurvedSummary> look_at_curved_cells(const Grid& grid, const std::vector<FieldSummary>& summaries,
+                                           const Run& run) {
+    CurvedSummary found;
+    if (!has_curved_cells(grid.cells)) return found;
+    const auto linear = linearize(grid, {}, run);
+    if (!linear) return linear.error();
+    found.cells = linear->refinement.curved_cells;
+    found.left_out = linear->refinement.unknown_cells;
+    for (std::size_t i = 0; i < grid.point_fields.size(); ++i) { // first in the summaries, in this order
+        if (summaries[i].components.size() != 1) continue;
+        const auto bound = field_bound(*linear, grid.point_fields[i].values, run);
+        if (!bound) return bound.error();
+        const double range = summaries[i].components[0].upper - summaries[i].components[0].lower;
+        found.costs.push_back({summaries[i].name, *bound, range > 0 ? *bound / range : 0});
+    }
+    return found;
+}
+
+Result<std::optional<FieldChart>> make_chart(const InfoJob& job, const Grid& grid, Caller& caller) {
+    if (!job.chart) return std::optional<FieldChart>();
+    std::string name = job.field.name;
+    if (name.empty()) name = default_field(grid).name;
+    if (name.empty())
+        return Error{
+            ErrorCode::invalid_data,
+            "no field has two different values: there is nothing to chart; `field` x, y or z charts a coordinate"};
+    const Result<PointField> field = find_chosen(grid, name, job.field, caller);
+    if (!field) return field.error();
+    Result<ContourSpectrum> spectrum = contour_spectrum_over_range(grid, *field, *job.chart, caller.run());
+    if (!spectrum) return spectrum.error();
+    return std::optional(FieldChart{name, *std::move(spectrum)});
+}
+
+} // namespace
+
+Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
+    if (auto paths = check_output_paths({job.grid.file}, job.other_outputs); !paths) return paths.error();
+    const Result<GridSource> source = GridSource::open(job.grid, caller);
+    if (!source) return source.error();
+    if (auto paths = check_output_paths(source->info().files, job.other_outputs); !paths) return paths.error();
+    const auto steps = choose_steps(source->info(), job.grid, Steps::one, caller);
+    if (!steps) return steps.error();
+    GridSummary summary;
+    summary.file = source->info();
+    summary.step = steps->front();
+    const Result<Grid> grid = source->read({}, summary.step, caller);
+    if (!grid) return grid.error();
+    summary.point_type = grid->points.type();
+    summary.surveyed = job.survey;
+    Result<GridReport> surveyed = survey(*grid, {.faces = job.survey}, caller.run());
+    if (!surveyed) return surveyed.error();
+    summary.report = *std::move(surveyed);
+    Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
+    if (!fields) return fields.error();
+    summary.fields = *std::move(fields);
+    Result<CurvedSummary> curved = look_at_curved_cells(*grid, summary.fields, caller.run());
+    if (!curved) return curved.error();
+    summary.curved = *std::move(curved);
+    Result<std::optional<FieldChart>> chart = make_chart(job, *grid, caller);
+    if (!chart) return chart.error();
+    summary.chart = *std::move(chart);
+    return summary;
+}
+
+} // namespace isotet::jobs

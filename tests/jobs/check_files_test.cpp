@@ -1,0 +1,54 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/jobs/check_files.hpp>
+#include <isotet/jobs/extract_files.hpp>
+
+#include <gtest/gtest.h>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+std::string extracted(const test::TemporaryFolder& folder, double isovalue, bool edge_ends) {
+    Listener listener;
+    ExtractJob job;
+    job.grid.file = "make:kuhn:6:sphere";
+    job.out = folder.file("surface.vtp");
+    job.isovalues = {isovalue};
+    job.edge_ends = edge_ends;
+    return extract_files(job, listener).value().surfaces[0].file;
+}
+
+TEST(CheckFiles, JudgesAgainstTheGrid) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    CheckJob job;
+    job.surface = extracted(folder, 1.2, true); // leaves the cube
+    EXPECT_TRUE(check_files(job, listener)->passed) << "open edges are only counted";
+    job.closed = true;
+    EXPECT_FALSE(check_files(job, listener)->passed);
+    job.closed = false;
+    job.grid.file = "make:kuhn:6:sphere";
+    const CheckedFiles checked = check_files(job, listener).value();
+    EXPECT_TRUE(checked.passed);
+    EXPECT_EQ(checked.format, "vtp");
+    EXPECT_GT(checked.report.boundary_edges, 0u);
+    EXPECT_EQ(checked.report.blamed_edges, 0u);
+}
+
+TEST(CheckFiles, NeedsTheEdgeEndsForAGrid) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    CheckJob job;
+    job.surface = extracted(folder, 0.5, false);
+    job.grid.file = "make:kuhn:6:sphere";
+    EXPECT_EQ(check_files(job, listener).error().message,
+              job.surface + " has no point array edge_ends, but `grid` needs it: isotet extract `edge_ends` writes it "
+                            "into .vtp and .vtk");
+}
+
+} // namespace
+} // namespace isotet::jobs
