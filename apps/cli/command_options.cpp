@@ -92,7 +92,8 @@ defect. So are several surfaces, pieces of one (isotet extract --piece): they ar
 
 constexpr const char* make_details = R"(
 Shapes, on the cube from -1 to 1: kuhn (six tets a cube), perturbed (inner points moved), shuffled (perturbed, points
-and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell types).
+and tets in random order), layer (cells of aspect ratio up to 1000), hex, wedge, pyramid, mixed (all four cell types), tet10
+(quadratic tets), curved (bent ones), hex27 (triquadratic hexahedra), kelvin (polyhedra of 14 faces, two a cube).
 The same bytes for any number of threads.
 
 Fields: sphere, torus, plane, gyroid, wavelet, integer (many ties).
@@ -370,7 +371,7 @@ void add_make(const Command& program, MakeCommand& make) {
     const Command command = program.add_command("make", "Make a test grid with analytic fields");
     command
         .add_text("SHAPE", make.grid.shape, "SHAPE",
-                  "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved or hex27")
+                  "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved, hex27 or kelvin")
         .required();
     command.add_count(
                "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge")

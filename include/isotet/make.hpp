@@ -35,6 +35,8 @@ struct MakeOptions {
 ///            from side 3 on
 ///            "tet10": kuhn of quadratic tetrahedra, straight, with fields at the nodes; "curved": the same bent onto a
 ///            smooth image of the cube; "hex27": triquadratic hexahedra
+///            "kelvin": truncated octahedra, polyhedra of 14 faces (Kelvin 1887), two a cube, up to 512 cubes along an edge;
+///            within the cube, which they do not fill at its faces
 /// `side`     cubes along an edge, 1 to 4096
 /// `fields`   names, each once; float32, computed in double:
 ///            "sphere"   sqrt(x^2 + y^2 + z^2)

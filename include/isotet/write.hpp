@@ -51,7 +51,7 @@ struct WriteOptions {
 ISOTET_API Result<WriteReport> write_surface(const Surface& surface, const std::string& path,
                                              const WriteOptions& options = {}, const Run& run = {});
 
-/// Writes a grid: vtu (raw appended), vtk (legacy binary); the same guarantees.
+/// Writes a grid: vtu (raw appended; polyhedra with their faces), vtk (legacy binary; no polyhedra); the same guarantees.
 ISOTET_API Result<WriteReport> write_grid(const Grid& grid, const std::string& path, const WriteOptions& options = {},
                                           const Run& run = {});
 

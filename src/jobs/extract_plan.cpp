@@ -9,6 +9,7 @@
 
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/levels.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "jobs/refuse.hpp"
 
@@ -181,6 +182,8 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
 
 std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
                                 std::size_t together) {
+    if (has_cells_to_linearize(input.grid.cells))
+        return std::nullopt; // of which it is not known how many tets they become
     const Result<FieldSample> sample = FieldSample::create(input.grid, input.field, job.split_cells);
     if (!sample) return std::nullopt; // an error that Contour::create() gives, too
     const std::vector<double> levels =

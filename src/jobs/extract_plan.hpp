@@ -39,7 +39,8 @@ struct StepFields {
 };
 Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run);
 
-/// What all steps are expected to take, from a look at the first; nothing where the field cannot be contoured.
+/// What all steps are expected to take, from a look at the first; nothing where the field cannot be
+/// contoured, or cells become linear ones first.
 ///
 /// `together`   isovalues extracted in one pass
 std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,

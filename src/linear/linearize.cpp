@@ -25,7 +25,8 @@ namespace linear {
 
 namespace {
 
-constexpr std::size_t cells_per_block = 1024;
+/// Cells that are split together: their arrays fill huge pages in large grids, and all threads have work in small ones.
+std::size_t cells_of_block(std::size_t cells) { return std::clamp<std::size_t>(cells / 128, 1024, 16384); }
 
 Error linearizing_cancelled() { return {ErrorCode::cancelled, "making linear cells was cancelled"}; }
 
@@ -73,13 +74,14 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
     progress("linearize", 0.1);
 
     const bool narrow = grid.points.tuples() < std::uint64_t{1} << 31;
+    const std::size_t cells_per_block = cells_of_block(cells->count());
     std::vector<KeptParts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
-    core::parallel_pieces(blocks.size(), 16, progress, [&](std::size_t begin, std::size_t end) {
+    core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         PolyhedronSplitter splitter(grid, *cells, *faces, options);
         HighDegreeSplitter by_degree(*cells);
         std::vector<std::uint64_t> corners;
         Parts parts;
-        for (std::size_t b = begin; b < end; ++b) {
+        for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
             const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
                 if (cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell))

@@ -53,6 +53,9 @@ void Parts::add_cell(std::uint8_t type, std::span<const std::uint64_t> corners, 
 
 std::uint64_t Parts::add_point(std::span<const std::uint64_t> points, std::span<const double> weights) {
     term_points_.insert(term_points_.end(), points.begin(), points.end());
+    const bool alike = std::ranges::all_of(weights, [&](double weight) { return weight == weights[0]; });
+    alike_.push_back(alike);
+    if (alike) weights = weights.first(std::min<std::size_t>(weights.size(), 1));
     term_weights_.insert(term_weights_.end(), weights.begin(), weights.end());
     term_counts_.push_back(static_cast<std::uint32_t>(points.size()));
     return derived_bit + term_counts_.size() - 1;
@@ -63,14 +66,19 @@ KeptParts::KeptParts(Parts& parts, bool narrow)
       part_counts_(take(parts.part_counts_)),
       term_counts_(take(parts.term_counts_)),
       types_(take(parts.types_)),
+      alike_(take(parts.alike_)),
       sources_(take(parts.sources_)),
-      term_points_(take(parts.term_points_)),
       term_weights_(take(parts.term_weights_)),
       report_(std::exchange(parts.report, {})) {
     if (!narrow) {
         wide_corners_ = take(parts.corners_);
+        wide_terms_ = take(parts.term_points_);
         return;
     }
+    narrow_terms_ = core::Buffer<std::uint32_t>(parts.term_points_.size());
+    std::ranges::transform(parts.term_points_, narrow_terms_.begin(),
+                           [](std::uint64_t point) { return static_cast<std::uint32_t>(point); });
+    parts.term_points_.clear();
     narrow_corners_ = core::Buffer<std::uint32_t>(parts.corners_.size());
     std::ranges::transform(parts.corners_, narrow_corners_.begin(), [](std::uint64_t corner) {
         const auto low = static_cast<std::uint32_t>(corner);
@@ -86,9 +94,9 @@ public:
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const KeptParts& block = blocks[b];
             const BlockPlace& at = places_[b];
-            places_[b + 1] = {at.cell + block.types_.size(),
-                              at.corner + block.narrow_corners_.size() + block.wide_corners_.size(),
-                              at.row + block.term_counts_.size(), at.term + block.term_points_.size()};
+            places_[b + 1] = {
+                at.cell + block.types_.size(), at.corner + block.narrow_corners_.size() + block.wide_corners_.size(),
+                at.row + block.term_counts_.size(), at.term + block.narrow_terms_.size() + block.wide_terms_.size()};
         }
     }
 
@@ -152,10 +160,16 @@ private:
             for (std::size_t i = 0; i < block.sources_.size(); ++i)
                 source = std::fill_n(source, block.part_counts_[i], block.sources_[i]);
             std::uint64_t sum = at.term;
-            for (std::size_t i = 0; i < block.term_counts_.size(); ++i)
-                first[at.row + i + 1] = sum += block.term_counts_[i];
-            std::ranges::copy(block.term_points_, points.begin() + at.term);
-            std::ranges::copy(block.term_weights_, weights.begin() + at.term);
+            const double* weight = block.term_weights_.data();
+            for (std::size_t i = 0; i < block.term_counts_.size(); ++i) {
+                const std::uint32_t count = block.term_counts_[i];
+                if (block.alike_[i]) std::fill_n(weights.data() + sum, count, *weight);
+                else std::copy_n(weight, count, weights.data() + sum);
+                weight += block.alike_[i] ? std::min(count, 1U) : count;
+                first[at.row + i + 1] = sum += count;
+            }
+            std::ranges::copy(block.narrow_terms_, points.begin() + at.term);
+            std::ranges::copy(block.wide_terms_, points.begin() + at.term);
             blocks_[b] = {};
         });
         out.source_cells = std::move(sources).to_array();

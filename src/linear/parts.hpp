@@ -35,6 +35,7 @@ private:
     std::vector<std::uint32_t> part_counts_; ///< and how many cells each became
     std::vector<std::uint32_t> term_counts_; ///< of derived points
     std::vector<std::uint64_t> term_points_;
+    std::vector<std::uint8_t> alike_; ///< of derived points: whether all weights are one number, which then stands once
     std::vector<double> term_weights_;
 };
 
@@ -44,7 +45,7 @@ public:
     KeptParts() = default;
     /// Empties `parts`, which keep their memory for the next block.
     ///
-    /// `narrow`   corners are kept in 32 bits: there are fewer points than 2^31
+    /// `narrow`   point numbers are kept in 32 bits: there are fewer points than 2^31
     KeptParts(Parts& parts, bool narrow);
 
 private:
@@ -53,8 +54,10 @@ private:
     core::Buffer<std::uint32_t> narrow_corners_; ///< with the highest bit likewise
     core::Buffer<std::uint64_t> wide_corners_;
     core::Buffer<std::uint32_t> corner_counts_, part_counts_, term_counts_;
-    core::Buffer<std::uint8_t> types_;
-    core::Buffer<std::uint64_t> sources_, term_points_;
+    core::Buffer<std::uint8_t> types_, alike_;
+    core::Buffer<std::uint64_t> sources_;
+    core::Buffer<std::uint32_t> narrow_terms_;
+    core::Buffer<std::uint64_t> wide_terms_;
     core::Buffer<double> term_weights_;
     LinearizeReport report_;
 };

@@ -35,46 +35,35 @@ bool PolyhedronSplitter::keep_known_shape(std::size_t cell, Parts& out) {
     return true;
 }
 
-/// The triangles of all faces, turned outward.
-void PolyhedronSplitter::find_triangles() {
-    loop_triangles_.clear();
-    triangle_ends_.clear();
+void PolyhedronSplitter::cut_faces() {
+    pieces_.clear();
     triangles_.clear();
     for (std::size_t face = 0; face < shell_.face_count(); ++face) {
         const auto loop = shell_.loop(face);
-        triangulate(loop, points_, loop_triangles_);
-        for (std::size_t i = triangles_.size(); i < loop_triangles_.size(); ++i) {
-            OutwardTriangle triangle{loop[loop_triangles_[i][0]], loop[loop_triangles_[i][1]],
-                                     loop[loop_triangles_[i][2]]};
-            if (shell_.is_inward(face)) std::swap(triangle[1], triangle[2]);
-            triangles_.push_back(triangle);
+        loop_pieces_.clear();
+        cut_face(loop, points_, loop_pieces_);
+        for (const LoopPiece& piece : loop_pieces_) {
+            OutwardPiece& outward = pieces_.emplace_back();
+            outward.count = piece.count;
+            for (std::uint32_t i = 0; i < piece.count; ++i) outward.corners[i] = loop[piece.corners[i]];
+            auto& [a, b, c, d] = outward.corners;
+            if (shell_.is_inward(face)) std::swap(b, piece.count == 4 ? d : c); // the diagonal stays
+            triangles_.push_back({a, b, c});
+            if (piece.count == 4) triangles_.push_back({a, c, d});
         }
-        triangle_ends_.push_back(triangles_.size());
     }
 }
 
 void PolyhedronSplitter::split_around_centre(std::size_t cell, Parts& out) {
-    find_triangles();
+    cut_faces();
     const Centre centre = find_centre(shell_.points(), triangles_, points_, single_);
     const std::uint64_t apex = out.add_point(shell_.points(), centre.weights);
-    std::size_t next = 0;
-    for (std::size_t face = 0; face < shell_.face_count(); ++face) {
-        const auto loop = shell_.loop(face);
-        if (loop.size() == 4) {
-            std::array<std::uint64_t, 5> pyramid{loop[0], loop[1], loop[2], loop[3], apex}; // its base is inward
-            if (!shell_.is_inward(face)) std::swap(pyramid[1], pyramid[3]);
-            out.add_cell(static_cast<std::uint8_t>(CellType::pyramid), pyramid, cell);
-            ++out.report.cells;
-        } else {
-            for (std::size_t i = next; i < triangle_ends_[face]; ++i) {
-                const OutwardTriangle& t = triangles_[i];
-                out.add_cell(static_cast<std::uint8_t>(CellType::tetrahedron), std::array{t[0], t[2], t[1], apex},
-                             cell);
-                ++out.report.cells;
-            }
-        }
-        next = triangle_ends_[face];
+    for (const auto& [corners, count] : pieces_) { // which are the bases: seen from inside
+        const auto& [a, b, c, d] = corners;
+        if (count == 4) out.add_cell(static_cast<std::uint8_t>(CellType::pyramid), std::array{a, d, c, b, apex}, cell);
+        else out.add_cell(static_cast<std::uint8_t>(CellType::tetrahedron), std::array{a, c, b, apex}, cell);
     }
+    out.report.cells += pieces_.size();
     ++out.report.centred;
     out.report.moved_centres += centre.moved;
     out.report.folded += centre.folded;

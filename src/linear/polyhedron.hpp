@@ -2,15 +2,23 @@
 // One polyhedron as linear cells.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "linear/centre.hpp"
-#include "linear/face_triangles.hpp"
+#include "linear/face_pieces.hpp"
 #include "linear/parts.hpp"
 #include "linear/shell.hpp"
 
 namespace isotet::linear {
+
+/// Point numbers of a triangle or a quadrilateral, counter-clockwise seen from outside.
+struct OutwardPiece {
+    std::array<std::uint64_t, 4> corners;
+    std::uint32_t count;
+};
 
 /// Splits polyhedra, one after another, and keeps its memory between them. Borrows all it is given.
 class PolyhedronSplitter {
@@ -28,7 +36,7 @@ public:
 
 private:
     bool keep_known_shape(std::size_t cell, Parts& out);
-    void find_triangles();
+    void cut_faces();
     void split_around_centre(std::size_t cell, Parts& out);
 
     const core::CellReader& cells_;
@@ -37,8 +45,8 @@ private:
     core::PointReader points_;
     bool single_;
     Shell shell_;
-    std::vector<LoopTriangle> loop_triangles_;
-    std::vector<std::size_t> triangle_ends_; ///< of each face
+    std::vector<LoopPiece> loop_pieces_; ///< of one face
+    std::vector<OutwardPiece> pieces_;   ///< of all faces
     std::vector<OutwardTriangle> triangles_;
     std::vector<std::uint64_t> listed_;
 };

@@ -14,6 +14,7 @@
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "make/analytic_field.hpp"
+#include "make/foam.hpp"
 #include "make/lattice.hpp"
 #include "make/permutation.hpp"
 #include "make/shape.hpp"
@@ -25,6 +26,7 @@ namespace {
 using namespace make;
 
 constexpr std::uint64_t largest_side = 4096;
+constexpr std::string_view foam = "kelvin";
 
 /// Even permutations of the corners of a tet: they keep its orientation.
 constexpr std::array<std::array<std::uint8_t, 4>, 12> even_orders{{{0, 1, 2, 3},
@@ -261,11 +263,12 @@ Error unknown(std::string_view what, const std::string& name, std::vector<std::s
 }
 
 std::optional<Error> fault_in(const MakeOptions& options) {
-    if (std::ranges::find(shapes, options.shape, &Shape::name) == shapes.end())
+    if (options.shape != foam && std::ranges::find(shapes, options.shape, &Shape::name) == shapes.end())
         return unknown("the shape", options.shape, make_shapes());
-    if (options.side < 1 || options.side > largest_side)
+    const std::uint64_t largest = options.shape == foam ? largest_foam_side : largest_side;
+    if (options.side < 1 || options.side > largest)
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("the side is {}, but must be 1 to {}", options.side, largest_side)};
+                     fmt::format("the side is {}, but must be 1 to {}", options.side, largest)};
     for (auto name = options.fields.begin(); name != options.fields.end(); ++name) {
         if (std::ranges::find(analytic_fields, *name, &AnalyticField::name) == analytic_fields.end())
             return unknown("a field", *name, make_fields());
@@ -278,14 +281,19 @@ std::optional<Error> fault_in(const MakeOptions& options) {
 
 } // namespace
 
-std::vector<std::string> make_shapes() { return names_in(make::shapes); }
+std::vector<std::string> make_shapes() {
+    std::vector<std::string> names = names_in(make::shapes);
+    names.emplace_back(foam);
+    return names;
+}
 std::vector<std::string> make_fields() { return names_in(make::analytic_fields); }
 
 Result<Grid> make_grid(const MakeOptions& options, const Run& run) {
     if (const auto fault = fault_in(options)) return *fault;
-    const Shape& shape = *std::ranges::find(shapes, options.shape, &Shape::name);
-    return core::carry_out("making the grid", run,
-                           [&](const Progress& progress) { return Maker(shape, options, progress).make(); });
+    return core::carry_out("making the grid", run, [&](const Progress& progress) {
+        if (options.shape == foam) return make_foam(options, progress);
+        return Maker(*std::ranges::find(shapes, options.shape, &Shape::name), options, progress).make();
+    });
 }
 
 } // namespace isotet

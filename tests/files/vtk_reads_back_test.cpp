@@ -2,11 +2,13 @@
 // What isotet writes, read back by VTK's own readers: the same bits.
 #include <cstring>
 
+#include <vtkCell.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkOBJReader.h>
+#include <vtkNew.h>
 #include <vtkPLYReader.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -20,6 +22,7 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <isotet/make.hpp>
 #include <isotet/write.hpp>
 
 #include "files/sample_files.hpp"
@@ -254,6 +257,26 @@ void expect_grid(const Grid& grid, const std::string& ending, Compression compre
 
 TEST(VtkReadsVtu, WithUniformCells) { expect_grid<vtkXMLUnstructuredGridReader>(tet_grid(), "vtu"); }
 TEST(VtkReadsVtu, WithMixedCells) { expect_grid<vtkXMLUnstructuredGridReader>(mixed_grid(), "vtu"); }
+TEST(VtkReadsVtu, WithPolyhedra) {
+    const Folder folder;
+    MakeOptions options;
+    options.shape = "kelvin";
+    options.side = 2;
+    const Grid grid = make_grid(options).value();
+    ASSERT_TRUE(write_grid(grid, folder / "foam.vtu"));
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    reader->SetFileName((folder / "foam.vtu").c_str());
+    reader->Update();
+    vtkUnstructuredGrid* const read = reader->GetOutput();
+    ASSERT_EQ(read->GetNumberOfCells(), 16);
+    for (vtkIdType cell = 0; cell < 16; ++cell) {
+        ASSERT_EQ(read->GetCellType(cell), 42);
+        EXPECT_EQ(read->GetCell(cell)->GetNumberOfFaces(), 14);
+        EXPECT_EQ(read->GetCell(cell)->GetNumberOfPoints(), 24);
+        EXPECT_EQ(read->GetCell(cell)->GetNumberOfEdges(), 36);
+    }
+}
+
 TEST(VtkReadsVtu, WithCompression) {
     for (const Compression compression : {Compression::zlib, Compression::lz4}) {
         expect_grid<vtkXMLUnstructuredGridReader>(tet_grid(), "vtu", compression);

@@ -1,7 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // write_grid(): what it refuses, and what its bytes are. That VTK reads them is tested beside it.
+#include <algorithm>
 #include <atomic>
 
+#include <isotet/make.hpp>
+#include <isotet/read.hpp>
 #include <isotet/write.hpp>
 
 #include "files/sample_files.hpp"
@@ -42,6 +45,24 @@ TEST(WriteGrid, RefusesCellsThatDoNotFitTogether) {
     grid = mixed_grid();
     grid.cells.types = Array::own(std::vector<std::uint8_t>{10, 42});
     EXPECT_EQ(refused(grid).message, "cells[1] is a polyhedron, whose faces are not known: it cannot be written");
+}
+
+TEST(WriteGrid, KeepsPolyhedraWithTheirFaces) {
+    const Folder folder;
+    MakeOptions options;
+    options.shape = "kelvin";
+    options.side = 2;
+    Grid grid = make_grid(options).value();
+    for (const Compression compression : {Compression::none, Compression::zlib}) {
+        ASSERT_TRUE(write_grid(grid, folder / "foam.vtu", {.compression = compression}));
+        const Grid read = isotet::read(folder / "foam.vtu").value().grid;
+        EXPECT_TRUE(std::ranges::equal(read.cells.faces.as<std::int32_t>(), grid.cells.faces.as<std::int32_t>()));
+        for (std::size_t i = 0; i <= grid.cells.count(); ++i)
+            EXPECT_EQ(read.cells.face_offsets.at(i), grid.cells.face_offsets.at(i));
+    }
+    EXPECT_EQ(refused(grid, "vtk").message, "the grid has polyhedra, which are written into .vtu only");
+    grid.cells.faces = Array::own(std::vector<std::int32_t>(grid.cells.faces.size(), 100'000));
+    EXPECT_EQ(refused(grid).code, ErrorCode::invalid_data);
 }
 
 TEST(WriteGrid, RefusesFieldsOfTheWrongLength) {

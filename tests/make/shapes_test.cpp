@@ -192,6 +192,7 @@ TEST(MakeGrid, HasAsManyPointsAndCellsAsTheShapeSays) {
         {"tet10", {2197, 1296}},
         {"curved", {2197, 1296}},
         {"hex27", {2197, 216}},
+        {"kelvin", {3672, 432}},
         // two layers of hexahedra, two of pyramids and tets under wedges, one of each above, of 36 cubes
         {"mixed", {343 + 3 * 36, 36 * (2 * 1 + 2 * 7 + 2 + 7)}}};
     for (const std::string& shape : make_shapes()) {

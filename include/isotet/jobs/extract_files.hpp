@@ -67,9 +67,9 @@ struct ExtractNumbers {
     std::size_t steps = 1; ///< time steps
     bool averaged = false;
     Precision precision = Precision::float32;
-    Method method = Method::direct;          ///< of the last surface
-    std::string why;                         ///< the method, in words
-    std::optional<Estimate> predicted;       ///< nothing for devices and the reference engine
+    Method method = Method::direct;    ///< of the last surface
+    std::string why;                   ///< the method, in words
+    std::optional<Estimate> predicted; ///< nothing for devices, the reference engine and cells that are not linear
     std::optional<std::uint64_t> peak_bytes; ///< taken beyond the first grid, if the system tells
     std::string_view engine;                 ///< of the last surface
     std::string device;                      ///< its name

@@ -2,6 +2,7 @@
 // One function for each format that isotet writes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct GridColumns {
     Column connectivity; ///< int32 where connectivity and offsets fit, else int64
     Column offsets;      ///< same type: where each cell starts, and last where the last one ends
     Column types;        ///< uint8
+    std::optional<Column> faces; ///< of polyhedra, as Cells has them; nothing where no cell has faces
+    Column face_ends;            ///< int64: where each cell's part of `faces` ends, -1 where it has none
     std::vector<Column> point_fields, cell_fields;
     std::size_t cells = 0;
 

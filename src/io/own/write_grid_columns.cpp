@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "core/cell_faces.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "io/own/write_formats.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t grain = std::size_t{1} << 18U;
-constexpr std::uint8_t polyhedron = 42;
 
 std::size_t corners_of_type(CellType type) {
     switch (type) {
@@ -98,11 +98,10 @@ Result<void> check_cells(const Cells& cells, std::size_t points) {
                 types.size(), name_of(types.type()), offsets.size()));
         }
         const auto values = types.as<std::uint8_t>();
-        if (const auto at = first_where(values.size(), [&](std::size_t i) { return values[i] == polyhedron; });
-            at != none) {
+        const auto lacks_faces = [&](std::size_t i) { return values[i] == core::polyhedron_type; };
+        if (const auto at = cells.faces.empty() ? first_where(values.size(), lacks_faces) : none; at != none)
             return invalid_argument(
                 fmt::format("cells[{}] is a polyhedron, whose faces are not known: it cannot be written", at));
-        }
     }
     if (const auto bad = first_bad_index(connectivity, points)) {
         return Error{ErrorCode::invalid_data,
@@ -146,6 +145,21 @@ Result<std::vector<Column>> field_columns(const std::vector<Field>& fields, std:
     return columns;
 }
 
+/// Ends of the parts of `faces`: -1 where a cell has none, as VTK has it.
+Column face_ends(const Array& offsets) {
+    Column column{"faceoffsets", ScalarType::int64, offsets.size() - 1, 1, {}};
+    column.fill = [offsets](std::size_t begin, std::size_t end, std::byte* out) {
+        offsets.visit([&](auto values) {
+            auto* target = reinterpret_cast<std::int64_t*>(out);
+            for (std::size_t i = begin; i < end; ++i)
+                *target++ = values[i] == values[i + 1]
+                                ? -1
+                                : static_cast<std::int64_t>(values[i + 1]) - static_cast<std::int64_t>(values[0]);
+        });
+    };
+    return column;
+}
+
 std::uint64_t index_at(const Array& array, std::size_t i) {
     return array.visit([&](auto values) { return static_cast<std::uint64_t>(values[i]); });
 }
@@ -154,6 +168,7 @@ std::uint64_t index_at(const Array& array, std::size_t i) {
 
 std::uint64_t GridColumns::bytes() const {
     std::uint64_t sum = points.bytes() + connectivity.bytes() + offsets.bytes() + types.bytes();
+    if (faces) sum += faces->bytes() + face_ends.bytes();
     for (const auto* list : {&point_fields, &cell_fields}) {
         for (const auto& column : *list) sum += column.bytes();
     }
@@ -168,6 +183,11 @@ Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes
     }
     const std::size_t points = grid.points.tuples();
     if (auto checked = check_cells(cells, points); !checked) return checked.error();
+    if (!cells.faces.empty()) {
+        const auto reader = core::CellReader::open(grid);
+        if (!reader) return reader.error();
+        if (auto checked = core::check_faces(grid, *reader, {}); !checked) return checked.error();
+    }
 
     const bool uniform = cells.offsets.empty();
     const std::size_t corners = corners_of_type(cells.uniform_type);
@@ -195,6 +215,15 @@ Result<GridColumns> columns_of(const Grid& grid, std::vector<std::string>& notes
     }
     columns.types = cells.types.empty() ? constant_types(static_cast<std::uint8_t>(cells.uniform_type), columns.cells)
                                         : column_of("types", cells.types);
+    if (!cells.faces.empty()) {
+        const std::uint64_t first = index_at(cells.face_offsets, 0), last = index_at(cells.face_offsets, columns.cells);
+        const Array used_faces(cells.faces.type(),
+                               static_cast<const std::byte*>(cells.faces.data()) + first * size_of(cells.faces.type()),
+                               static_cast<std::size_t>(last - first), 1, nullptr);
+        columns.faces =
+            narrow ? converted<std::int32_t>("faces", used_faces) : converted<std::int64_t>("faces", used_faces);
+        columns.face_ends = face_ends(cells.face_offsets);
+    }
     auto point_fields = field_columns(grid.point_fields, "point", points, notes);
     if (!point_fields) return point_fields.error();
     auto cell_fields = field_columns(grid.cell_fields, "cell", columns.cells, notes);

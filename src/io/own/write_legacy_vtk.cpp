@@ -85,6 +85,8 @@ Result<WriteReport> write_legacy_surface(const SurfaceToWrite& input) {
 
 Result<WriteReport> write_legacy_grid(const GridToWrite& input) {
     const auto& columns = input.columns;
+    if (columns.faces)
+        return Error{ErrorCode::invalid_argument, "the grid has polyhedra, which are written into .vtu only"};
     return write_file(input.path, input.progress, columns.bytes(), [&](WriteStream& stream) {
         write_header(stream, "UNSTRUCTURED_GRID", columns.points);
         if (columns.cells) {

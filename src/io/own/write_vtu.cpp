@@ -28,6 +28,10 @@ Result<WriteReport> write_vtu(const GridToWrite& input) {
     file.flat_array(columns.connectivity);
     file.flat_array(ends);
     file.flat_array(columns.types);
+    if (columns.faces) {
+        file.flat_array(*columns.faces);
+        file.flat_array(columns.face_ends);
+    }
     file.line("</Cells>\n</Piece>");
     return write_file(input.path, input.progress, file.bytes(), [&](WriteStream& stream) { file.write(stream); });
 }

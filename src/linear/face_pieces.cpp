@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "linear/face_triangles.hpp"
+#include "linear/face_pieces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,27 +27,49 @@ public:
             for (std::size_t axis = 0; axis < 3; ++axis) normal_[axis] += part[axis];
         }
         least_ = least_share * dot(normal_, normal_);
+        least_good_ = least_quality * std::sqrt(dot(normal_, normal_));
     }
+
+    std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
 
     /// A point nearly on the line of its neighbours, a hanging one say, makes a thin triangle of any direction.
     bool is_fan_good() const {
-        const double least = least_quality * std::sqrt(dot(normal_, normal_));
-        for (std::uint32_t i = 1; i + 1 < places_.size(); ++i)
-            if (!(quality(0, i, i + 1) > least)) return false;
+        for (std::uint32_t i = 1; i + 1 < size(); ++i)
+            if (!is_good(0, i, i + 1)) return false;
         return true;
     }
 
-    void cut_ears(std::vector<LoopTriangle>& out) const {
-        std::vector<std::uint32_t> left(places_.size());
+    /// A good fan, two triangles at a time.
+    void cut_fan(std::vector<LoopPiece>& out) const {
+        for (std::uint32_t i = 1; i + 1 < size(); ++i) {
+            if (i + 2 < size() && is_good(i, i + 1, i + 2) && is_good(0, i, i + 2)) {
+                out.push_back({{0, i, i + 1, i + 2}, 4});
+                ++i;
+            } else {
+                out.push_back({{0, i, i + 1, 0}, 3});
+            }
+        }
+    }
+
+    void cut_ears(std::vector<LoopPiece>& out) const {
+        std::vector<std::uint32_t> left(size());
         std::iota(left.begin(), left.end(), 0U);
         while (left.size() > 3) {
             const std::size_t ear = best_ear(left);
             if (ear == left.size()) break;
             const std::size_t n = left.size();
-            out.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
+            out.push_back({{left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n], 0}, 3});
             left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
         }
-        for (std::size_t i = 1; i + 1 < left.size(); ++i) out.push_back({left[0], left[i], left[i + 1]});
+        for (std::size_t i = 1; i + 1 < left.size(); ++i) out.push_back({{left[0], left[i], left[i + 1], 0}, 3});
+    }
+
+    /// A quadrilateral with the diagonal that an ear, the best-shaped, has.
+    LoopPiece turned() const {
+        const std::uint32_t ear =
+            static_cast<std::uint32_t>(best_ear({0, 1, 2, 3})) % 4; // without one the second point
+        const std::uint32_t first = (ear + 3) % 4;
+        return {{first, ear, (ear + 1) % 4, (ear + 2) % 4}, 4};
     }
 
 private:
@@ -55,6 +77,8 @@ private:
     double area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
         return dot(cross(minus(places_[b], places_[a]), minus(places_[c], places_[a])), normal_);
     }
+
+    bool is_good(std::uint32_t a, std::uint32_t b, std::uint32_t c) const { return quality(a, b, c) > least_good_; }
 
     /// Twice the area over the square of the longest edge, times the normal's length; 0 where there is hardly an area.
     double quality(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
@@ -90,18 +114,22 @@ private:
 
     std::vector<Point> places_; ///< from the first one
     Point normal_{};
-    double least_ = 0;
+    double least_ = 0, least_good_ = 0;
 };
 
 } // namespace
 
-void triangulate(std::span<const std::uint64_t> loop, const core::PointReader& points, std::vector<LoopTriangle>& out) {
+void cut_face(std::span<const std::uint64_t> loop, const core::PointReader& points, std::vector<LoopPiece>& out) {
     const auto n = static_cast<std::uint32_t>(loop.size());
-    if (n > 3 && n <= max_ear_points) {
-        const FaceCutter cutter(loop, points);
-        if (!cutter.is_fan_good()) return cutter.cut_ears(out);
+    if (n == 3 || n > max_ear_points) {
+        for (std::uint32_t i = 1; i + 1 < n; ++i) out.push_back({{0, i, i + 1, 0}, 3});
+        return;
     }
-    for (std::uint32_t i = 1; i + 1 < n; ++i) out.push_back({0, i, i + 1});
+    const FaceCutter cutter(loop, points);
+    const bool fan = cutter.is_fan_good();
+    if (n == 4) out.push_back(fan ? LoopPiece{{0, 1, 2, 3}, 4} : cutter.turned());
+    else if (fan) cutter.cut_fan(out);
+    else cutter.cut_ears(out);
 }
 
 } // namespace isotet::linear
