@@ -2,7 +2,7 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """Quadratic tetrahedra at the same tolerance: isotet against VTK's tessellator and contour filter, in one run.
 
-usage: curved_race.py ISOTET [--side 55] [--cells-a-wave 8] [--isovalue 0.2] [--tolerances 1,0.1] [--rival-limit 600]
+usage: curved_race.py ISOTET [--side 55] [--cells-a-wave 8] [--isovalue 0.2] [--tolerances 1,0.1] [--no-rival] [--rival-limit 600]
 
 Needs a Python with VTK and NumPy. The grid is `isotet make tet10`, the field a gyroid at its nodes. Times are those of extraction
 without reading; of VTK the tessellator (field criterion on, geometry off: edges are straight) and the contour filter. One run
@@ -11,6 +11,7 @@ each, since VTK's takes minutes: the spread is not told.
 import argparse
 import json
 import math
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -78,6 +79,22 @@ def rival(grid, isovalue, error):
     return {"seconds": time.perf_counter() - start, "triangles": contour.GetOutput().GetNumberOfCells(), "tets": tets}
 
 
+def rival_within(seconds, *arguments):
+    """What rival() returns, or None after so many seconds: it runs in a process of its own."""
+    fork = multiprocessing.get_context("fork")
+    receiver, sender = fork.Pipe(duplex=False)
+    process = fork.Process(target=lambda: sender.send(rival(*arguments)))
+    process.start()
+    sender.close()
+    try:
+        if receiver.poll(seconds):
+            return receiver.recv()
+        return None
+    finally:
+        process.kill()
+        process.join()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("isotet")
@@ -86,6 +103,7 @@ def main():
     parser.add_argument("--isovalue", type=float, default=0.2)
     parser.add_argument("--tolerances", default="1,0.1", help="in %% of the range")
     parser.add_argument("--no-rival", action="store_true")
+    parser.add_argument("--rival-limit", type=float, default=600, help="seconds after which VTK is stopped")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "grid.vtu")
@@ -96,8 +114,12 @@ def main():
             print(f"{percent} %: isotet {mine}")
             if options.no_rival:
                 continue
-            other = rival(grid, options.isovalue, percent / 100 * width)
-            print(f"{percent} %: VTK {other}, {other['seconds'] / mine['seconds']:.1f} times the time", flush=True)
+            other = rival_within(options.rival_limit, grid, options.isovalue, percent / 100 * width)
+            if other is None:
+                times = options.rival_limit / mine["seconds"]
+                print(f"{percent} %: VTK not done in {options.rival_limit:g} s, over {times:.1f} times the time", flush=True)
+            else:
+                print(f"{percent} %: VTK {other}, {other['seconds'] / mine['seconds']:.1f} times the time", flush=True)
 
 
 if __name__ == "__main__":

@@ -46,6 +46,11 @@ _NAME = "IsotetContourPython"
       <BooleanDomain name="bool"/>
       <Documentation>Give each point the array that is contoured: its isovalue.</Documentation>
     </IntVectorProperty>
+    <DoubleVectorProperty name="Tolerance" command="SetTolerance" number_of_elements="1" default_values="0">
+      <DoubleRangeDomain name="range" min="0" max="1"/>
+      <Documentation>Above 0: quadratic cells are refined until the array is within this share of its range of their own field;
+        0.001 is 0.1 %. 0: they are split at their nodes.</Documentation>
+    </DoubleVectorProperty>
     <IntVectorProperty name="ExpectedSurfaces" command="SetExpectedSurfaces" number_of_elements="1" default_values="0"
                        panel_visibility="advanced">
       <IntRangeDomain name="range" min="0"/>

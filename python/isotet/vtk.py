@@ -188,10 +188,11 @@ class _Session:
 
     def set(self, grid, scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
             cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
-            frame: _isotet.Frame | None = None) -> None:  # fmt: skip
+            frame: _isotet.Frame | None = None, tolerance: float = 0.0) -> None:  # fmt: skip
         mine, field = self._input(grid, scalars, numbers)
         kind = "gradient" if normals else "none"
-        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces, False, frame)
+        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces, False, frame,
+                                         relative_tolerance=tolerance or None)
         call = call_options(0, None)
         if self._session is None:
             self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call)
@@ -287,6 +288,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
         self._compute_normals, self._compute_scalars = False, True
         self._expected = 0
         self._precision = "float32"
+        self._tolerance = 0.0
         self._controller = None
         self._sessions: OrderedDict[Any, _Session] = OrderedDict()
         self._frame: _isotet.Frame | None = None
@@ -346,6 +348,16 @@ class IsotetContour(VTKPythonAlgorithmBase):
 
     def GetPrecision(self) -> str:
         return self._precision
+
+    def SetTolerance(self, tolerance: float) -> None:
+        """Above 0: quadratic cells are refined until the array is within this of their own field, as a share of its range: 0.001
+        is 0.1 %. 0, the default: they are split at their nodes, as they are in pieces of a grid."""
+        if not 0 <= tolerance <= 1:
+            raise ValueError(f"the tolerance is {tolerance}, but must be a share of the range, 0 to 1")
+        self._set("_tolerance", float(tolerance))
+
+    def GetTolerance(self) -> float:
+        return self._tolerance
 
     def SetController(self, controller) -> None:
         """Whose ranks have the pieces of the grid; None, the default: this process has all of it. Every rank must execute the
@@ -468,7 +480,8 @@ class IsotetContour(VTKPythonAlgorithmBase):
         cell_fields = _arrays_of(block.grid.GetCellData())
         surface = self._session_of(block.grid).contour(
             block.grid, block.scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
-            fields=block.fields(), cell_fields=cell_fields, precision=precision, numbers=numbers, frame=frame)  # fmt: skip
+            fields=block.fields(), cell_fields=cell_fields, precision=precision, numbers=numbers, frame=frame,
+            tolerance=0.0 if framed else self._tolerance)  # fmt: skip
         own = any(name == "isovalue" for name, _ in cell_fields)
         _finish(surface, self._values, block.scalars, self._compute_scalars, own, block.out)
 

@@ -44,6 +44,24 @@ def test_it_has_the_methods_of_vtkcontourfilter():
     assert set(output(ours).point_data) == {"x", "v", "Normals"}
 
 
+def test_a_tolerance_refines_quadratic_cells(tmp_path):
+    isotet.make("tet10", 6, fields=["sphere"]).write(tmp_path / "curved.vtu")
+    grid = pv.read(tmp_path / "curved.vtu")
+    contour = pipeline(grid, "sphere", 0.7)
+    sizes = [output(contour).n_cells]
+    for tolerance in (0.01, 0.001):
+        contour.SetTolerance(tolerance)
+        assert contour.GetTolerance() == tolerance
+        surface = output(contour)
+        sizes.append(surface.n_cells)
+        assert surface.is_manifold
+        direct = isotet.vtk.grid_of(grid).contour(0.7, "sphere", tolerance=f"{100 * tolerance}%")
+        assert surface.n_cells == len(direct.triangles)
+    assert sizes == sorted(sizes) and sizes[0] < sizes[2]
+    with pytest.raises(ValueError, match="the tolerance is 2, but must be a share of the range"):
+        contour.SetTolerance(2)
+
+
 def test_it_runs_when_something_was_modified_and_only_then():
     grid = cubes().triangulate()
     contour = pipeline(grid)

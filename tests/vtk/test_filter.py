@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import (vtkImageData, vtkMultiBlockDataSet, v
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
-from grids import (HEXAHEDRON, add, area_of, corners_of, grid_of, lattice, names, open_edges, points_of, sphere, triangles_of)
+from grids import (HEXAHEDRON, TETS, add, area_of, corners_of, grid_of, lattice, names, open_edges, points_of, sphere, triangles_of)
 
 
 def start(grid, name="r", value=0.3, kind=vtkIsotetContour):
@@ -42,6 +42,28 @@ def run(grid, **options):
     contour = start(grid, **options)
     contour.Update()
     return contour
+
+
+def quadratic_tets(n):
+    """Quadratic tets on -1/2 to 1/2, whose field "r" is the squared distance from the middle, times 2: a quadratic one."""
+    side = 2 * n + 1
+    axis = np.arange(side) / (2 * n) - 0.5
+    z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
+    points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    corner = np.arange(0, side - 1, 2)
+    first = (corner[:, None, None] * side**2 + corner[None, :, None] * side + corner).ravel()
+    steps = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)])
+    tets = []
+    for tet in TETS:
+        ends = steps[tet] * 2
+        nodes = [*ends] + [(ends[a] + ends[b]) // 2 for a, b in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
+        tets.append(first[:, None] + np.array(nodes) @ [1, side, side**2])
+    return grid_of(points, np.concatenate(tets), {"r": 2 * (points**2).sum(axis=1)}, kind=24)
+
+
+def distances(surface, value=0.3):
+    """The largest distance of a vertex from the sphere."""
+    return np.abs(np.linalg.norm(points_of(surface), axis=1) - np.sqrt(value / 2)).max()
 
 
 class Surfaces(unittest.TestCase):
@@ -335,6 +357,41 @@ class HandedToVtk(unittest.TestCase):
                  for part, kind in ((sphere(), vtkIsotetContour), (quadratic, vtkContourFilter))]
         self.assertGreater(found[1], 0)
         self.assertEqual(contour.GetOutput().GetNumberOfPolys(), sum(found))
+
+    def test_a_tolerance_refines_quadratic_cells(self):
+        grid = quadratic_tets(4)
+        plain = run(grid)
+        self.assertIn("a Tolerance above 0 refines curved ones", plain.said[0])
+        self.assertEqual(plain.GetFieldBound(), 0)
+        spread = distances(plain.GetOutput())
+        contour = start(grid)
+        contour.SetComputeNormals(0)
+        for tolerance, farthest in ((0.01, 0.02), (0.001, 0.002)):
+            contour.SetTolerance(tolerance)
+            contour.Update()
+            self.assertEqual(contour.said, [])
+            width = np.ptp(vtk_to_numpy(grid.GetPointData().GetArray("r")))
+            self.assertLessEqual(contour.GetFieldBound(), tolerance * width * 1.5)
+            self.assertGreater(contour.GetFieldBound(), 0)
+            self.assertEqual(open_edges(contour.GetOutput()), 0)
+            self.assertLess(distances(contour.GetOutput()), min(farthest, spread))
+        contour.SetValue(0, 0.4)
+        contour.Update()
+        self.assertEqual(open_edges(contour.GetOutput()), 0)
+        contour.SetTolerance(0)
+        contour.SetValue(0, 0.3)
+        contour.Update()
+        self.assertEqual(contour.GetOutput().GetNumberOfPolys(), plain.GetOutput().GetNumberOfPolys())
+
+    def test_blocks_with_quadratic_cells_are_not_refined(self):
+        blocks = vtkMultiBlockDataSet()
+        for i in range(2):
+            blocks.SetBlock(i, quadratic_tets(2))
+        contour = start(blocks)
+        contour.SetTolerance(0.01)
+        contour.Update()
+        self.assertIn("a Tolerance refines those of one grid on one rank", contour.said[0])
+        self.assertGreater(contour.GetOutputDataObject(0).GetBlock(1).GetNumberOfPolys(), 0)
 
     def test_vectors(self):
         grid = sphere()

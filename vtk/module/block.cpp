@@ -39,6 +39,20 @@ std::vector<isotet::Field> fields_of(std::map<std::string, SharedArray>& carried
     return fields;
 }
 
+/// What a user should know of refined cells; the same for every isovalue, so that it is said once.
+std::vector<std::string> notes_of(const isotet::RefinementReport& report) {
+    std::vector<std::string> notes;
+    if (!report.refined) return notes;
+    if (report.unknown_cells > 0)
+        notes.push_back("curved cells above degree 10 are left out: " + std::to_string(report.unknown_cells));
+    if (report.not_finite > 0)
+        notes.push_back("parts of curved cells with a node that has no finite value are left out");
+    if (report.too_fine || report.too_bent)
+        notes.push_back("some curved cells fold or are too small to be refined to the Tolerance: GetFieldBound() tells "
+                        "what was reached");
+    return notes;
+}
+
 } // namespace
 
 isotet::Result<void> Block::take(vtkUnstructuredGrid* grid, vtkDataArray* scalars, const Wishes& wishes) {
@@ -47,7 +61,7 @@ isotet::Result<void> Block::take(vtkUnstructuredGrid* grid, vtkDataArray* scalar
     wishes_ = wishes;
     input_ = {};
     input_.points = points_.of(grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr);
-    if (auto ok = cells_.take(grid, input_.points); !ok) return ok;
+    if (auto ok = cells_.take(grid, input_.points, wishes.tolerance > 0); !ok) return ok;
     input_.cells = cells_.own();
     contoured_.name = scalars->GetName() ? scalars->GetName() : "scalars";
     contoured_.values = field_.of(scalars);
@@ -92,6 +106,7 @@ isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool 
     options.normals = wishes_.normals ? isotet::Normals::gradient : isotet::Normals::none;
     options.source_cells = needs_ghosts;
     options.frame = frame;
+    if (wishes_.tolerance > 0) options.refine = isotet::RefineOptions{.relative_tolerance = wishes_.tolerance};
     if (wishes_.points == isotet::Precision::float64) options.precision = isotet::Precision::float64;
     if (session_) {
         const isotet::Result<isotet::ContourUpdate> update = session_->set(std::move(input), options, run);
@@ -113,6 +128,8 @@ isotet::Result<void> Block::extract(const std::optional<isotet::Frame>& frame, b
     if (!result) return result.error();
     method_ = result->method;
     extract_seconds_ = result->extract_seconds;
+    field_bound_ = result->refinement.refined ? result->refinement.field_bound : 0;
+    notes_ = notes_of(result->refinement);
     std::vector<isotet::Surface> surfaces;
     for (isotet::Extraction& extraction : result->surfaces) {
         surfaces.push_back(std::move(extraction.surface));

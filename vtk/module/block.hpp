@@ -50,6 +50,8 @@ public:
     isotet::ContourUpdate update() const { return update_; }
     isotet::Method method() const { return method_; }
     std::uint64_t packed_bytes() const;
+    double field_bound() const { return field_bound_; } ///< of curved cells
+    const std::vector<std::string>& notes() const { return notes_; }
     double extract_seconds() const { return extract_seconds_; }
 
 private:
@@ -71,7 +73,8 @@ private:
     std::optional<isotet::Contour> session_;
     isotet::ContourUpdate update_ = isotet::ContourUpdate::grid;
     isotet::Method method_ = isotet::Method::direct;
-    double extract_seconds_ = 0;
+    double extract_seconds_ = 0, field_bound_ = 0;
+    std::vector<std::string> notes_;
 };
 
 } // namespace isotet_vtk

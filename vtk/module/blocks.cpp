@@ -128,6 +128,7 @@ std::string Blocks::extract(const std::vector<BlockTask>& tasks, const isotet::R
         if (!block.has_contoured()) continue;
         if (auto ok = block.extract(frame_, with_numbers_, run, task.out); !ok) return ok.error().message;
         update_ = std::max(update_, block.update());
+        notes_.insert(notes_.end(), block.notes().begin(), block.notes().end());
     }
     return {};
 }
@@ -135,7 +136,9 @@ std::string Blocks::extract(const std::vector<BlockTask>& tasks, const isotet::R
 std::string Blocks::contour(const std::vector<BlockTask>& tasks, const Wishes& wishes, const Ranks& ranks,
                             const isotet::Run& run, const Looked& looked) {
     notes_.clear();
-    std::string error = looked.error.empty() ? take(tasks, wishes) : looked.error;
+    Wishes possible = wishes;
+    if (tasks.size() > 1 || ranks.count() > 1) possible.tolerance = 0; // pieces cannot be refined
+    std::string error = looked.error.empty() ? take(tasks, possible) : looked.error;
     error = agree(tasks, ranks, run, std::move(error), looked);
     if (error.empty()) error = ranks.first_error(extract(tasks, run));
     if (!error.empty())
@@ -160,6 +163,12 @@ std::uint64_t Blocks::packed_bytes() const {
     std::uint64_t bytes = 0;
     for (const auto& [index, block] : blocks_) bytes += block.packed_bytes();
     return bytes;
+}
+
+double Blocks::field_bound() const {
+    double bound = 0;
+    for (const auto& [index, block] : blocks_) bound = std::max(bound, block.field_bound());
+    return bound;
 }
 
 double Blocks::extract_seconds() const {

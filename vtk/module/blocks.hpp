@@ -48,6 +48,7 @@ public:
     bool all_packed() const;
     std::uint64_t packed_bytes() const;
     double extract_seconds() const;
+    double field_bound() const; ///< of curved cells that were refined; 0 where there are none
 
 private:
     std::string take(const std::vector<BlockTask>& tasks, const Wishes& wishes);

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include <isotet/contour.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/pieces.hpp>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkIdTypeArray.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
@@ -46,15 +48,6 @@ bool has_ghost(const isotet::Array& marks) {
     return std::ranges::any_of(marks.as<std::uint8_t>(), [](std::uint8_t mark) { return (mark & ghost_bits) != 0; });
 }
 
-/// Without the types that VTK contours here: of some of them (quadratic cells) isotet would make surfaces, too.
-isotet::Array contoured_types(const isotet::Array& types) {
-    std::vector<std::uint8_t> out;
-    out.reserve(types.tuples());
-    for (const std::uint8_t type : types.as<std::uint8_t>())
-        out.push_back(isotet::Contour::contours(type) ? type : empty_cell);
-    return isotet::Array::own(std::move(out));
-}
-
 #if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 4)
 /// The faces as isotet and older versions of VTK have them, one polyhedron after another.
 void write_faces(vtkUnstructuredGrid* grid, std::vector<std::int64_t>& faces, std::vector<std::int64_t>& first) {
@@ -71,13 +64,30 @@ void write_faces(vtkUnstructuredGrid* grid, std::vector<std::int64_t>& faces, st
 
 } // namespace
 
-isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid, const isotet::Array& points) {
+/// Pyramids of degree 3 and above, which isotet leaves out, have the type of those of degree 2.
+bool SharedCells::is_refined(std::uint8_t type) const {
+    return refines_ && isotet::is_curved(type) && type != VTK_LAGRANGE_PYRAMID && type != VTK_BEZIER_PYRAMID;
+}
+
+bool SharedCells::is_contoured(std::uint8_t type) const { return isotet::Contour::contours(type) || is_refined(type); }
+
+/// Without the types that VTK contours: of some of them (quadratic cells) isotet would make surfaces, too.
+isotet::Array SharedCells::contoured_types(const isotet::Array& types) const {
+    std::vector<std::uint8_t> out;
+    out.reserve(types.tuples());
+    for (const std::uint8_t type : types.as<std::uint8_t>()) out.push_back(is_contoured(type) ? type : empty_cell);
+    return isotet::Array::own(std::move(out));
+}
+
+isotet::Result<void> SharedCells::take(vtkUnstructuredGrid* grid, const isotet::Array& points, bool refines) {
     vtkCellArray* const cells = grid->GetCells();
     const isotet::Array connectivity = connectivity_.of(cells ? cells->GetConnectivityArray() : nullptr);
     const isotet::Array offsets = offsets_.of(cells ? cells->GetOffsetsArray() : nullptr);
     const isotet::Array types = types_.of(types_of(grid));
     marks_ = ghosts_.of(grid->GetCellGhostArray());
-    changed_ = connectivity_.changed() || offsets_.changed() || types_.changed() || ghosts_.changed();
+    changed_ =
+        connectivity_.changed() || offsets_.changed() || types_.changed() || ghosts_.changed() || refines != refines_;
+    refines_ = refines;
     if (!changed_) return {};
     all_ = {connectivity, offsets, types};
     kinds_ = kinds_of(types);
@@ -142,8 +152,7 @@ void SharedCells::release() {
 
 bool SharedCells::has_contoured() const {
     for (int type = 0; type < 256; ++type)
-        if (kinds_[static_cast<std::size_t>(type)] && isotet::Contour::contours(static_cast<std::uint8_t>(type)))
-            return true;
+        if (kinds_[static_cast<std::size_t>(type)] && is_contoured(static_cast<std::uint8_t>(type))) return true;
     return false;
 }
 
@@ -152,7 +161,7 @@ bool SharedCells::has_others() const { return !other_types().empty(); }
 std::vector<std::uint8_t> SharedCells::other_types() const {
     std::vector<std::uint8_t> others;
     for (int type = 1; type < 256; ++type) // 0: no cell at all
-        if (kinds_[static_cast<std::size_t>(type)] && !isotet::Contour::contours(static_cast<std::uint8_t>(type)))
+        if (kinds_[static_cast<std::size_t>(type)] && !is_contoured(static_cast<std::uint8_t>(type)))
             others.push_back(static_cast<std::uint8_t>(type));
     return others;
 }

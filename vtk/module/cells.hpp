@@ -20,9 +20,11 @@ inline constexpr std::uint8_t ghost_bits = 57;
 class SharedCells {
 public:
     /// Shares the arrays of cells, types, faces and ghost marks.
+    ///
+    /// `refines`  isotet contours curved cells, too, but for pyramids
     /// Cost     nothing while they are the same; else a pass over the types, and over ghost marks where there are some
     /// Errors   invalid_data where arrays do not fit together
-    isotet::Result<void> take(vtkUnstructuredGrid* grid, const isotet::Array& points);
+    isotet::Result<void> take(vtkUnstructuredGrid* grid, const isotet::Array& points, bool refines);
     void release();
 
     /// All cells; without those that VTK's ghost marks give to others, or hide.
@@ -41,6 +43,9 @@ public:
     std::vector<std::uint8_t> other_types() const;
 
 private:
+    bool is_refined(std::uint8_t type) const;
+    bool is_contoured(std::uint8_t type) const;
+    isotet::Array contoured_types(const isotet::Array& types) const;
     void share_faces(vtkUnstructuredGrid* grid);
     isotet::Result<void> leave_out_ghosts(const isotet::Array& points);
 
@@ -48,7 +53,7 @@ private:
     isotet::Cells all_, own_;
     isotet::Array marks_;
     std::bitset<256> kinds_;
-    bool has_ghosts_ = false, changed_ = true;
+    bool has_ghosts_ = false, changed_ = true, refines_ = false;
 };
 
 } // namespace isotet_vtk

@@ -1,8 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "fallback.hpp"
 
-#include <isotet/contour.hpp>
+#include <algorithm>
+
 #include <isotet/grid.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include <vtkAlgorithm.h>
 #include <vtkAppendPolyData.h>
@@ -31,10 +33,12 @@ std::string reason_against(vtkDataObject* data, vtkDataArray* scalars) {
     return {};
 }
 
-std::string reason_against(const std::vector<std::uint8_t>& types) {
+std::string reason_against(const std::vector<std::uint8_t>& types, const std::string& why_not) {
     std::string names;
     for (const std::uint8_t type : types) names += (names.empty() ? "" : ", ") + isotet::name_of_cell_type(type);
-    return "cells of these types are contoured by vtkContourFilter, all others by isotet: " + names;
+    const bool curved = std::any_of(types.begin(), types.end(), isotet::is_curved);
+    return "cells of these types are contoured by vtkContourFilter, all others by isotet: " + names +
+           (curved && !why_not.empty() ? "; " + why_not : "");
 }
 
 void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishes, vtkPolyData* out) {
@@ -56,7 +60,7 @@ void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishe
     out->ShallowCopy(filter->GetOutput());
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> other_cells(vtkUnstructuredGrid* grid) {
+vtkSmartPointer<vtkUnstructuredGrid> cells_of_types(vtkUnstructuredGrid* grid, const std::vector<std::uint8_t>& types) {
     auto others = vtkSmartPointer<vtkUnstructuredGrid>::New();
     others->SetPoints(grid->GetPoints());
     others->GetPointData()->ShallowCopy(grid->GetPointData());
@@ -67,7 +71,7 @@ vtkSmartPointer<vtkUnstructuredGrid> other_cells(vtkUnstructuredGrid* grid) {
     vtkNew<vtkIdList> points;
     for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
         const int type = grid->GetCellType(cell);
-        if (type == 0 || isotet::Contour::contours(static_cast<std::uint8_t>(type))) continue;
+        if (std::find(types.begin(), types.end(), type) == types.end()) continue;
         if (ghosts && (ghosts->GetValue(cell) & ghost_bits)) continue;
         grid->GetCellPoints(cell, points);
         others->GetCellData()->CopyData(grid->GetCellData(), cell, others->InsertNextCell(type, points));

@@ -22,13 +22,15 @@ namespace isotet_vtk {
 std::string reason_against(vtkDataObject* data, vtkDataArray* scalars);
 
 /// The sentence for cells of these types, VTK's numbers, in a grid that isotet contours but for them.
-std::string reason_against(const std::vector<std::uint8_t>& types);
+///
+/// `why_not`   why curved ones among them are not refined
+std::string reason_against(const std::vector<std::uint8_t>& types, const std::string& why_not);
 
 /// Contours a data set with vtkContourFilter.
 void contour_by_vtk(vtkDataSet* data, vtkDataArray* scalars, const Wishes& wishes, vtkPolyData* out);
 
-/// The cells of `grid` that isotet does not contour, without ghost cells, with all points and fields.
-vtkSmartPointer<vtkUnstructuredGrid> other_cells(vtkUnstructuredGrid* grid);
+/// The cells of `grid` that have one of these types, without ghost cells, with all points and fields.
+vtkSmartPointer<vtkUnstructuredGrid> cells_of_types(vtkUnstructuredGrid* grid, const std::vector<std::uint8_t>& types);
 
 /// Appends `more` to `out`.
 void append(vtkPolyData* more, vtkPolyData* out);

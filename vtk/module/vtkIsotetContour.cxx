@@ -198,6 +198,11 @@ vtkTypeInt64 vtkIsotetContour::GetPackedBytes()
   return static_cast<vtkTypeInt64>(this->Internal->Blocks.packed_bytes());
 }
 
+double vtkIsotetContour::GetFieldBound()
+{
+  return this->Internal->Blocks.field_bound();
+}
+
 double vtkIsotetContour::GetExtractSeconds()
 {
   return this->Internal->Blocks.extract_seconds();
@@ -278,6 +283,7 @@ int vtkIsotetContour::RequestData(
   wishes.isovalues.assign(this->GetValues(), this->GetValues() + this->GetNumberOfContours());
   wishes.normals = this->ComputeNormals;
   wishes.scalars = this->ComputeScalars;
+  wishes.tolerance = this->Tolerance;
   wishes.expected_surfaces = static_cast<std::uint64_t>(this->ExpectedSurfaces);
   if (this->OutputPointsPrecision != DEFAULT_PRECISION)
   {
@@ -346,9 +352,12 @@ int vtkIsotetContour::RequestData(
     {
       continue;
     }
-    work.Reasons.insert(isotet_vtk::reason_against(types));
+    const char* const whyNot = this->Tolerance > 0
+      ? "a Tolerance refines those of one grid on one rank, but for pyramids of any degree"
+      : "a Tolerance above 0 refines curved ones";
+    work.Reasons.insert(isotet_vtk::reason_against(types, whyNot));
     vtkNew<vtkPolyData> others;
-    isotet_vtk::contour_by_vtk(isotet_vtk::other_cells(task.grid), task.scalars, wishes, others);
+    isotet_vtk::contour_by_vtk(isotet_vtk::cells_of_types(task.grid, types), task.scalars, wishes, others);
     isotet_vtk::append(others, task.out);
   }
   work.Reasons.insert(blocks.notes().begin(), blocks.notes().end());
@@ -372,6 +381,7 @@ void vtkIsotetContour::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ComputeNormals: " << this->ComputeNormals << "\n";
   os << indent << "ComputeScalars: " << this->ComputeScalars << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "ExpectedSurfaces: " << this->ExpectedSurfaces << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Controller: " << this->Controller << "\n";

@@ -15,7 +15,7 @@
  * triangles. Every rank must execute the filter, those without data, too. An error on one rank is one on all.
  *
  * What isotet does not contour is given to vtkContourFilter, with a warning that says why: data sets of other classes,
- * scalars with components, and cells that are neither linear 3D cells nor polyhedra.
+ * scalars with components, and cells that are neither linear 3D cells nor polyhedra, nor, with a Tolerance, curved ones.
  *
  * Differs from vtkContourFilter: vertices are welded exactly; triangles are counter-clockwise, and normals point, towards
  * higher values; normals are gradients of the array; points without data (NaN) give no triangles; integer point
@@ -83,6 +83,17 @@ public:
 
   ///@{
   /**
+   * Above 0: quadratic cells and those of higher degree are refined until the array is within this of their own field, as a
+   * share of its range: 0.001 is 0.1 %. 0, the default: vtkContourFilter contours them, in fixed linear pieces. Cells are
+   * refined for each isovalue, in data sets that are no composite ones, on one rank; elsewhere, and pyramids of degree
+   * 3, vtkContourFilter contours them, with a warning.
+   */
+  vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /**
    * How many surfaces will be asked for, over all isovalues and time steps: from a few on, the first one packs. 0, the
    * default: not known.
    */
@@ -126,6 +137,12 @@ public:
   vtkTypeInt64 GetPackedBytes();
 
   /**
+   * With a Tolerance: how far the array is at most from the field of curved cells in what the last execution made, in its
+   * unit. 0 where nothing was refined.
+   */
+  double GetFieldBound();
+
+  /**
    * The seconds that isotet extracted in the last execution: without packing, and what was done for VTK.
    */
   double GetExtractSeconds();
@@ -145,6 +162,7 @@ protected:
   vtkTypeBool ComputeNormals = 1;
   vtkTypeBool ComputeScalars = 1;
   int OutputPointsPrecision = DEFAULT_PRECISION;
+  double Tolerance = 0;
   int ExpectedSurfaces = 0;
   int NumberOfThreads = 0;
   vtkMultiProcessController* Controller = nullptr;

@@ -15,7 +15,8 @@ struct Wishes {
     bool normals = true;
     bool scalars = true;
     std::optional<isotet::Precision> points; ///< of the output's points; nothing: that of the input
-    std::uint64_t expected_surfaces = 0;     ///< as ContourOptions::surfaces
+    double tolerance = 0; ///< of the field in curved cells, as a share of its range; 0: VTK contours these cells
+    std::uint64_t expected_surfaces = 0; ///< as ContourOptions::surfaces
     int threads = 0;
 };
 
