@@ -11,6 +11,7 @@
 
 #include <isotet/array.hpp>
 #include <isotet/contour.hpp>
+#include <isotet/write.hpp>
 
 namespace isotet::python {
 
@@ -35,6 +36,9 @@ std::string_view word_of(Enum value, const Words<Enum, N>& words) {
         if (known == value) return name;
     return {};
 }
+
+inline constexpr Words<Compression, 3> words_of_compression{
+    {"none", Compression::none}, {"zlib", Compression::zlib}, {"lz4", Compression::lz4}};
 
 inline constexpr Words<Normals, 4> words_of_normals{
     {"none", Normals::none}, {"gradient", Normals::gradient}, {"face", Normals::face}, {"vertex", Normals::vertex}};

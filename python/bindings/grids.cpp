@@ -15,6 +15,7 @@
 
 #include "arrays.hpp"
 #include "call.hpp"
+#include "choice.hpp"
 #include "parts.hpp"
 
 namespace isotet::python {
@@ -43,18 +44,6 @@ nb::tuple cells_out(const Cells& cells) {
                           static_cast<int>(cells.uniform_type), optional(cells.faces), optional(cells.face_offsets));
 }
 
-ReadOptions read_options(const std::string& format, const Names& fields, const Names& cell_fields,
-                         std::optional<std::size_t> step, bool merge_pieces, const std::string& reader_program) {
-    ReadOptions options;
-    options.format = format;
-    options.point_fields = fields;
-    options.cell_fields = cell_fields;
-    options.step = step;
-    options.merge_pieces_by_coordinates = merge_pieces;
-    options.reader_program = reader_program;
-    return options;
-}
-
 nb::dict info_out(const FileInfo& info) {
     nb::dict fields, cell_fields, out;
     for (const FieldInfo& field : info.fields) {
@@ -66,6 +55,19 @@ nb::dict info_out(const FileInfo& info) {
     out["fields"] = fields;
     out["cell_fields"] = cell_fields;
     out["times"] = info.times;
+    nb::list blocks, regions;
+    for (const BlockInfo& block : info.blocks) {
+        nb::dict entry;
+        entry["number"] = block.number;
+        entry["name"] = block.name;
+        entry["kind"] = block.kind;
+        entry["cells"] = block.cells;
+        blocks.append(entry);
+    }
+    for (const RegionName& region : info.regions)
+        regions.append(nb::make_tuple(region.field, region.number, region.name));
+    out["blocks"] = blocks;
+    out["regions"] = regions;
     return out;
 }
 
@@ -140,33 +142,64 @@ void add_grids(nb::module_& module) {
         },
         "grid"_a, "name"_a, "for_pieces"_a, "call"_a);
 
+    nb::class_<ReadOptions>(module, "ReadOptions")
+        .def(
+            "__init__",
+            [](ReadOptions* self, const std::string& format, const std::string& reader_program, const Names& fields,
+               const Names& cell_fields, std::optional<std::size_t> step, bool merge_pieces, bool allow_outside,
+               const std::string& displace, const std::vector<std::string>& blocks) {
+                new (self) ReadOptions();
+                self->format = format;
+                self->reader_program = reader_program;
+                self->point_fields = fields;
+                self->cell_fields = cell_fields;
+                self->step = step;
+                self->merge_pieces_by_coordinates = merge_pieces;
+                self->allow_outside = allow_outside;
+                self->displace = displace;
+                self->blocks = blocks;
+            },
+            "format"_a, "reader_program"_a, "fields"_a.none() = nb::none(), "cell_fields"_a.none() = nb::none(),
+            "step"_a.none() = nb::none(), "merge_pieces"_a = true, "allow_outside"_a = false, "displace"_a = "",
+            "blocks"_a = std::vector<std::string>());
+
     module.def(
         "read",
-        [](const std::string& path, const std::string& format, const Names& fields, const Names& cell_fields,
-           std::optional<std::size_t> step, bool merge_pieces, const std::string& reader_program,
-           const CallOptions& options) {
-            const ReadOptions how = read_options(format, fields, cell_fields, step, merge_pieces, reader_program);
+        [](const std::string& path, const ReadOptions& how, const CallOptions& options) {
             ReadResult result = call(options, [&](const Run& run) { return read(path, how, run); });
             return nb::make_tuple(std::move(result.grid), info_out(result.info), result.step, result.notes);
         },
-        "path"_a, "format"_a, "fields"_a.none(), "cell_fields"_a.none(), "step"_a.none(), "merge_pieces"_a,
-        "reader_program"_a, "call"_a);
+        "path"_a, "how"_a, "call"_a);
 
     module.def(
         "inspect",
-        [](const std::string& path, const std::string& format, const std::string& reader_program,
-           const CallOptions& options) {
-            const ReadOptions how = read_options(format, {}, {}, {}, false, reader_program);
+        [](const std::string& path, const ReadOptions& how, const CallOptions& options) {
             return info_out(call(options, [&](const Run& run) { return inspect(path, how, run); }));
         },
-        "path"_a, "format"_a, "reader_program"_a, "call"_a);
+        "path"_a, "how"_a, "call"_a);
+
+    module.def(
+        "merge_points",
+        [](const Grid& grid, double tolerance, bool means, const CallOptions& options) {
+            const MergeOptions how{tolerance, means ? MergedValues::mean : MergedValues::lowest};
+            MergedPoints merged = call(options, [&](const Run& run) { return merge_points(grid, how, run); });
+            nb::dict report, jumps;
+            report["merged"] = merged.merged;
+            report["collapsed_cells"] = merged.collapsed_cells;
+            for (const FieldJump& jump : merged.jumps) jumps[jump.field.c_str()] = jump.largest;
+            report["jumps"] = jumps;
+            return nb::make_tuple(std::move(merged.grid), report);
+        },
+        "grid"_a, "tolerance"_a, "means"_a, "call"_a);
 
     module.def(
         "write_grid",
-        [](const Grid& grid, const std::string& path, const std::string& format, const CallOptions& options) {
-            return call(options, [&](const Run& run) { return write_grid(grid, path, {format}, run); }).notes;
+        [](const Grid& grid, const std::string& path, const std::string& format, const std::string& compression,
+           const CallOptions& options) {
+            const WriteOptions how{format, choice("compression", compression, words_of_compression)};
+            return call(options, [&](const Run& run) { return write_grid(grid, path, how, run); }).notes;
         },
-        "grid"_a, "path"_a, "format"_a, "call"_a);
+        "grid"_a, "path"_a, "format"_a, "compression"_a, "call"_a);
 
     module.def(
         "make",

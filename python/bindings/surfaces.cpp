@@ -29,9 +29,6 @@ namespace {
 /// Surfaces that were extracted have numbers of points and cells as int64, also where there are none.
 bool is_there(const Array& numbers) { return !numbers.empty() || numbers.type() == ScalarType::int64; }
 
-constexpr Words<Compression, 3> words_of_compression{
-    {"none", Compression::none}, {"zlib", Compression::zlib}, {"lz4", Compression::lz4}};
-
 nb::object array_or_none(const Array& array, bool there) { return there ? array_out(array) : nb::none(); }
 
 Array optional_array(const std::optional<ArrayIn>& array) { return array ? array_in(*array) : Array(); }

@@ -220,12 +220,29 @@ class Grid:
         numbers = numbers_in("marks", marks)
         return Grid._of(_isotet.leave_out_cells(self._grid, numbers, bits, call_options(0, None)))
 
-    def write(self, path: str | os.PathLike[str], *, format: str = "", progress: Progress | None = None) -> list[str]:
+    def merge_points(self, tolerance: float = 0.0, *, values: str = "lowest", threads: int = 0) -> tuple[Grid, dict[str, Any]]:
+        """The grid with points that are at most `tolerance` apart joined (0: of equal coordinates), and a report of it: `merged`
+        points, `collapsed_cells`, and the largest jump of each field at joined points. Points keep their numbers.
+
+        values
+            What joined points have: "lowest", the value of the lowest number, or "mean".
+
+        Raises ValueError when the tolerance is negative or so large that every cell collapses.
+        """
+        if values not in ("lowest", "mean"):
+            raise ValueError(f"values is '{values}', but must be lowest or mean")
+        grid, report = _isotet.merge_points(self._grid, tolerance, values == "mean", call_options(threads, None))
+        return Grid._of(grid, self.info, self.step, self.notes), report
+
+    def write(self, path: str | os.PathLike[str], *, format: str = "", compression: str = "none",
+              progress: Progress | None = None) -> list[str]:  # fmt: skip
         """Writes the grid as .vtu or legacy .vtk, whole or not at all. Returns sentences on what the format could not hold.
+
+        compression, of .vtu only: "zlib", which every VTK reads, or "lz4", which is read faster.
 
         Raises OSError where the file cannot be written, ValueError for an unknown format.
         """
-        return _isotet.write_grid(self._grid, os.fspath(path), format, call_options(0, progress))
+        return _isotet.write_grid(self._grid, os.fspath(path), format, compression, call_options(0, progress))
 
     def __len__(self) -> int:
         """The number of cells."""
@@ -461,7 +478,8 @@ def pack(points, cells=None, values=None, *, offsets=None, types=None, gradients
 
 
 def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, cell_fields: Iterable[str] | None = None,
-         step: int | None = None, format: str = "", merge_pieces: bool = False, reader_program: str = "",
+         step: int | None = None, blocks: Iterable[str | int] = (), format: str = "", merge_pieces: bool = True,
+         allow_outside: bool = False, displace: str = "", reader_program: str = "",
          progress: Progress | None = None) -> Grid:  # fmt: skip
     """Reads a grid: VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, Gocad, GRDECL and more (`formats`).
 
@@ -471,29 +489,39 @@ def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, c
         Names of the fields to read; without them all.
     step
         Which of several time steps, from 0.
+    blocks
+        Names or numbers of the blocks, zones or parts to read, as `inspect` lists them; without them all.
     merge_pieces
         Join points of equal coordinates where pieces have no global numbers.
+    allow_outside
+        Index files (.pvd, .pvtu and so on) may name files outside their own folder.
+    displace
+        A vector field of the points by which they are moved.
     reader_program
-        The program `isotet`, which reads formats that need VTK's readers (Exodus, CGNS, EnSight, VTKHDF). Without it: the
-        one in PATH.
+        The program `isotet-reader`, which reads formats that need VTK's readers (Exodus, CGNS, EnSight, VTKHDF). Without it:
+        the one in PATH.
 
-    Grid.info has the fields and times of the file, Grid.notes what was noticed.
+    Grid.info has the fields, blocks and times of the file, Grid.notes what was noticed.
 
     Raises OSError where the file cannot be read or its format is not known, ValueError where its content is broken or a
-    field or step is not there.
+    field, block or step is not there.
     """
     names = None if fields is None else [str(name) for name in fields]
     cell_names = None if cell_fields is None else [str(name) for name in cell_fields]
-    return Grid._of(*_isotet.read(os.fspath(path), format, names, cell_names, step, merge_pieces, reader_program,
-                                  call_options(0, progress)))  # fmt: skip
+    if isinstance(blocks, str):
+        raise TypeError(f"blocks is '{blocks}', but must be a list of names or numbers")
+    how = _isotet.ReadOptions(format, reader_program, names, cell_names, step, merge_pieces, allow_outside, displace,
+                              [str(block) for block in blocks])  # fmt: skip
+    return Grid._of(*_isotet.read(os.fspath(path), how, call_options(0, progress)))
 
 
 def inspect(path: str | os.PathLike[str], *, format: str = "", reader_program: str = "") -> dict[str, Any]:
-    """What the file at `path` holds, without reading it whole: format, fields and cell_fields (type and columns), times.
+    """What the file at `path` holds, without reading it whole: format, fields and cell_fields (type and columns), times, blocks
+    (number, name, kind and cells), and regions: what numbers of a cell field are called (field, number, name).
 
     `format` and `reader_program` are those of `read`. Raises OSError and ValueError as it does.
     """
-    return _isotet.inspect(os.fspath(path), format, reader_program, call_options(0, None))
+    return _isotet.inspect(os.fspath(path), _isotet.ReadOptions(format, reader_program), call_options(0, None))
 
 
 def make(shape: str = "kuhn", side: int = 32, fields: Sequence[str] = ("sphere", "gyroid"), seed: int = 1) -> Grid:

@@ -25,6 +25,18 @@ def program() -> str:
 
 
 @pytest.fixture
+def reader(program) -> str:
+    """The program isotet-reader beside it."""
+    return str(Path(program).resolve().with_name("isotet-reader"))
+
+
+@pytest.fixture
+def data(tree) -> Path:
+    """The real grids."""
+    return tree / "data"
+
+
+@pytest.fixture
 def sphere() -> isotet.Grid:
     return isotet.make("kuhn", 6, ["sphere", "gyroid"])
 

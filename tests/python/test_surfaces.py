@@ -188,6 +188,50 @@ def test_grids_are_written_and_read(tmp_path):
     assert again.info["times"] == []
 
 
+def test_grids_are_written_compressed(tmp_path):
+    grid = isotet.make("kuhn", 8, ["integer"])
+    sizes = []
+    for compression in ("none", "zlib", "lz4"):
+        grid.write(tmp_path / "grid.vtu", compression=compression)
+        sizes.append((tmp_path / "grid.vtu").stat().st_size)
+        assert (isotet.read(tmp_path / "grid.vtu").fields["integer"] == grid.fields["integer"]).all()
+    assert sizes[0] > 2 * sizes[1]
+    with pytest.raises(ValueError, match="compression is 'gz', but must be one of: none, zlib, lz4"):
+        grid.write(tmp_path / "grid.vtu", compression="gz")
+
+
+def test_blocks_are_listed_and_chosen(data, reader):
+    path = data / "exodus" / "mixed_blocks_hdf5.exo"
+    blocks = isotet.inspect(path, reader_program=reader)["blocks"]
+    assert [sorted(block) for block in blocks] == [["cells", "kind", "name", "number"]] * len(blocks)
+    assert len(blocks) > 1
+    for block in blocks:
+        assert len(isotet.read(path, blocks=[block["number"]], reader_program=reader)) == block["cells"]
+    with pytest.raises(ValueError, match="nowhere"):
+        isotet.read(path, blocks=["nowhere"], reader_program=reader)
+    with pytest.raises(TypeError, match="blocks is 'a', but must be a list"):
+        isotet.read(path, blocks="a")
+
+
+def test_regions_have_names(data):
+    regions = isotet.inspect(data / "msh" / "inclusions_v41_ascii.msh")["regions"]
+    assert regions and all(isinstance(number, int) and name for _, number, name in regions)
+
+
+def test_points_are_merged():
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, -1]], np.float32)
+    torn = isotet.Grid(points, np.arange(8).reshape(2, 4), fields={"t": np.array([0, 1, 2, 3, 0.5, 1, 2, 4], np.float32)})
+    grid, report = torn.merge_points()
+    assert report == {"merged": 3, "collapsed_cells": 0, "jumps": {"t": 0.5}}
+    assert grid.cells[1].tolist() == [0, 1, 2, 7]
+    assert grid.fields["t"][0] == 0
+    assert torn.merge_points(values="mean")[0].fields["t"][0] == 0.25
+    with pytest.raises(ValueError, match="values is 'median', but must be lowest or mean"):
+        torn.merge_points(values="median")
+    with pytest.raises(ValueError, match="tolerance"):
+        torn.merge_points(-1)
+
+
 def test_errors_of_files(tmp_path):
     with pytest.raises(OSError, match="nowhere"):
         isotet.read(tmp_path / "nowhere.vtu")
