@@ -65,6 +65,7 @@ void add_pack_rows(const PackReport& pack, Table& table) {
 std::string time_text(const ExtractNumbers& numbers) {
     std::string text = "read " + seconds_text(numbers.read_seconds);
     if (numbers.pack) text += ", pack " + seconds_text(numbers.pack_seconds);
+    else if (numbers.pack_seconds > 0) text += ", make cells linear " + seconds_text(numbers.pack_seconds);
     if (numbers.look_seconds > 0) text += ", range " + seconds_text(numbers.look_seconds);
     text += ", areas " + seconds_text(numbers.measure_seconds);
     return text;

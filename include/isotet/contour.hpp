@@ -76,8 +76,8 @@ struct ContourResult {
     FieldReport field;
     std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
     std::uint64_t coarse_tets = 0;    ///< of direct extraction, as DirectExtraction::coarse_tets
-    double pack_seconds = 0;          ///< packing, or storing another field or points, and uploading; 0 where nothing
-                                      ///< was to be done
+    double pack_seconds = 0;          ///< making cells linear, packing, or storing another field or points, and uploading,
+                                      ///< since the extraction before; 0 where nothing was to be done
     double extract_seconds = 0;       ///< downloading included
     DeviceWork work;                  ///< on the device, of the last surface
     std::vector<std::string> notes;   ///< sentences for the user

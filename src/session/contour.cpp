@@ -51,9 +51,11 @@ Result<Contour> Contour::create(ContourInput input, const ContourOptions& option
         if (options.refine && has_curved_cells(input.grid.cells)) {
             if (auto taken = data->curved.take(std::move(input), options); !taken) return taken.error();
         } else {
+            const auto start = std::chrono::steady_clock::now();
             Result<ContourInput> linear = data->linear.make(std::move(input), {});
             if (!linear) return linear.error();
             data->input = *std::move(linear);
+            if (data->linear.grid()) data->update_seconds += session::seconds_since(start);
             data->note_new_cells();
         }
         const ContourInput& first = data->curved ? data->curved.corners() : data->input;
@@ -93,8 +95,10 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
             return ContourUpdate::grid;
         }
         session::LinearInput linear = data.linear;
+        const auto start = std::chrono::steady_clock::now();
         if (Result<ContourInput> made = linear.make(std::move(input), run); made) input = *std::move(made);
         else return made.error();
+        if (linear.grid()) data.update_seconds += session::seconds_since(start);
         const ContourUpdate update = data.what_changed(input, options, run);
         if (run.progress.cancelled()) return Error{ErrorCode::cancelled, "setting another grid was cancelled"};
         if (update != ContourUpdate::nothing) {
