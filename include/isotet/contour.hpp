@@ -58,6 +58,10 @@ struct ContourOptions {
     /// curved themselves, and point fields with them. Gradient normals stay those of the tets. Grids without curved cells
     /// have no such edges. Costs edge ends and source cells for a while.
     bool exact_vertices = false;
+    /// Isovalues that will be asked for first: where they are extracted directly, only the polyhedra that they meet are made
+    /// linear, unless something needs the others (gradients, edge ends, a frame, values that are rounded when they are
+    /// stored). The surfaces are the same. Another isovalue makes all linear.
+    std::vector<double> expected_isovalues = {};
 };
 
 /// What set() had to do.
@@ -76,12 +80,12 @@ struct ContourResult {
     FieldReport field;
     std::uint64_t cells_left_out = 0; ///< cells of types that are not contoured
     std::uint64_t coarse_tets = 0;    ///< of direct extraction, as DirectExtraction::coarse_tets
-    double pack_seconds = 0;          ///< making cells linear, packing, or storing another field or points, and uploading,
-                                      ///< since the extraction before; 0 where nothing was to be done
-    double extract_seconds = 0;       ///< downloading included
-    DeviceWork work;                  ///< on the device, of the last surface
-    std::vector<std::string> notes;   ///< sentences for the user
-    RefinementReport refinement;      ///< of the grid that was extracted from; without curved cells nothing is counted
+    double pack_seconds = 0;    ///< making cells linear, packing, or storing another field or points, and uploading,
+                                ///< since the extraction before; 0 where nothing was to be done
+    double extract_seconds = 0; ///< downloading included
+    DeviceWork work;            ///< on the device, of the last surface
+    std::vector<std::string> notes; ///< sentences for the user
+    RefinementReport refinement;    ///< of the grid that was extracted from; without curved cells nothing is counted
 };
 
 /// Answers isovalues for one grid at a time, and keeps what may be kept when the grid or the field changes.

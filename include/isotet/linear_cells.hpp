@@ -77,6 +77,7 @@ struct LinearizeReport {
     std::uint64_t folded = 0; ///< centred ones where no point was found that sees all faces
     std::uint64_t open = 0;   ///< polyhedra left out: some edge is not in two faces, or the faces are not one shell
     std::uint64_t cells = 0;  ///< linear cells that polyhedra became
+    std::uint64_t unmet = 0;  ///< polyhedra that LinearizeOptions::isovalues left out; the other counts are without them
     std::uint64_t high_degree = 0;       ///< Lagrange cells of degree 3 and above, and Bezier cells, that were split
     std::uint64_t high_degree_parts = 0; ///< cells of degree 2 that these became
 
@@ -100,7 +101,8 @@ struct ISOTET_API LinearGrid {
     /// An array of one tuple a user's point, continued for the derived points: computed in double, rounded once.
     /// float32 and float64 keep their type; integers become float64. NaN at a derived point where one of its points has NaN.
     ///
-    /// Guarantees   linear fields stay linear, constant ones constant; the same bytes for any thread count
+    /// Guarantees   linear fields stay linear, constant ones constant; at a point inside a polyhedron no value is outside
+    ///              those of its corners; the same bytes for any thread count
     /// Cost         one pass; a copy of the array, and the derived tuples
     /// Errors       invalid_argument when it has not one tuple a user's point; out_of_memory; cancelled
     Result<Array> extend(const Array& values, const Run& run = {}) const;
@@ -112,6 +114,10 @@ struct ISOTET_API LinearGrid {
 
 struct LinearizeOptions {
     bool known_shapes = true; ///< false: every polyhedron is split around a derived point
+    /// Not empty: polyhedra that none of these meets are left out, which have no part of these isosurfaces of `values`, one
+    /// scalar a point. Not for grids with curved cells or point numbers.
+    std::vector<double> isovalues = {};
+    Array values = {};
 };
 
 /// True when some cells are polyhedra with faces or of a degree above 1: linearize() makes linear cells of them.

@@ -185,7 +185,7 @@ class Grid:
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
                                          split_cells, frame and frame._frame,
                                          *tolerances_in(tolerance, geometry_tolerance, distance),
-                                         exact_vertices)  # fmt: skip
+                                         exact_vertices, values)  # fmt: skip
         session = _isotet.Contour(self._grid, self._field(field, call, frame is not None), self._carried(fields, "fields"),
                                   self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
         return Surface._of(*session.extract(values, call))

@@ -120,6 +120,7 @@ Result<Contour> ExtractRun::start(ContourInput input) {
     const std::size_t isovalues =
         job_.isovalues.empty() ? std::max<std::uint64_t>(job_.levels, 1) : job_.isovalues.size();
     options.surfaces = isovalues * plan_.steps.size();
+    if (!job_.snap) options.expected_isovalues = job_.isovalues;
     if (device_) options.engine = device_;
     options.engine_required = job_.engine == EngineChoice::vulkan;
     numbers_.why = device_          ? "devices take packed grids"

@@ -43,9 +43,10 @@ void add_refined(const RefinedPoints& refined, std::size_t before, std::size_t c
     });
 }
 
+/// `inside`   no value is outside those that it is made of
 template <class To, class From>
 Array extended(const DerivedPoints& derived, const RefinedPoints& refined, std::span<const From> from,
-               std::size_t components, const Progress& progress) {
+               std::size_t components, bool inside, const Progress& progress) {
     const std::size_t users = from.size() / components, rows = derived.count();
     core::Buffer<To> to((users + rows + refined.count()) * components);
     core::parallel_pieces(from.size(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
@@ -61,10 +62,15 @@ Array extended(const DerivedPoints& derived, const RefinedPoints& refined, std::
     const auto weights = derived.weights.as<double>();
     core::parallel_pieces(rows, derived_grain, progress, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row)
-            for (std::size_t c = 0; c < components; ++c)
-                to[(users + row) * components + c] = static_cast<To>(linear::weighted_sum(
-                    first[row + 1] - first[row], [&](std::size_t i) { return weights[first[row] + i]; },
-                    [&](std::size_t i) { return static_cast<double>(from[points[first[row] + i] * components + c]); }));
+            for (std::size_t c = 0; c < components; ++c) {
+                const std::size_t count = first[row + 1] - first[row];
+                const auto at = [&](std::size_t i) {
+                    return static_cast<double>(from[points[first[row] + i] * components + c]);
+                };
+                double value = linear::weighted_sum(count, [&](std::size_t i) { return weights[first[row] + i]; }, at);
+                if (inside) value = linear::within(value, count, at);
+                to[(users + row) * components + c] = static_cast<To>(value);
+            }
     });
     add_refined(refined, users + rows, components, to, progress);
     return std::move(to).to_array(components);
@@ -95,7 +101,7 @@ Result<Array> LinearGrid::extend(const Array& values, const Run& run) const {
         if (derived.count() == 0 && refined.count() == 0) return values;
         Array out = values.visit([&]<class T>(std::span<const T> from) {
             using To = std::conditional_t<std::is_floating_point_v<T>, T, double>;
-            return extended<To>(derived, refined, from, values.components(), progress);
+            return extended<To>(derived, refined, from, values.components(), report.high_degree == 0, progress);
         });
         if (progress.cancelled()) return cancelled_extension();
         return out;

@@ -20,4 +20,16 @@ double weighted_sum(std::size_t count, const Weight& weight, const At& at) {
     return sum;
 }
 
+/// The value, or the nearest of those from the smallest at(i) to the largest; not a number stays so.
+template <class At>
+double within(double value, std::size_t count, const At& at) {
+    double lower = at(0), upper = lower;
+    for (std::size_t i = 1; i < count; ++i) {
+        const double next = at(i);
+        lower = next < lower ? next : lower;
+        upper = next > upper ? next : upper;
+    }
+    return value < lower ? lower : value > upper ? upper : value;
+}
+
 } // namespace isotet::linear

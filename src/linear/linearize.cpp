@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <vector>
 
 #include <fmt/core.h>
@@ -60,10 +61,61 @@ Result<void> check_high_degree(const Grid& grid, const core::CellReader& cells, 
     return {};
 }
 
+/// Which polyhedra have values on both sides of an isovalue, or one that is not finite.
+class MetCells {
+public:
+    MetCells(const core::CellReader& cells, const LinearizeOptions& options)
+        : cells_(cells), values_(options.values), isovalues_(options.isovalues) {
+        std::ranges::sort(isovalues_);
+    }
+
+    /// `corner_values`   memory to be used again
+    bool meets(std::size_t cell, std::vector<double>& corner_values) const {
+        const std::uint64_t first = cells_.first(cell), count = cells_.corners(cell);
+        corner_values.resize(count);
+        values_.visit([&](auto values) {
+            for (std::uint64_t i = 0; i < count; ++i)
+                corner_values[i] = static_cast<double>(values[cells_.corner(first + i)]);
+        });
+        double lower = INFINITY, upper = -INFINITY;
+        bool finite = true;
+        for (const double value : corner_values) {
+            finite &= std::isfinite(value);
+            lower = std::min(lower, value);
+            upper = std::max(upper, value);
+        }
+        if (!finite) return true;
+        // The nearest stored value of an isovalue counts, so a little more than the range.
+        constexpr double rounding = 0x1p-20;
+        const double more = rounding * std::max(std::abs(lower), std::abs(upper));
+        const auto next = std::ranges::lower_bound(isovalues_, lower - more);
+        return next != isovalues_.end() && *next <= upper + more;
+    }
+
+private:
+    const core::CellReader& cells_;
+    const Array& values_;
+    std::vector<double> isovalues_;
+};
+
+Result<void> check_selection(const Grid& grid, const LinearizeOptions& options) {
+    if (options.isovalues.empty()) return {};
+    if (options.values.tuples() != grid.points.tuples() || options.values.components() != 1)
+        return invalid_argument(fmt::format("there are {} values of {} components, but the grid has {} points and one "
+                                            "scalar a point is needed",
+                                            options.values.tuples(), options.values.components(),
+                                            grid.points.tuples()));
+    if (!grid.point_numbers.empty() || has_curved_cells(grid.cells))
+        return invalid_argument(
+            "polyhedra are chosen by isovalues only in grids without curved cells and point numbers");
+    return {};
+}
+
 /// Where numbers decide, they are the indices of points.
 Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
+    if (auto fits = check_selection(grid, options); !fits) return fits.error();
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
     if (auto sound = core::check_faces(grid, *cells, progress); !sound) return sound.error();
     const auto faces = core::FaceReader::open(grid.cells);
@@ -74,18 +126,23 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
     progress("linearize", 0.1);
 
     const bool narrow = grid.points.tuples() < std::uint64_t{1} << 31;
+    const MetCells met(*cells, options);
     const std::size_t cells_per_block = cells_of_block(cells->count());
     std::vector<KeptParts> blocks((cells->count() + cells_per_block - 1) / cells_per_block);
     core::parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         PolyhedronSplitter splitter(grid, *cells, *faces, options);
         HighDegreeSplitter by_degree(*cells);
         std::vector<std::uint64_t> corners;
+        std::vector<double> corner_values;
         Parts parts;
         for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
             const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
-                if (cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell))
-                    splitter.split(cell, parts);
+                const bool is_polyhedron =
+                    cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell);
+                if (is_polyhedron && !options.isovalues.empty() && !met.meets(cell, corner_values))
+                    ++parts.report.unmet;
+                else if (is_polyhedron) splitter.split(cell, parts);
                 else if (const auto what = high_degree_of(cells->type(cell), cells->corners(cell)))
                     by_degree.split(cell, *what, parts);
                 else keep_cell(*cells, cell, corners, parts);
@@ -99,7 +156,7 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
     out.user_cells = cells->count();
     if (high_degree) merge_rows(out);
     const auto types = out.grid.cells.types.as<std::uint8_t>();
-    if (std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
+    if (out.report.unmet == 0 && std::ranges::none_of(types, core::is_contoured) && !has_curved_cells(grid.cells))
         return nothing_left(grid, out.report);
     auto points = out.extend(grid.points, {.threads = core::threads_here()});
     if (!points) return points.error();

@@ -7,7 +7,11 @@ namespace isotet {
 
 std::vector<std::string> LinearizeReport::notes() const {
     std::vector<std::string> out;
-    if (centred > 0)
+    if (unmet > 0)
+        out.push_back(fmt::format("{} of {} polyhedra have values on both sides of an isovalue: {} were split around a "
+                                  "point inside, whose values are means of the corners' (docs/cells.md)",
+                                  polyhedra, polyhedra + unmet, centred));
+    else if (centred > 0)
         out.push_back(fmt::format("{} of {} polyhedra were split around a point inside, whose values are means of the "
                                   "corners': with the others they are {} linear cells (docs/cells.md)",
                                   centred, polyhedra, cells));

@@ -26,6 +26,7 @@ void add(LinearizeReport& sum, const LinearizeReport& part) {
     sum.folded += part.folded;
     sum.open += part.open;
     sum.cells += part.cells;
+    sum.unmet += part.unmet;
     sum.high_degree += part.high_degree;
     sum.high_degree_parts += part.high_degree_parts;
 }

@@ -47,6 +47,7 @@ struct IsosurfaceScene::Data {
     Scene scene = {};
     std::vector<ShownSurface> shown = {};
     SceneReport report = {};
+    bool pack_is_told = false; ///< the report has what the next extraction tells of packing
     std::vector<std::string> notes = {};
 
     Result<void> look_around(const Grid& grid, const Run& run);

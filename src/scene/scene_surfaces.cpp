@@ -53,12 +53,14 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         options.source_cells = by_cells;
         without_device = carrying;
     }
+    const core::Stopwatch packing;
     Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options);
     if (!created) return created.error();
     contour = *std::move(created);
-    const core::Stopwatch packing;
     if (Result<void> ready = contour->prepare(run); !ready) return ready;
-    if (use_device) report.pack_seconds = packing.seconds(); // else the first extraction tells it
+    if (!contour->packed() && !contour->linear_grid()) return {};
+    report.pack_seconds = packing.seconds();
+    pack_is_told = true;
     return {};
 }
 
@@ -117,7 +119,7 @@ Result<void> IsosurfaceScene::Data::show_extracted(std::span<const double> isova
     std::ranges::move(result->notes, std::back_inserter(notes));
     report.method = result->method;
     report.field = result->field;
-    report.pack_seconds += result->pack_seconds;
+    if (!std::exchange(pack_is_told, false)) report.pack_seconds += result->pack_seconds;
     for (Extraction& extraction : result->surfaces)
         if (Result<void> added = add_surface(std::move(extraction.surface)); !added) return added;
     return {};

@@ -48,6 +48,9 @@ Result<Contour> Contour::create(ContourInput input, const ContourOptions& option
     return core::guarded("starting to contour", [&]() -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
         auto data = std::make_unique<Data>();
+        const auto met = data->take_met(input, options);
+        if (!met) return met.error();
+        if (*met == Data::Met::some) return Contour(std::move(data));
         if (options.refine && has_curved_cells(input.grid.cells)) {
             if (auto taken = data->curved.take(std::move(input), options); !taken) return taken.error();
         } else {
@@ -94,6 +97,11 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
             if (auto taken = data.take_curved(std::move(input), options); !taken) return taken.error();
             return ContourUpdate::grid;
         }
+        if (!data.packed) {
+            const auto taken = data.take_met(input, options);
+            if (!taken) return taken.error();
+            if (*taken == Data::Met::some) return ContourUpdate::grid;
+        }
         session::LinearInput linear = data.linear;
         const auto start = std::chrono::steady_clock::now();
         if (Result<ContourInput> made = linear.make(std::move(input), run); made) input = *std::move(made);
@@ -113,6 +121,7 @@ Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& opt
         data.linear = std::move(linear);
         if (data.curved) data.packed.reset();
         data.curved = {};
+        data.met = {};
         data.note_new_cells();
         data.input = std::move(input);
         if (update == ContourUpdate::nothing && options.method != Method::direct) data.input.grid = {};
@@ -137,6 +146,8 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         std::unique_lock lock(data.mutex);
         data.asked += isovalues.size();
         if (auto ok = data.refine_for(isovalues, run); !ok) return ok.error();
+        if (!data.met.is_good_for(isovalues))
+            if (auto ok = data.make_all_linear(run); !ok) return ok.error();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         const auto start = std::chrono::steady_clock::now();
         const Method method = data.method_of_next(0);
@@ -144,6 +155,7 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         const ContourInput input = data.input; // shares the arrays
         const ContourOptions options = data.options;
         const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
+        const std::optional<ValueRange> range = data.met ? std::optional(data.met.range()) : std::nullopt;
         ContourResult head;
         head.notes = std::exchange(data.notes, {});
         head.pack_seconds = std::exchange(data.update_seconds, 0);
@@ -184,6 +196,10 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             result->field.upper = whole->upper;
             result->field.no_data = whole->no_data;
             result->field.infinite = whole->infinite;
+        }
+        if (range) {
+            result->field.lower = range->lower;
+            result->field.upper = range->upper;
         }
         result->method = method;
         result->extract_seconds = session::seconds_since(start);
@@ -249,7 +265,11 @@ Result<FieldReport> Contour::field(const Run& run) {
         const Result<ContourResult> looked = extract_directly(data.input, data.options, {}, run);
         if (!looked) return looked.error();
         data.range = looked->field;
-        return looked->field;
+        if (data.met) {
+            data.range->lower = data.met.range().lower;
+            data.range->upper = data.met.range().upper;
+        }
+        return *data.range;
     });
 }
 

@@ -56,6 +56,49 @@ void Contour::Data::note_new_cells() {
     std::ranges::move(session::notes_on(linear.grid()->refinement), std::back_inserter(notes));
 }
 
+/// Starts over with an input of which only cells that the expected isovalues meet are made linear, unless all must be, for
+/// what is asked for, or since no cell is met: then nothing is done.
+Result<Contour::Data::Met> Contour::Data::take_met(const ContourInput& next, const ContourOptions& next_options) {
+    if (!session::MetInput::suits(next, next_options)) return Met::not_chosen;
+    const auto start = std::chrono::steady_clock::now();
+    session::MetInput taken;
+    Result<std::optional<ContourInput>> some = taken.make(next, next_options);
+    if (!some) return some.error();
+    if (!*some) return Met::not_chosen;
+    std::optional<ContourInput> made = *std::move(some);
+    Result<FieldSample> next_sample = FieldSample::create(made->grid, made->field, next_options.split_cells);
+    if (!next_sample) return next_sample.error();
+    grid.reset();
+    packed.reset();
+    range.reset();
+    linear = {};
+    curved = {};
+    met = std::move(taken);
+    input = *std::move(made);
+    sample = *std::move(next_sample);
+    options = next_options;
+    behind = ContourUpdate::grid;
+    std::ranges::move(met.grid()->report.notes(), std::back_inserter(notes));
+    update_seconds += session::seconds_since(start);
+    return Met::some;
+}
+
+/// Makes the other cells linear, too.
+Result<void> Contour::Data::make_all_linear(const Run& run) {
+    if (!met) return {};
+    const auto start = std::chrono::steady_clock::now();
+    Result<ContourInput> made = linear.make(met.user(), run);
+    if (!made) return made.error();
+    Result<FieldSample> all = FieldSample::create(made->grid, made->field, options.split_cells);
+    if (!all) return all.error();
+    sample = *std::move(all);
+    input = *std::move(made);
+    met = {};
+    note_new_cells();
+    update_seconds += session::seconds_since(start);
+    return {};
+}
+
 /// Starts over with an input that is refined when isovalues are known.
 Result<void> Contour::Data::take_curved(ContourInput next, const ContourOptions& next_options) {
     session::CurvedInput taken;
@@ -67,6 +110,7 @@ Result<void> Contour::Data::take_curved(ContourInput next, const ContourOptions&
     packed.reset();
     range.reset();
     linear = {};
+    met = {};
     input = {};
     curved = std::move(taken);
     sample = *std::move(next_sample);
@@ -78,7 +122,7 @@ Result<void> Contour::Data::take_curved(ContourInput next, const ContourOptions&
 /// What must be stored again to extract from `next`, linear cells, as `next_options` say.
 ContourUpdate Contour::Data::what_changed(const ContourInput& next, const ContourOptions& next_options,
                                           const Run& run) {
-    if (!packed || curved || behind == ContourUpdate::grid || options.split_cells != next_options.split_cells ||
+    if (!packed || curved || met || behind == ContourUpdate::grid || options.split_cells != next_options.split_cells ||
         !has_what_is_needed(*packed, next_options, next) || packed->user_point_count() != next.grid.points.tuples())
         return ContourUpdate::grid;
     ContourUpdate update = ContourUpdate::grid;
@@ -221,6 +265,7 @@ Result<void> Contour::Data::bring_up_to_date(const Run& run) {
 Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
     if (curved && !curved.grid()) return {}; // extract() refines
     if (method_of_next(isovalues) == Method::direct) return {};
+    if (auto all = make_all_linear(run); !all) return all;
     if (packed && behind == ContourUpdate::nothing) return create_grid(run);
     const Result<void> ready = bring_up_to_date(run);
     if (ready || ready.error().code != ErrorCode::out_of_memory || options.method ||

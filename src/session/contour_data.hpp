@@ -31,6 +31,7 @@ ExtractOptions extract_options(const ContourOptions& options, const ContourInput
 struct Contour::Data {
     std::mutex mutex; ///< of all that follows
     session::LinearInput linear;
+    session::MetInput met;       ///< where only cells that isovalues meet were made linear: `input` has these
     session::CurvedInput curved; ///< where cells are refined in extract(): `input` is then what was refined last
     ContourInput input;          ///< with linear cells; without the grid when that is packed
     ContourOptions options;
@@ -47,6 +48,9 @@ struct Contour::Data {
     std::vector<std::string> notes;
 
     void note_new_cells();
+    enum class Met { some, not_chosen };
+    Result<Met> take_met(const ContourInput& next, const ContourOptions& next_options);
+    Result<void> make_all_linear(const Run& run);
     Result<void> take_curved(ContourInput next, const ContourOptions& next_options);
     ContourUpdate what_changed(const ContourInput& next, const ContourOptions& next_options, const Run& run);
     Result<void> refine_for(std::span<const double> isovalues, const Run& run);
@@ -54,7 +58,9 @@ struct Contour::Data {
         if (!range) range = curved.field();
         return *range;
     }
-    std::shared_ptr<const LinearGrid> linear_grid() const { return curved ? curved.grid() : linear.grid(); }
+    std::shared_ptr<const LinearGrid> linear_grid() const {
+        return curved ? curved.grid() : met ? met.grid() : linear.grid();
+    }
     Method method_of_next(std::size_t isovalues) const;
     Result<void> prepare(std::size_t isovalues, const Run& run);
     Result<void> bring_up_to_date(const Run& run);

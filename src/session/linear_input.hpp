@@ -4,9 +4,11 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <isotet/contour.hpp>
+#include <isotet/field_statistics.hpp>
 #include <isotet/linear_cells.hpp>
 
 #include "core/array_identity.hpp"
@@ -36,6 +38,32 @@ private:
     Fingerprint cells_print_, numbers_print_;
     std::optional<core::ArrayIdentity> points_;
     bool is_new_ = false;
+};
+
+/// What extraction of some isovalues needs of an input with polyhedra. Copying shares it. Empty: there is none.
+class MetInput {
+public:
+    /// Whether the polyhedra that isovalues do not meet can be left out: nothing needs them, and coordinates and values are
+    /// stored as they are, whatever the other cells have. Cost: a pass over the values
+    static bool suits(const ContourInput& input, const ContourOptions& options);
+
+    /// The input with linear cells, where the expected isovalues of the options are; nothing where they meet no cell.
+    /// Errors   as linearize() and LinearGrid::extend()
+    Result<std::optional<ContourInput>> make(const ContourInput& input, const ContourOptions& options);
+
+    explicit operator bool() const { return user_.has_value(); }
+    bool is_good_for(std::span<const double> isovalues) const;
+    const std::shared_ptr<const LinearGrid>& grid() const { return linear_; }
+    const ContourInput& user() const { return *user_; }
+
+    /// Of the field's finite values at the points of all cells.
+    ValueRange range() const { return range_; }
+
+private:
+    std::optional<ContourInput> user_;
+    std::vector<double> isovalues_;
+    ValueRange range_;
+    std::shared_ptr<const LinearGrid> linear_;
 };
 
 /// The input on a linear grid that was made of its grid: fields are continued for derived points and cells.

@@ -218,6 +218,14 @@ def test_regions_have_names(data):
     assert regions and all(isinstance(number, int) and name for _, number, name in regions)
 
 
+def test_of_polyhedra_only_those_are_split_that_the_isovalue_meets():
+    grid = isotet.make("kelvin", 8, ["sphere"])
+    once = grid.contour(0.7, "sphere")
+    session = isotet.Contour(grid, "sphere", method="direct")
+    assert same(once, session.contour(0.7))
+    assert "have values on both sides of an isovalue" in once.notes[0]
+
+
 def test_points_are_merged():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, -1]], np.float32)
     torn = isotet.Grid(points, np.arange(8).reshape(2, 4), fields={"t": np.array([0, 1, 2, 3, 0.5, 1, 2, 4], np.float32)})

@@ -1,0 +1,181 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Where isovalues are expected only the polyhedra that they meet are split: with the bytes of all.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <isotet/contour.hpp>
+#include <isotet/linear_cells.hpp>
+#include <isotet/make.hpp>
+
+#include "linear/polyhedral_grid.hpp"
+#include "support/surface_bytes.hpp"
+
+namespace isotet::test {
+namespace {
+
+PointField random_field(const Grid& grid, unsigned seed, bool ties) {
+    std::mt19937 random(seed);
+    std::vector<float> values(grid.points.tuples());
+    for (float& value : values)
+        value = ties ? static_cast<float>(random() % 5) : std::uniform_real_distribution<float>(0, 4)(random);
+    return {"f", Array::own(std::move(values)), false, {}};
+}
+
+ContourInput input_of(const Grid& grid, const PointField& field) {
+    std::vector<std::int32_t> numbers(grid.cells.count());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::int32_t>(i);
+    return {grid, field, {{"again", field.values}}, {{"number", Array::own(std::move(numbers))}}};
+}
+
+/// All surfaces, one after another; what the session tells of cells goes to `told`.
+std::string surfaces_of(const ContourInput& input, const ContourOptions& options, const std::vector<double>& isovalues,
+                        std::vector<std::string>* told = nullptr) {
+    ContourResult result = Contour::create(input, options).value().extract(isovalues).value();
+    if (told) *told = result.notes;
+    std::string bytes;
+    for (const Extraction& one : result.surfaces) bytes += bytes_of(one.surface);
+    EXPECT_EQ(result.method, Method::direct);
+    return bytes + std::to_string(result.field.lower) + " " + std::to_string(result.field.upper) + " " +
+           std::to_string(result.field.no_data) + " " + std::to_string(result.field.infinite);
+}
+
+/// Of hexahedra, wedges and polyhedra with hanging points, in single precision.
+Grid octree(unsigned seed) {
+    Grid grid = octree_grid({.seed = seed});
+    std::vector<float> places;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(grid.points.at(i, axis)));
+    grid.points = Array::own(std::move(places), 3);
+    return grid;
+}
+
+Grid foam() {
+    MakeOptions options;
+    options.shape = "kelvin";
+    options.side = 6;
+    options.fields = {};
+    return make_grid(options).value();
+}
+
+TEST(MetCells, GiveTheSurfacesOfAll) {
+    for (const Grid& grid : {foam(), octree(3), octree(9)}) {
+        for (const bool ties : {false, true}) {
+            const ContourInput input = input_of(grid, random_field(grid, 5, ties));
+            for (const Normals normals : {Normals::none, Normals::face, Normals::vertex}) {
+                for (const std::vector<double>& isovalues :
+                     {std::vector<double>{2}, std::vector<double>{0, 1, 2.5, 4}, std::vector<double>{-3, 70}}) {
+                    ContourOptions options{.method = Method::direct, .surfaces = 4, .normals = normals};
+                    options.source_cells = true;
+                    const std::string all = surfaces_of(input, options, isovalues);
+                    options.expected_isovalues = isovalues;
+                    EXPECT_TRUE(surfaces_of(input, options, isovalues) == all) << ties << ' ' << isovalues[0];
+                }
+            }
+        }
+    }
+}
+
+TEST(MetCells, AreThoseOnly) {
+    MakeOptions options;
+    options.shape = "kelvin";
+    options.side = 8;
+    options.fields = {"sphere"};
+    const Grid grid = make_grid(options).value();
+    const PointField field = find_field(grid, "sphere").value();
+    ContourOptions expecting{.method = Method::direct, .surfaces = 1};
+    expecting.expected_isovalues = {0.5};
+    Contour session = Contour::create({grid, field, {}, {}}, expecting).value();
+    const ContourResult result = session.extract(0.5).value();
+    ASSERT_EQ(result.notes.size(), 1u);
+    EXPECT_NE(result.notes[0].find("of 1024 polyhedra have values on both sides of an isovalue"), std::string::npos)
+        << result.notes[0];
+    EXPECT_LT(session.linear_grid()->grid.cells.count(), 22u * 300);
+
+    const ContourResult other = session.extract(0.7).value(); // one that was not expected
+    EXPECT_EQ(session.linear_grid()->grid.cells.count(), 22u * 1024);
+    expecting.expected_isovalues.clear();
+    const std::string all =
+        bytes_of(Contour::create({grid, field, {}, {}}, expecting).value().extract(0.7).value().surfaces[0].surface);
+    EXPECT_TRUE(bytes_of(other.surfaces[0].surface) == all);
+}
+
+TEST(MetCells, FollowAnotherFieldAndPackingTakesAll) {
+    const Grid grid = octree(4);
+    ContourOptions options{.surfaces = 2};
+    options.expected_isovalues = {2, 3};
+    Contour session = Contour::create(input_of(grid, random_field(grid, 1, false)), options).value();
+    const ContourInput next = input_of(grid, random_field(grid, 2, true));
+    ASSERT_TRUE(session.extract(2));
+    EXPECT_EQ(session.set(next).value(), ContourUpdate::grid);
+    const std::string second = bytes_of(session.extract(3).value().surfaces[0].surface);
+    options.expected_isovalues.clear();
+    EXPECT_TRUE(second == bytes_of(Contour::create(next, options).value().extract(3).value().surfaces[0].surface));
+
+    options.method = Method::clusters;
+    EXPECT_EQ(session.set(next, options).value(), ContourUpdate::grid);
+    const ContourResult packed = session.extract(3).value();
+    EXPECT_EQ(packed.method, Method::clusters);
+    EXPECT_TRUE(bytes_of(packed.surfaces[0].surface) ==
+                bytes_of(Contour::create(next, options).value().extract(3).value().surfaces[0].surface));
+}
+
+TEST(MetCells, AreNotChosenWhereOthersDecide) {
+    const Grid grid = octree(4);
+    const auto splits_all = [&](PointField field, ContourOptions options) {
+        options.method = Method::direct;
+        options.surfaces = 1;
+        options.expected_isovalues = {2};
+        std::vector<std::string> told;
+        surfaces_of({grid, std::move(field), {}, {}}, options, {2}, &told);
+        return told.size() == 1 && told[0].find("both sides") == std::string::npos;
+    };
+    std::vector<float> x;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i) x.push_back(static_cast<float>(grid.points.at(i, 0)));
+    const PointField field{"x", Array::own(std::move(x)), false, {}};
+    EXPECT_FALSE(splits_all(field, {}));
+    EXPECT_FALSE(splits_all(field, {.normals = Normals::face}));
+    EXPECT_TRUE(splits_all(field, {.normals = Normals::gradient})) << "of cells around";
+    EXPECT_TRUE(splits_all(field, {.edge_ends = true})) << "rows of the table of all";
+    std::vector<double> doubles(grid.points.tuples(), 0.1);
+    EXPECT_TRUE(splits_all({"f", Array::own(std::move(doubles)), false, {}}, {})) << "rounded by the range of all";
+    std::vector<float> tiny(grid.points.tuples(), 1e-35F);
+    EXPECT_TRUE(splits_all({"f", Array::own(std::move(tiny)), false, {}}, {})) << "scaled by the range of all";
+}
+
+TEST(MetCells, KeepThoseWithoutData) {
+    const Grid grid = foam();
+    PointField field = random_field(grid, 3, false);
+    std::vector<float> values(field.values.as<float>().begin(), field.values.as<float>().end());
+    for (std::size_t i = 0; i < values.size(); i += 7) values[i] = i % 2 ? NAN : -INFINITY;
+    field.values = Array::own(std::move(values));
+    ContourOptions options{.method = Method::direct, .surfaces = 1};
+    const std::string all = surfaces_of(input_of(grid, field), options, {2});
+    options.expected_isovalues = {2};
+    EXPECT_TRUE(surfaces_of(input_of(grid, field), options, {2}) == all);
+}
+
+TEST(MetCells, NeedOneValueAPoint) {
+    const Grid grid = octree_grid({.seed = 4});
+    const Array few = Array::own(std::vector<float>(3));
+    EXPECT_EQ(linearize(grid, {.isovalues = {1}, .values = few}).error().code, ErrorCode::invalid_argument);
+}
+
+TEST(DerivedPoints, InsidePolyhedraHaveNoValueOutsideTheirCorners) {
+    const Grid grid = octree_grid({.seed = 3});
+    const LinearGrid linear = linearize(grid).value();
+    const auto first = linear.derived.first.as<std::uint64_t>(), points = linear.derived.points.as<std::uint64_t>();
+    const Array values = random_field(grid, 8, false).values, longer = linear.extend(values).value();
+    for (std::uint64_t row = 0; row < linear.derived.count(); ++row) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (std::uint64_t i = first[row]; i < first[row + 1]; ++i) {
+            lower = std::min(lower, values.at(points[i]));
+            upper = std::max(upper, values.at(points[i]));
+        }
+        ASSERT_GE(longer.at(linear.user_points + row), lower);
+        ASSERT_LE(longer.at(linear.user_points + row), upper);
+    }
+}
+
+} // namespace
+} // namespace isotet::test
