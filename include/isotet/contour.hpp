@@ -32,6 +32,9 @@ struct ContourInput {
     PointField field;                ///< to contour
     std::vector<Field> point_fields; ///< carried onto surfaces, as ExtractOptions::point_fields
     std::vector<Field> cell_fields;  ///< as ExtractOptions::cell_fields
+    /// Set where the grid has only the cells that an ActiveCellFilter kept (active_cells.hpp) for the expected isovalues:
+    /// gives the same input with all cells, and is called when something needs them.
+    std::function<Result<ContourInput>(const Run& run)> all_cells = {};
 };
 
 struct ContourOptions {
@@ -105,6 +108,10 @@ struct ContourResult {
 ///              the call for a stale isovalue and makes the next
 class ISOTET_API Contour {
 public:
+    /// True where a session with these options has use for ContourInput::all_cells: surfaces of the expected isovalues,
+    /// extracted directly by the CPU, without what needs all cells.
+    static bool can_do_with_active_cells(const ContourOptions& options);
+
     /// Checks that the field fits the grid; nothing is packed yet.
     ///
     /// Errors   invalid_argument when a field does not fit the grid or options contradict each other; invalid_data when

@@ -20,6 +20,7 @@ struct DirectOptions {
     Precision precision = Precision::float32; ///< of positions, values and weights
     bool split_cells = false;                 ///< as PackOptions::split_cells
     std::optional<Frame> frame = {};          ///< as PackOptions::frame
+    bool active_cells_only = false;           ///< the grid has only what an ActiveCellFilter kept (active_cells.hpp)
 };
 
 /// Surfaces from arrays, and what was seen on the way.
@@ -30,6 +31,8 @@ struct DirectExtraction {
     std::uint64_t coarse_tets =
         0; ///< active tets and other cells (of all isovalues) where rounding to float32 moves a corner by over
            ///< a thousandth of the shortest edge
+    bool needs_all_cells = false; ///< with DirectOptions::active_cells_only: cells that were not kept decide how values
+                                  ///< are stored, or which side of a flat tet is which; there are no surfaces
 };
 
 /// Extracts surfaces straight from the arrays of a grid; nothing is kept. For one isovalue or a few: many are faster

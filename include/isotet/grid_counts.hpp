@@ -35,4 +35,7 @@ struct CoincidentPoints {
 ///              where points coincide
 ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid);
 
+/// False where estimate_coincident_points() finds none, whatever the cells are. Cost: the first of its passes
+ISOTET_API bool may_have_coincident_points(const Array& points);
+
 } // namespace isotet

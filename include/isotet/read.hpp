@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <isotet/export.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
 #include <isotet/result.hpp>
@@ -60,6 +61,13 @@ struct FileInfo {
     std::vector<RegionName> regions; ///< names of physical groups of volumes (Gmsh); not always all numbers have one
 };
 
+/// Only the cells that direct extraction of some isovalues needs (active_cells.hpp).
+struct ReadActiveCells {
+    std::string field; ///< as find_field() takes it
+    std::vector<double> isovalues;
+    DirectOptions options; ///< of the extraction; the point fields that are read count as carried ones
+};
+
 struct ReadOptions {
     std::string format;                                                ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
@@ -74,12 +82,16 @@ struct ReadOptions {
     std::chrono::seconds time_limit{3600};
     std::vector<std::string> blocks; ///< names or numbers of FileInfo::blocks to read; empty: all, of CGNS those of the
                                      ///< first base. A name also stands for the blocks in it ("Base" for "Base/Zone")
+    std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU of one piece whose
+                                                      ///< cells are of one linear type, no cell fields, points that do
+                                                      ///< not coincide); else all are read
 };
 
 struct ReadResult {
     Grid grid;
     FileInfo info;
-    std::size_t step = 0;           ///< the step that was read
+    std::size_t step = 0;                            ///< the step that was read
+    std::optional<std::uint64_t> cells_in_file = {}; ///< where only active cells were read
     std::vector<std::string> notes; ///< sentences for the user: ghost cells left out, blocks joined and so on
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "api/active_cells.hpp"
 #include "api/finish.hpp"
 #include "core/carry_out.hpp"
 #include "core/cells.hpp"
@@ -79,12 +80,14 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
     request.ends = options.edge_ends || !options.point_fields.empty();
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
+    request.active_cells_only = direct.active_cells_only;
     auto result = reference ? reference::extract_direct<Real>(input, request, progress)
                             : cpu::extract_direct<Real>(input, request, progress);
     if (!result) return std::move(result).error();
     progress("extract", 0.8);
 
     DirectExtraction out;
+    out.needs_all_cells = result->needs_all_cells;
     out.field = result->field;
     out.cells_left_out = result->cells_left_out;
     for (ops::DirectSurface& surface : result->surfaces) {
@@ -113,6 +116,8 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
         if (auto ok = check_fields(grid, field, options.extract); !ok) return ok.error();
+        if (options.active_cells_only)
+            if (auto ok = api::check_active_cells_do(options); !ok) return ok.error();
         if (auto ok = core::find_in_frame(options.frame, field.name, field.values.type()); !ok) return ok.error();
         if (options.frame)
             if (auto ok = core::check_point_type(*options.frame, grid.points.type()); !ok) return ok.error();

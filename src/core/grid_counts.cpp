@@ -63,6 +63,17 @@ std::size_t count_repeated(const std::vector<SampledPoint>& samples) {
     return count;
 }
 
+bool few_repeat(const std::vector<SampledPoint>& samples) {
+    return count_repeated(samples) <= samples.size() / coincident_one_in;
+}
+
+/// So many that a sample is not too large.
+int zero_bits_for(std::size_t points) {
+    int zero_bits = 0;
+    while ((points >> zero_bits) > max_sampled_points) ++zero_bits;
+    return zero_bits;
+}
+
 /// Removes points that no cell uses.
 void keep_used(std::vector<SampledPoint>& samples, const Grid& grid) {
     std::vector<bool> used(grid.points.tuples(), false);
@@ -103,16 +114,18 @@ std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells) {
 bool is_contoured(std::uint8_t cell_type) noexcept { return core::is_contoured(cell_type); }
 
 CoincidentPoints estimate_coincident_points(const Grid& grid) {
-    const std::size_t points = grid.points.tuples();
-    if (grid.points.components() != 3 || points < 2) return {};
-    int zero_bits = 0;
-    while ((points >> zero_bits) > max_sampled_points) ++zero_bits;
+    if (grid.points.components() != 3 || grid.points.tuples() < 2) return {};
+    const int zero_bits = zero_bits_for(grid.points.tuples());
     std::vector<SampledPoint> samples = sample_points(grid.points, zero_bits);
-    const auto are_few = [&] { return count_repeated(samples) <= samples.size() / coincident_one_in; };
-    if (are_few()) return {};
+    if (few_repeat(samples)) return {};
     keep_used(samples, grid);
-    if (are_few()) return {};
+    if (few_repeat(samples)) return {};
     return {static_cast<std::uint64_t>(count_repeated(samples)) << zero_bits, zero_bits > 0};
+}
+
+bool may_have_coincident_points(const Array& points) {
+    if (points.components() != 3 || points.tuples() < 2) return false;
+    return !few_repeat(sample_points(points, zero_bits_for(points.tuples())));
 }
 
 } // namespace isotet

@@ -32,6 +32,7 @@ public:
 private:
     Result<void> open();
     Result<void> open_device();
+    Result<std::optional<std::uint64_t>> read_grid(std::size_t step);
     Result<void> load(std::size_t step);
     Result<Contour> start(ContourInput input);
     Result<void> take_piece_of(ContourInput& input);
@@ -117,17 +118,14 @@ std::size_t ExtractRun::isovalues_together(std::size_t isovalues) const {
 
 Result<Contour> ExtractRun::start(ContourInput input) {
     ContourOptions& options = plan_.contour;
-    const std::size_t isovalues =
-        job_.isovalues.empty() ? std::max<std::uint64_t>(job_.levels, 1) : job_.isovalues.size();
-    options.surfaces = isovalues * plan_.steps.size();
-    if (!job_.snap) options.expected_isovalues = job_.isovalues;
     if (device_) options.engine = device_;
     options.engine_required = job_.engine == EngineChoice::vulkan;
     numbers_.why = device_          ? "devices take packed grids"
                    : options.method ? "asked for"
                                     : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
     if (!device_ && job_.engine != EngineChoice::reference)
-        numbers_.predicted = predict(job_, plan_, input, isovalues_together(isovalues));
+        numbers_.predicted =
+            predict(job_, plan_, input, numbers_.cells, isovalues_together(options.surfaces / plan_.steps.size()));
     numbers_.process_bytes = peak_resident_memory().value_or(0);
     if (reset_peak_memory()) resident_before_ = resident_memory();
     return Contour::create(std::move(input), options);
@@ -146,24 +144,45 @@ Result<void> ExtractRun::take_piece_of(ContourInput& input) {
     return {};
 }
 
+/// Reads one step. Returns how many cells there are where only active ones were kept.
+Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
+    if (plan_.active_cells && !device_) {
+        Result<ReadResult> read = source_->read_active(plan_.read, step, *plan_.active_cells, caller_);
+        if (!read) return read.error();
+        grid_ = std::move(read->grid);
+        return read->cells_in_file;
+    }
+    Result<Grid> grid = source_->read(plan_.read, step, caller_);
+    if (!grid) return grid.error();
+    grid_ = *std::move(grid);
+    return std::optional<std::uint64_t>{};
+}
+
 /// Reads one step and gives it to the session.
 Result<void> ExtractRun::load(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
     grid_ = {};
-    Result<Grid> grid = source_->read(plan_.read, step, caller_);
-    if (!grid) return grid.error();
-    Result<PointField> field = find_chosen(*grid, plan_.field.name, job_.field, caller_);
+    Result<std::optional<std::uint64_t>> cells_in_file = read_grid(step);
+    if (!cells_in_file) return cells_in_file.error();
+    Result<PointField> field = find_chosen(grid_, plan_.field.name, job_.field, caller_);
     if (!field) return field.error();
-    Result<StepFields> fields = carried_fields(plan_, *grid, caller_.run());
+    Result<StepFields> fields = carried_fields(plan_, grid_, caller_.run());
     if (!fields) return fields.error();
     numbers_.read_seconds += reading.seconds();
-    numbers_.cells = grid->cells.count();
+    numbers_.cells = static_cast<std::size_t>(cells_in_file->value_or(grid_.cells.count()));
     numbers_.averaged = field->averaged;
     field_ = field->values;
-    grid_ = *std::move(grid);
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};
+    if (*cells_in_file)
+        input.all_cells = [this, step, all = input](const Run& run) mutable -> Result<ContourInput> {
+            caller_.detail(fmt::format("reading all cells of step {}", step));
+            Result<Grid> grid = source_->read_the_rest(plan_.read, step, run);
+            if (!grid) return grid.error();
+            all.grid = *std::move(grid);
+            return all;
+        };
     if (job_.piece && has_curved_cells(input.grid.cells))
         return refusal("`piece` takes grids without quadratic cells only");
     if (job_.piece)

@@ -89,6 +89,21 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
     return read;
 }
 
+/// Each isovalue takes a byte a point while cells are read, and another pass over them.
+constexpr std::size_t most_isovalues_of_active_cells = 8;
+
+std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
+    const bool has_components = plan.carried && !plan.carried->components.empty();
+    if (job.piece || job.grid.merge_points || has_components || !plan.read.cell || !plan.read.cell->empty() ||
+        plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
+        !Contour::can_do_with_active_cells(plan.contour))
+        return std::nullopt;
+    ReadActiveCells active{plan.field.name, plan.contour.expected_isovalues, {}};
+    active.options.precision = plan.contour.precision;
+    active.options.extract.ties = plan.contour.ties;
+    return active;
+}
+
 } // namespace
 
 Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source, Caller& caller) {
@@ -123,6 +138,10 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source
     plan.contour.split_cells = job.split_cells;
     plan.contour.refine = job.refine;
     plan.contour.exact_vertices = job.exact_vertices;
+    const std::size_t isovalues = job.isovalues.empty() ? std::max<std::uint64_t>(job.levels, 1) : job.isovalues.size();
+    plan.contour.surfaces = isovalues * plan.steps.size();
+    if (!job.snap) plan.contour.expected_isovalues = job.isovalues;
+    plan.active_cells = plan_active_cells(job, plan);
     return plan;
 }
 
@@ -181,7 +200,7 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
 }
 
 std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
-                                std::size_t together) {
+                                std::size_t cells, std::size_t together) {
     if (has_cells_to_linearize(input.grid.cells))
         return std::nullopt; // of which it is not known how many tets they become
     const Result<FieldSample> sample = FieldSample::create(input.grid, input.field, job.split_cells);
@@ -199,7 +218,9 @@ std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, 
         work.triangles_together = std::max(work.triangles_together, pass);
     }
     work.points = sample->points();
-    work.tets = sample->tets();
+    const double kept =
+        static_cast<double>(input.grid.cells.count()) / static_cast<double>(std::max<std::size_t>(cells, 1));
+    work.tets = static_cast<std::uint64_t>(static_cast<double>(sample->tets()) / (kept > 0 ? kept : 1));
     work.surfaces = static_cast<double>(isovalues.size() * plan.steps.size());
     work.gradients = job.normals == Normals::gradient;
     work.find_range = job.isovalues.empty();

@@ -22,7 +22,8 @@ struct ExtractPlan {
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
     FieldsToRead read;
-    ContourOptions contour; ///< but for the device and the number of surfaces
+    ContourOptions contour;                      ///< but for the device
+    std::optional<ReadActiveCells> active_cells; ///< where others need not be read
 };
 
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
@@ -42,9 +43,10 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
 /// What all steps are expected to take, from a look at the first; nothing where the field cannot be
 /// contoured, or cells become linear ones first.
 ///
+/// `cells`      of the file; the input may have active ones only
 /// `together`   isovalues extracted in one pass
 std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
-                                std::size_t together);
+                                std::size_t cells, std::size_t together);
 
 /// Files that must not be each other: `output` and those of the caller.
 std::vector<std::string> with_others(const ExtractJob& job, const std::string& output);

@@ -154,11 +154,7 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Call
         if (!result) return result.error();
         grid = *std::move(result);
     } else {
-        ReadOptions read_options = read_options_;
-        read_options.point_fields = fields.point;
-        read_options.cell_fields = fields.cell;
-        if (!info_.times.empty()) read_options.step = step;
-        Result<ReadResult> result = isotet::read(options_.file, read_options, run);
+        Result<ReadResult> result = read_file(fields, step, read_options_, run);
         if (!result) return result.error();
         caller.notes(result->notes);
         grid = std::move(result->grid);
@@ -166,6 +162,38 @@ Result<Grid> GridSource::read(const FieldsToRead& fields, std::size_t step, Call
     if (options_.merge_points) return merged(grid, {*options_.merge_points, options_.merge_values}, caller, run);
     caller.note(coincident_points_note(grid));
     return grid;
+}
+
+Result<ReadResult> GridSource::read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
+                                           Caller& caller) const {
+    if (made_ || options_.merge_points) {
+        Result<Grid> grid = read(fields, step, caller);
+        if (!grid) return grid.error();
+        ReadResult result;
+        result.grid = *std::move(grid);
+        return result;
+    }
+    ReadOptions options = read_options_;
+    options.active_cells = active;
+    Result<ReadResult> result = read_file(fields, step, std::move(options), caller.run());
+    if (!result) return result;
+    caller.notes(result->notes);
+    if (!result->cells_in_file) caller.note(coincident_points_note(result->grid));
+    return result;
+}
+
+Result<Grid> GridSource::read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const {
+    Result<ReadResult> result = read_file(fields, step, read_options_, run);
+    if (!result) return result.error();
+    return std::move(result->grid);
+}
+
+Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
+                                         const Run& run) const {
+    options.point_fields = fields.point;
+    options.cell_fields = fields.cell;
+    if (!info_.times.empty()) options.step = step;
+    return isotet::read(options_.file, options, run);
 }
 
 std::string cells_left_out_note(const Grid& grid) {

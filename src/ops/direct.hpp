@@ -43,6 +43,7 @@ struct DirectRequest {
     bool ends = false;        ///< edge ends and weights
     bool normals = false;
     bool source_cells = false;
+    bool active_cells_only = false; ///< others were left out by an active filter
 };
 
 struct DirectSurface {
@@ -62,6 +63,7 @@ struct DirectResult {
     std::uint64_t cells_left_out = 0;
     std::vector<DirectSurface> surfaces; ///< one an isovalue
     std::uint64_t transient_bytes = 0;   ///< beyond the surfaces, at the peak
+    bool needs_all_cells = false;        ///< with active_cells_only; then nothing else counts
     std::uint64_t predicted_bytes = 0;   ///< of the largest surface, itself included, as known when its cells had been
                                          ///< looked at
 };

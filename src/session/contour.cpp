@@ -28,25 +28,47 @@ Result<void> check(const ContourOptions& options) {
     return {};
 }
 
-Result<ContourResult> extract_directly(const ContourInput& input, const ContourOptions& options,
-                                       std::span<const double> isovalues, const Run& run) {
-    Result<DirectExtraction> direct = options.engine->extract_direct(
-        input.grid, input.field, isovalues,
-        {session::extract_options(options, input), options.precision, options.split_cells, options.frame}, run);
+/// The input; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
+Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
+    const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty();
+    if (!input.all_cells || some_do) return input;
+    return input.all_cells(run);
+}
+
+/// Nothing where more cells are needed than the input has.
+Result<std::optional<ContourResult>> extract_directly(const ContourInput& input, const ContourOptions& options,
+                                                      std::span<const double> isovalues, const Run& run) {
+    DirectOptions direct_options{session::extract_options(options, input), options.precision, options.split_cells,
+                                 options.frame};
+    direct_options.active_cells_only = static_cast<bool>(input.all_cells);
+    Result<DirectExtraction> direct =
+        options.engine->extract_direct(input.grid, input.field, isovalues, direct_options, run);
     if (!direct) return std::move(direct).error();
+    if (direct->needs_all_cells) return std::optional<ContourResult>{};
     ContourResult result;
     result.surfaces = std::move(direct->surfaces);
     result.field = std::move(direct->field);
     result.cells_left_out = direct->cells_left_out;
     result.coarse_tets = direct->coarse_tets;
-    return result;
+    return std::optional(std::move(result));
 }
 
 } // namespace
 
-Result<Contour> Contour::create(ContourInput input, const ContourOptions& options) {
+bool Contour::can_do_with_active_cells(const ContourOptions& options) {
+    const bool gradients = options.normals == Normals::gradient;
+    const Method method = options.method.value_or(method_for(options.surfaces, gradients));
+    return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct && options.engine &&
+           options.engine->name() == cpu_engine()->name() && !gradients && !options.source_cells &&
+           !options.exact_vertices && !options.frame;
+}
+
+Result<Contour> Contour::create(ContourInput given, const ContourOptions& options) {
     return core::guarded("starting to contour", [&]() -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
+        Result<ContourInput> enough = input_for(std::move(given), options, {});
+        if (!enough) return enough.error();
+        ContourInput input = *std::move(enough);
         auto data = std::make_unique<Data>();
         const auto met = data->take_met(input, options);
         if (!met) return met.error();
@@ -87,10 +109,13 @@ Result<ContourUpdate> Contour::set(ContourInput input, const Run& run) {
     return set(std::move(input), options, run);
 }
 
-Result<ContourUpdate> Contour::set(ContourInput input, const ContourOptions& options, const Run& run) {
+Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& options, const Run& run) {
     return core::guarded("setting another grid", [&]() -> Result<ContourUpdate> {
         if (!data_) return moved_from("the session");
         if (auto ok = check(options); !ok) return ok.error();
+        Result<ContourInput> enough = input_for(std::move(given), options, run);
+        if (!enough) return enough.error();
+        ContourInput input = *std::move(enough);
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
         if (options.refine && has_curved_cells(input.grid.cells)) {
@@ -146,13 +171,13 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         std::unique_lock lock(data.mutex);
         data.asked += isovalues.size();
         if (auto ok = data.refine_for(isovalues, run); !ok) return ok.error();
-        if (!data.met.is_good_for(isovalues))
-            if (auto ok = data.make_all_linear(run); !ok) return ok.error();
+        if (!data.is_enough_for(isovalues))
+            if (auto ok = data.complete(run); !ok) return ok.error();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
-        const auto start = std::chrono::steady_clock::now();
+        auto start = std::chrono::steady_clock::now();
         const Method method = data.method_of_next(0);
         const std::shared_ptr<const LinearGrid> linear = data.linear_grid();
-        const ContourInput input = data.input; // shares the arrays
+        ContourInput input = data.input; // shares the arrays
         const ContourOptions options = data.options;
         const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
         const std::optional<ValueRange> range = data.met ? std::optional(data.met.range()) : std::nullopt;
@@ -162,8 +187,19 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         Result<ContourResult> result = ContourResult{};
         if (method == Method::direct) {
             lock.unlock();
-            result = extract_directly(input, options, isovalues, run);
-            if (result) result->engine = options.engine->name();
+            Result<std::optional<ContourResult>> found = extract_directly(input, options, isovalues, run);
+            if (found && !*found) {
+                lock.lock();
+                if (auto ok = data.complete(run); !ok) return ok.error();
+                head.pack_seconds += std::exchange(data.update_seconds, 0);
+                input = data.input;
+                lock.unlock();
+                start = std::chrono::steady_clock::now();
+                found = extract_directly(input, options, isovalues, run);
+            }
+            if (!found) return found.error();
+            result = **std::move(found);
+            result->engine = options.engine->name();
         } else {
             if (auto ok = data.extract_from_grid(isovalues, run, *result); !ok) return ok.error();
             std::ranges::move(std::exchange(data.notes, {}), std::back_inserter(head.notes));
@@ -262,9 +298,11 @@ Result<FieldReport> Contour::field(const Run& run) {
         if (data.curved) return data.field_of_curved();
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         if (data.method_of_next(0) == Method::clusters) return data.packed->field();
-        const Result<ContourResult> looked = extract_directly(data.input, data.options, {}, run);
+        if (data.input.all_cells)
+            if (auto ok = data.complete(run); !ok) return ok.error();
+        const Result<std::optional<ContourResult>> looked = extract_directly(data.input, data.options, {}, run);
         if (!looked) return looked.error();
-        data.range = looked->field;
+        data.range = (*looked)->field;
         if (data.met) {
             data.range->lower = data.met.range().lower;
             data.range->upper = data.met.range().upper;

@@ -83,15 +83,25 @@ Result<Contour::Data::Met> Contour::Data::take_met(const ContourInput& next, con
     return Met::some;
 }
 
-/// Makes the other cells linear, too.
-Result<void> Contour::Data::make_all_linear(const Run& run) {
-    if (!met) return {};
+/// Whether no cell that the input lacks can be met.
+bool Contour::Data::is_enough_for(std::span<const double> isovalues) const {
+    if (met) return met.is_good_for(isovalues);
+    return !input.all_cells || std::ranges::all_of(isovalues, [&](double isovalue) {
+        return std::ranges::find(options.expected_isovalues, isovalue) != options.expected_isovalues.end();
+    });
+}
+
+/// Gets the cells that were left out, or makes them linear, too.
+Result<void> Contour::Data::complete(const Run& run) {
+    if (!met && !input.all_cells) return {};
     const auto start = std::chrono::steady_clock::now();
-    Result<ContourInput> made = linear.make(met.user(), run);
-    if (!made) return made.error();
-    Result<FieldSample> all = FieldSample::create(made->grid, made->field, options.split_cells);
+    Result<ContourInput> all = met ? Result<ContourInput>(met.user()) : input.all_cells(run);
     if (!all) return all.error();
-    sample = *std::move(all);
+    Result<ContourInput> made = linear.make(*std::move(all), run);
+    if (!made) return made.error();
+    Result<FieldSample> sample_of_all = FieldSample::create(made->grid, made->field, options.split_cells);
+    if (!sample_of_all) return sample_of_all.error();
+    sample = *std::move(sample_of_all);
     input = *std::move(made);
     met = {};
     note_new_cells();
@@ -265,7 +275,7 @@ Result<void> Contour::Data::bring_up_to_date(const Run& run) {
 Result<void> Contour::Data::prepare(std::size_t isovalues, const Run& run) {
     if (curved && !curved.grid()) return {}; // extract() refines
     if (method_of_next(isovalues) == Method::direct) return {};
-    if (auto all = make_all_linear(run); !all) return all;
+    if (auto all = complete(run); !all) return all;
     if (packed && behind == ContourUpdate::nothing) return create_grid(run);
     const Result<void> ready = bring_up_to_date(run);
     if (ready || ready.error().code != ErrorCode::out_of_memory || options.method ||

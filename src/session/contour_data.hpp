@@ -50,7 +50,8 @@ struct Contour::Data {
     void note_new_cells();
     enum class Met { some, not_chosen };
     Result<Met> take_met(const ContourInput& next, const ContourOptions& next_options);
-    Result<void> make_all_linear(const Run& run);
+    bool is_enough_for(std::span<const double> isovalues) const;
+    Result<void> complete(const Run& run);
     Result<void> take_curved(ContourInput next, const ContourOptions& next_options);
     ContourUpdate what_changed(const ContourInput& next, const ContourOptions& next_options, const Run& run);
     Result<void> refine_for(std::span<const double> isovalues, const Run& run);

@@ -64,7 +64,16 @@ public:
     }
     Result<Grid> read(const FieldsToRead& fields, std::size_t step, Caller& caller, const Run& run) const;
 
+    /// The same; where that can be done, only the active cells (ReadResult::cells_in_file). Points are never merged then.
+    Result<ReadResult> read_active(const FieldsToRead& fields, std::size_t step, const ReadActiveCells& active,
+                                   Caller& caller) const;
+    /// The grid of which read_active() gave some cells. Nothing is noted again.
+    Result<Grid> read_the_rest(const FieldsToRead& fields, std::size_t step, const Run& run) const;
+
 private:
+    Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
+                                 const Run& run) const;
+
     GridOptions options_;
     std::optional<MakeOptions> made_;
     FileInfo info_;

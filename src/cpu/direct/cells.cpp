@@ -3,18 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
 #include <tbb/enumerable_thread_specific.h>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include "core/parallel.hpp"
+#include "cpu/direct/side_sums.hpp"
 
 namespace isotet::cpu::direct {
 
@@ -34,77 +29,6 @@ constexpr std::array<std::uint8_t, 256> corners_by_type = [] {
 
 bool is_collapsed(const core::Tet& t) {
     return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
-}
-
-constexpr std::size_t cells_at_once =
-    1 << 10; ///< few enough that their corners are still near when cut ones are fetched
-
-/// Adds up the flags of the corners of each cell, of which it has `n`. False when a number has no flags, and so is no
-/// point; numbers that have none are masked before they are looked up.
-template <std::size_t n, class Index>
-bool add_up_sides(const Sides& sides, const Index* corners, std::size_t cells, std::uint16_t* sums) {
-    using Unsigned = std::make_unsigned_t<Index>; // a negative number becomes one that is too large
-    const auto mask = static_cast<Unsigned>(std::min<std::uint64_t>(sides.mask(), std::numeric_limits<Index>::max()));
-    std::uint64_t all = 0;
-    if constexpr (sizeof(Index) == 4 && n % 2 == 0) {
-        // Two corners at once: half as many words to load, check and mask.
-        const std::uint64_t both = mask * std::uint64_t{0x1'0000'0001};
-        for (std::size_t i = 0; i < cells; ++i) {
-            std::array<std::uint64_t, n / 2> words;
-            std::memcpy(words.data(), corners + n * i, sizeof words);
-            unsigned sum = 0;
-            for (const std::uint64_t word : words) {
-                all |= word;
-                const std::uint64_t pair = word & both;
-                sum += sides[static_cast<std::uint32_t>(pair)];
-                sum += sides[pair >> 32];
-            }
-            sums[i] = static_cast<std::uint16_t>(sum);
-        }
-        return (all & ~both) == 0;
-    } else {
-        for (std::size_t i = 0; i < cells; ++i) {
-            unsigned sum = 0;
-            for (std::size_t k = 0; k < n; ++k) {
-                const auto corner = static_cast<Unsigned>(corners[n * i + k]);
-                all |= corner;
-                sum += sides[corner & mask];
-            }
-            sums[i] = static_cast<std::uint16_t>(sum);
-        }
-        return (all & ~std::uint64_t{mask}) == 0;
-    }
-}
-
-/// Whether a cell of `n` corners whose flags add up to `sum` has some above and some below.
-template <std::size_t n>
-constexpr bool has_both_sides(unsigned sum) {
-    return sum % 16 % n != 0;
-}
-
-/// Writes the places of cells of `n` corners on both sides, or with one that needs attention; returns how many.
-template <std::size_t n>
-std::size_t find_worth_looking(const std::array<std::uint16_t, cells_at_once>& sums, std::uint32_t* places) {
-    std::size_t found = 0;
-#if defined(__SSE2__)
-    const __m128i one = _mm_set1_epi8(1), most = _mm_set1_epi8(n - 2), attention = _mm_set1_epi8(16);
-    for (std::uint32_t i = 0; i < cells_at_once; i += 16) {
-        const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i]));
-        const __m128i high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(&sums[i + 8]));
-        const __m128i sum = _mm_packus_epi16(low, high); // 255 where it is more
-        const __m128i less_one = _mm_sub_epi8(sum, one);
-        const __m128i both_sides = _mm_cmpeq_epi8(_mm_min_epu8(less_one, most), less_one); // 1 to n - 1
-        const __m128i worth = _mm_or_si128(both_sides, _mm_cmpeq_epi8(_mm_max_epu8(sum, attention), sum));
-        for (auto bits = static_cast<unsigned>(_mm_movemask_epi8(worth)); bits; bits &= bits - 1)
-            places[found++] = i + static_cast<std::uint32_t>(std::countr_zero(bits));
-    }
-#else
-    for (std::uint32_t i = 0; i < cells_at_once; ++i) {
-        places[found] = i;
-        found += has_both_sides<n>(sums[i]) || sums[i] >= 16;
-    }
-#endif
-    return found;
 }
 
 /// Whether all numbers of [begin, end) are `first`, `first` + step and so on.

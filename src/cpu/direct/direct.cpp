@@ -19,6 +19,9 @@ namespace isotet::cpu::direct {
 
 namespace {
 
+/// Thrown where cells matter that an active filter left out.
+struct NeedsAllCells {};
+
 Error cancelled() { return {ErrorCode::cancelled, "extraction was cancelled"}; }
 
 /// Asking how much is free takes longer than extracting a small surface.
@@ -58,6 +61,17 @@ public:
     }
 
     Result<ops::DirectResult> run(const Progress& progress) {
+        try {
+            return run_on_these_cells(progress);
+        } catch (const NeedsAllCells&) {
+            ops::DirectResult needs_all;
+            needs_all.needs_all_cells = true;
+            return needs_all;
+        }
+    }
+
+private:
+    Result<ops::DirectResult> run_on_these_cells(const Progress& progress) {
         if (auto ok = require_if_much("extraction", std::bit_ceil(input_.grid.points.tuples())); !ok) return ok.error();
         sides_ = Sides(input_.grid.points.tuples());
         if (auto ok = request_.isovalues.empty() ? look_only(progress) : extract_all(progress); !ok) return ok.error();
@@ -68,7 +82,10 @@ public:
         return std::move(result_);
     }
 
-private:
+    void require_all_cells() const {
+        if (request_.active_cells_only) throw NeedsAllCells{};
+    }
+
     /// No isovalue: what is told of cells and field.
     Result<void> look_only(const Progress& progress) {
         if (auto ok = core::check_cells(input_.grid, input_.cells, progress); !ok) return ok.error();
@@ -205,12 +222,14 @@ private:
 
     /// Whether most tetrahedra are negative; asked once.
     bool ask_for_most() {
+        require_all_cells();
         mostly_negative_ = core::survey_tets(input_.grid, input_.cells).mostly_negative();
         return *mostly_negative_;
     }
 
     /// The survey of just the points that tets use.
     void survey_used_points() {
+        require_all_cells();
         std::fill(sides_.flags().begin(), sides_.flags().end(), side::watched);
         see_used_points(input_.cells, request_.split_cells, sides_);
         survey_ = survey_points<Real>(input_, &sides_);
@@ -229,6 +248,7 @@ private:
         if (input_.frame) return {}; // a piece may be empty
         for (std::size_t cell = 0; cell < input_.cells.count(); ++cell)
             if (input_.cells.tets(cell).count) return {};
+        require_all_cells();
         return core::nothing_to_contour(input_.grid, input_.cells);
     }
 

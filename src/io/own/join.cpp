@@ -354,6 +354,7 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     if (pieces.empty()) return result;
     if (pieces.size() == 1 && all_kept) {
         result.grid = std::move(pieces.front().grid);
+        result.cells_in_file = pieces.front().cells_in_file;
         return result;
     }
 

@@ -2,6 +2,8 @@
 // What readers of files in pieces give, before the pieces are joined to one grid.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,9 +19,10 @@ namespace isotet::io {
 struct Piece {
     std::string name; ///< for messages
     Grid grid;
-    Array point_ids;                    ///< empty, or a global number for each point
-    Array cell_ids;                     ///< empty, or a global number for each cell
-    std::vector<std::uint8_t> left_out; ///< empty, or nonzero for each ghost or blanked cell
+    Array point_ids;                                 ///< empty, or a global number for each point
+    Array cell_ids;                                  ///< empty, or a global number for each cell
+    std::vector<std::uint8_t> left_out;              ///< empty, or nonzero for each ghost or blanked cell
+    std::optional<std::uint64_t> cells_in_file = {}; ///< where the grid has only active cells
 };
 
 struct Loaded {

@@ -11,6 +11,7 @@
 #include "core/cell_faces.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "io/own/active_filter.hpp"
 #include "io/own/face_streams.hpp"
 #include "io/own/shared_faces.hpp"
 #include "io/own/narrow_indices.hpp"
@@ -74,6 +75,13 @@ public:
                 const Progress& progress)
         : document_(document), piece_(piece), count_(count), step_(step), progress_(progress) {}
 
+    /// Where that can be done, read() keeps active cells only. `grid`: all but the cells
+    void ask_for_active_cells(const Grid& grid, const ReadOptions& options) {
+        grid_ = &grid;
+        options_ = &options;
+    }
+    bool kept_active_cells() const { return kept_active_; }
+
     /// Offsets and types are empty where all cells are of one kind, one after another.
     Result<Cells> read() {
         Cells cells;
@@ -83,7 +91,15 @@ public:
         section_ = std::move(*section);
         const auto size = read_types_and_offsets(cells);
         if (!size) return size.error();
-        auto connectivity = indices("connectivity", *size);
+        const auto stored = find_stored("connectivity", *size);
+        if (!stored) return stored.error();
+        if (grid_ && cells.offsets.empty()) {
+            auto active = read_active(*stored, cells.uniform_type);
+            if (!active) return active.error();
+            kept_active_ = active->has_value();
+            if (kept_active_) return **std::move(active);
+        }
+        auto connectivity = indices(*stored);
         if (!connectivity) return connectivity.error();
         cells.connectivity = std::move(*connectivity);
         if (auto read = read_faces(cells); !read) return read.error();
@@ -92,6 +108,23 @@ public:
     }
 
 private:
+    /// Nothing where all cells are needed.
+    Result<std::optional<Cells>> read_active(const StoredArray& corners, CellType type) const {
+        std::optional<Cells> cells;
+        const ScalarType index = corners.array().type;
+        if (size_of(index) < 4 || !corners.has_blocks()) return cells;
+        auto filter = active_filter(*grid_, type, *options_);
+        if (!filter) return cells;
+        auto done = corners.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
+            filter->add(first, Array(index, bytes.data(), bytes.size() / size_of(index), 1, nullptr));
+        });
+        if (!done) return done.error();
+        auto kept = filter->finish();
+        if (kept) cells = *std::move(kept);
+        else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
+        return cells; // what is broken is told when all cells are there
+    }
+
     bool is_of_vtk_8() const {
         TextScanner version(document_.tree.child("VTKFile").attribute("version").as_string("2.1"));
         double number = 2.1;
@@ -180,21 +213,21 @@ private:
         return *found;
     }
 
-    Result<StoredArray> find_stored(const char* name) const {
+    Result<StoredArray> find_stored(const char* name, std::uint64_t size) const {
         const auto described = find(name);
         if (!described) return described.error();
-        return StoredArray::find(document_, *described, count_, progress_);
+        return StoredArray::find(document_, *described, size, progress_);
     }
 
     /// Returns how many corners there are. Neither types nor offsets become arrays where they say nothing.
     Result<std::uint64_t> read_types_and_offsets(Cells& cells) const {
-        const auto types = find_stored("types");
+        const auto types = find_stored("types", count_);
         if (!types) return types.error();
         const auto type = one_type(*types);
         if (!type) return type.error();
         if (!*type) // else they have been looked at
             if (auto read = read_types(*types, cells); !read) return read.error();
-        const auto offsets = find_stored("offsets");
+        const auto offsets = find_stored("offsets", count_);
         if (!offsets) return offsets.error();
         const auto corners = *type ? corners_of_uniform(**type) : std::nullopt;
         if (corners && offsets->has_blocks()) {
@@ -301,15 +334,16 @@ private:
     }
 
     Result<Array> indices(const char* name, std::uint64_t size) const {
-        const auto described = find(name);
-        if (!described) return described.error();
-        const auto stored = StoredArray::find(document_, *described, size, progress_);
-        if (!stored) return stored.error();
-        auto narrow = narrowed(*stored, size, 0);
+        const auto stored = find_stored(name, size);
+        return stored ? indices(*stored) : stored.error();
+    }
+
+    static Result<Array> indices(const StoredArray& stored) {
+        auto narrow = narrowed(stored, stored.scalars(), 0);
         if (!narrow) return narrow.error();
         if (*narrow) return **std::move(narrow);
-        auto values = filled_array(described->type, static_cast<std::size_t>(size), 1,
-                                   [&](std::byte* to) { return stored->decode(to); });
+        auto values = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
+                                   [&](std::byte* to) { return stored.decode(to); });
         if (!values) return values;
         return as_indices_of_cells(std::move(*values));
     }
@@ -325,6 +359,9 @@ private:
     std::size_t step_;
     const Progress& progress_;
     Section section_;
+    const Grid* grid_ = nullptr; ///< null: all cells are wanted
+    const ReadOptions* options_ = nullptr;
+    bool kept_active_ = false;
 };
 
 /// The cells of all pieces in one list.
@@ -443,16 +480,20 @@ Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const 
     auto places = load_points(document, elements, points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
+    if (auto loaded = load_fields(document, points, cells, wanted, progress, piece); !loaded) return loaded.error();
     std::vector<Cells> parts;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        auto part = CellsReader(document, elements[i], cells.tuples[i], wanted.step, progress).read();
+        CellsReader reader(document, elements[i], cells.tuples[i], wanted.step, progress);
+        const bool whole_grid = elements.size() == 1 && !wanted.ids && piece.left_out.empty();
+        if (wanted.options.active_cells && whole_grid) reader.ask_for_active_cells(piece.grid, wanted.options);
+        auto part = reader.read();
         if (!part) return part.error();
+        if (reader.kept_active_cells()) piece.cells_in_file = cells.total;
         if (elements.size() > 1)
             if (auto checked = check_corners(*part, points.tuples[i]); !checked) return checked.error();
         parts.push_back(std::move(*part));
     }
     piece.grid.cells = parts.size() == 1 ? std::move(parts.front()) : CellsJoiner(parts).join(points.tuples);
-    if (auto loaded = load_fields(document, points, cells, wanted, progress, piece); !loaded) return loaded.error();
     return piece;
 }
 

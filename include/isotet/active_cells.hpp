@@ -1,0 +1,63 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Surfaces of grids whose cells are never in memory as a whole.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include <isotet/array.hpp>
+#include <isotet/export.hpp>
+#include <isotet/extract_direct.hpp>
+#include <isotet/grid.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet {
+
+/// Keeps the cells that some isovalues cut, of cells that come by in pieces: all that extract_direct() needs of them.
+///
+///     auto filter = ActiveCellFilter::create(points, field, isovalues, CellType::tetrahedron, options);
+///     for (each piece of the connectivity) filter->add(place of its first corner, corners);
+///     grid.cells = *filter->finish();
+///     options.active_cells_only = true;
+///     extract_direct(grid, field, isovalues, options);
+///
+/// For tetrahedra, voxels, hexahedra, wedges or pyramids, all cells of one type, without point numbers.
+///
+/// Memory    a byte a point for each isovalue, and twice the cells that are kept: of smooth fields a few of a hundred
+/// Threads   add() is safe from many threads
+class ISOTET_API ActiveCellFilter {
+public:
+    /// `points`      of the whole grid, as Grid::points
+    /// `field`       one scalar a point
+    /// `isovalues`   at least one; those that will be extracted, in the same order
+    /// `options`     those of the extraction. Cell fields, source cells and gradient normals need all cells
+    ///
+    /// Cost     two passes over points and values for each isovalue
+    /// Errors   invalid_argument: no isovalue, one that is not finite, options that need all cells, arrays that do not fit
+    static Result<ActiveCellFilter> create(const Array& points, const PointField& field,
+                                           std::span<const double> isovalues, CellType type,
+                                           const DirectOptions& options = {});
+
+    /// Point numbers of corners, of 32 or 64 bits; `first`: how many corners of the grid's connectivity come before.
+    /// Pieces may begin and end within a cell. All calls together have each corner once, in any order. The array is not
+    /// kept.
+    /// Cost   at the speed of memory
+    void add(std::uint64_t first, const Array& corners);
+
+    /// The cells that were kept, in their order, and the first cell of all, so that there is one.
+    /// Errors   invalid_data: a cell has a point that is not there, or one whose coordinates are not finite or 2^91 or
+    ///          more; survey() tells which
+    Result<Cells> finish();
+
+    ActiveCellFilter(ActiveCellFilter&&) noexcept;
+    ActiveCellFilter& operator=(ActiveCellFilter&&) noexcept;
+    ~ActiveCellFilter();
+
+private:
+    struct Data;
+    explicit ActiveCellFilter(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet

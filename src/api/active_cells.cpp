@@ -1,0 +1,89 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/active_cells.hpp>
+
+#include <atomic>
+#include <new>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "api/active_cells.hpp"
+#include "api/finish.hpp"
+#include "core/cells.hpp"
+#include "core/errors.hpp"
+#include "core/guard.hpp"
+#include "cpu/direct/active_filter.hpp"
+
+namespace isotet {
+
+Result<void> api::check_active_cells_do(const DirectOptions& options) {
+    const ExtractOptions& extract = options.extract;
+    if (extract.source_cells || !extract.cell_fields.empty() || extract.normals == Normals::gradient || options.frame)
+        return invalid_argument("cell fields, source cells, gradient normals and frames need all cells of a grid");
+    return {};
+}
+
+struct ActiveCellFilter::Data {
+    std::unique_ptr<cpu::ActiveFilter> filter;
+    std::atomic<bool> out_of_memory{false};
+};
+
+ActiveCellFilter::ActiveCellFilter(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+ActiveCellFilter::ActiveCellFilter(ActiveCellFilter&&) noexcept = default;
+ActiveCellFilter& ActiveCellFilter::operator=(ActiveCellFilter&&) noexcept = default;
+ActiveCellFilter::~ActiveCellFilter() = default;
+
+Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const PointField& field,
+                                                  std::span<const double> isovalues, CellType type,
+                                                  const DirectOptions& options) {
+    return core::guarded("looking for active cells", [&]() -> Result<ActiveCellFilter> {
+        if (isovalues.empty()) return invalid_argument("active cells are those that isovalues cut, but there is none");
+        if (auto ok = api::check_isovalues(isovalues); !ok) return ok.error();
+        const ExtractOptions& extract = options.extract;
+        if (auto ok = api::check_active_cells_do(options); !ok) return ok.error();
+        Grid grid;
+        grid.points = points;
+        grid.cells.connectivity = Array(ScalarType::int32, nullptr, 0, 1, nullptr);
+        grid.cells.uniform_type = type;
+        const auto cells = core::CellReader::open(grid);
+        if (!cells) return cells.error();
+        if (field.values.tuples() != points.tuples() || field.values.components() != 1)
+            return invalid_argument(fmt::format("field '{}' has {} values of {} components, but the grid has {} points",
+                                                field.name, field.values.tuples(), field.values.components(),
+                                                points.tuples()));
+        for (const Field& carried : extract.point_fields)
+            if (carried.values.tuples() != points.tuples())
+                return invalid_argument(fmt::format("point field '{}' has {} tuples, but the grid has {} points",
+                                                    carried.name, carried.values.tuples(), points.tuples()));
+        const ops::DirectInput input{grid, *cells, field, extract.point_fields, nullptr};
+        ops::DirectRequest request;
+        request.isovalues = isovalues;
+        request.ties = extract.ties;
+        auto filter = options.precision == Precision::float32 ? cpu::make_active_filter<float>(input, request, type)
+                                                              : cpu::make_active_filter<double>(input, request, type);
+        auto data = std::make_unique<Data>();
+        data->filter = std::move(filter);
+        return ActiveCellFilter(std::move(data));
+    });
+}
+
+void ActiveCellFilter::add(std::uint64_t first, const Array& corners) {
+    try {
+        data_->filter->add(first, corners);
+    } catch (const std::bad_alloc&) {
+        data_->out_of_memory = true;
+    }
+}
+
+Result<Cells> ActiveCellFilter::finish() {
+    return core::guarded("looking for active cells", [&]() -> Result<Cells> {
+        if (data_->out_of_memory) return Error{ErrorCode::out_of_memory, "looking for active cells ran out of memory"};
+        auto cells = data_->filter->finish();
+        if (!cells)
+            return invalid_data("a cell has a point that is not there, or one whose coordinates are not finite or 2^91 "
+                                "or more");
+        return *std::move(cells);
+    });
+}
+
+} // namespace isotet

@@ -1,0 +1,33 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The cells that direct extraction of some isovalues needs, kept of cells of one type that come by in pieces.
+//
+// These are the cells with corners on both sides of an isovalue, and one for each point that must be known to be used
+// (points.hpp): with them extraction sees all that it would see with all cells.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "ops/direct.hpp"
+
+namespace isotet::cpu {
+
+class ActiveFilter {
+public:
+    virtual ~ActiveFilter() = default;
+
+    /// The corners from place `first` on, of the corners of all cells. All calls together have each corner once, in any
+    /// order, from any thread.
+    virtual void add(std::uint64_t first, const Array& corners) = 0;
+
+    /// The cells in their order; nothing where one has a point that is not there, or that no cell may use.
+    virtual std::optional<Cells> finish() = 0;
+};
+
+/// `input`   the cells are not looked at
+/// Cost      two passes over points and values, a byte a point for each isovalue
+template <class Real>
+std::unique_ptr<ActiveFilter> make_active_filter(const ops::DirectInput& input, const ops::DirectRequest& request,
+                                                 CellType type);
+
+} // namespace isotet::cpu

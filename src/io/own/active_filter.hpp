@@ -1,0 +1,19 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Readers that need not keep all cells.
+#pragma once
+
+#include <optional>
+
+#include <isotet/active_cells.hpp>
+#include <isotet/read.hpp>
+
+namespace isotet::io {
+
+/// The filter for ReadOptions::active_cells; nothing where all cells must be read: the field is one of cells, or not
+/// there, there are cell fields, or points coincide, of which more can only be said with all cells.
+///
+/// `grid`   points and fields, without cells
+/// `type`   of all cells
+std::optional<ActiveCellFilter> active_filter(const Grid& grid, CellType type, const ReadOptions& options);
+
+} // namespace isotet::io

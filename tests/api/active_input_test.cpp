@@ -1,0 +1,121 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A session that is given active cells only gives the surfaces of all, and asks for all when it needs them.
+#include <gtest/gtest.h>
+
+#include <isotet/active_cells.hpp>
+#include <isotet/contour.hpp>
+#include <isotet/make.hpp>
+
+#include "support/small_grid.hpp"
+#include "support/surface_bytes.hpp"
+
+namespace isotet::test {
+namespace {
+
+class ActiveInput : public testing::Test {
+protected:
+    /// The grid's cells that the isovalues cut.
+    ContourInput some(const std::vector<double>& isovalues) {
+        auto filter = ActiveCellFilter::create(grid.points, field, isovalues, CellType::tetrahedron);
+        filter->add(0, grid.cells.connectivity);
+        ContourInput input{grid, field, {}, {}};
+        input.grid.cells = filter->finish().value();
+        input.all_cells = [this](const isotet::Run&) -> Result<ContourInput> {
+            ++asked;
+            return all();
+        };
+        return input;
+    }
+    ContourInput all() const { return {grid, field, {}, {}}; }
+
+    ContourOptions options(std::vector<double> isovalues) const {
+        ContourOptions out;
+        out.surfaces = isovalues.size();
+        out.expected_isovalues = std::move(isovalues);
+        return out;
+    }
+
+    std::string bytes_of_all(double isovalue, const ContourOptions& options) const {
+        return bytes_of(Contour::create(all(), options).value().extract(isovalue).value().surfaces[0].surface);
+    }
+
+    Grid grid = make_grid({.shape = "kuhn", .side = 12, .fields = {"gyroid"}}).value();
+    PointField field = point_field(grid, 0);
+    int asked = 0;
+};
+
+TEST_F(ActiveInput, IsEnoughForTheExpectedIsovalues) {
+    const ContourOptions chosen = options({0.1, -0.5});
+    Contour contour = Contour::create(some({0.1, -0.5}), chosen).value();
+    for (const double isovalue : {-0.5, 0.1}) {
+        const ContourResult found = contour.extract(isovalue).value();
+        EXPECT_EQ(found.method, Method::direct);
+        EXPECT_EQ(found.engine, "cpu");
+        EXPECT_TRUE(bytes_of(found.surfaces[0].surface) == bytes_of_all(isovalue, chosen));
+    }
+    EXPECT_EQ(asked, 0);
+}
+
+TEST_F(ActiveInput, IsCompletedForAnotherIsovalue) {
+    const ContourOptions chosen = options({0.1});
+    Contour contour = Contour::create(some({0.1}), chosen).value();
+    for (const double isovalue : {0.3, 0.1, 0.4})
+        EXPECT_TRUE(bytes_of(contour.extract(isovalue).value().surfaces[0].surface) == bytes_of_all(isovalue, chosen));
+    EXPECT_EQ(asked, 1);
+}
+
+TEST_F(ActiveInput, IsCompletedForTheRangeOfTheField) {
+    Contour contour = Contour::create(some({0.1}), options({0.1})).value();
+    const FieldReport found = contour.field().value(), wanted = Contour::create(all()).value().field().value();
+    EXPECT_EQ(found.lower, wanted.lower);
+    EXPECT_EQ(found.upper, wanted.upper);
+    EXPECT_EQ(asked, 1);
+}
+
+TEST_F(ActiveInput, IsCompletedForOptionsThatNeedAllCells) {
+    std::vector<ContourOptions> each(6, options({0.1}));
+    each[0].normals = Normals::gradient;
+    each[1].source_cells = true;
+    each[2].method = Method::clusters;
+    each[3].expected_isovalues.clear();
+    each[4].surfaces = 1000;
+    each[5].engine = reference_engine();
+    for (std::size_t i = 0; i < each.size(); ++i) {
+        SCOPED_TRACE(i);
+        asked = 0;
+        Contour contour = Contour::create(some({0.1}), each[i]).value();
+        const ContourResult found = contour.extract(0.1).value();
+        EXPECT_TRUE(bytes_of(found.surfaces[0].surface) == bytes_of_all(0.1, each[i]));
+        EXPECT_EQ(asked, 1);
+    }
+}
+
+TEST_F(ActiveInput, CanFollowAnotherOneInASession) {
+    const ContourOptions chosen = options({0.1});
+    Contour contour = Contour::create(all(), chosen).value();
+    ASSERT_TRUE(contour.extract(0.1));
+    ASSERT_TRUE(contour.set(some({0.1}), chosen));
+    EXPECT_TRUE(bytes_of(contour.extract(0.1).value().surfaces[0].surface) == bytes_of_all(0.1, chosen));
+    EXPECT_EQ(asked, 0);
+    ContourOptions packed = chosen;
+    packed.method = Method::clusters;
+    ASSERT_TRUE(contour.set(some({0.1}), packed));
+    EXPECT_TRUE(bytes_of(contour.extract(0.2).value().surfaces[0].surface) == bytes_of_all(0.2, packed));
+    EXPECT_EQ(asked, 1);
+}
+
+TEST_F(ActiveInput, PassesOnTheErrorOfReadingAll) {
+    ContourInput input = some({0.1});
+    input.all_cells = [](const isotet::Run&) -> Result<ContourInput> { return Error{ErrorCode::file, "gone"}; };
+    Contour contour = Contour::create(input, options({0.1})).value();
+    const auto failed = contour.extract(0.2);
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().code, ErrorCode::file);
+    EXPECT_TRUE(contour.extract(0.1)); // the session stays usable
+    ContourOptions gradients = options({0.1});
+    gradients.normals = Normals::gradient;
+    EXPECT_EQ(Contour::create(input, gradients).error().code, ErrorCode::file);
+}
+
+} // namespace
+} // namespace isotet::test

@@ -1,0 +1,190 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// A job that reads active cells only writes what it writes with all cells, and reads all where they are needed.
+#include <isotet/jobs/extract_files.hpp>
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include <isotet/make.hpp>
+#include <isotet/read.hpp>
+#include <isotet/write.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+
+Grid made(const std::string& shape, std::uint64_t side) {
+    return make_grid({.shape = shape, .side = side, .fields = {"gyroid", "integer"}}).value();
+}
+
+ReadOptions active_options(std::vector<double> isovalues) {
+    ReadOptions options;
+    options.cell_fields = std::vector<std::string>{};
+    options.active_cells = ReadActiveCells{"gyroid", std::move(isovalues), {}};
+    return options;
+}
+
+ExtractJob active_job(const std::string& grid, const std::string& out) {
+    ExtractJob job;
+    job.grid.file = grid;
+    job.out = out;
+    job.field.name = "gyroid";
+    job.isovalues = {0.1, -0.7, 0.0};
+    return job;
+}
+
+bool was_read_twice(const Listener& listener) {
+    return std::ranges::find(listener.details, "reading all cells of step 0") != listener.details.end();
+}
+
+/// The file of the engine that always reads all cells.
+std::string reference_file(ExtractJob job, const test::TemporaryFolder& folder) {
+    Listener listener;
+    job.out = folder.file("reference.vtp");
+    job.engine = EngineChoice::reference;
+    EXPECT_TRUE(extract_files(job, listener));
+    return test::content_of(job.out);
+}
+
+TEST(ActiveCellsOfFiles, AreReadWhereThatCanBeDone) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const char* shape : {"kuhn", "shuffled", "hex"})
+        for (const Compression compression : {Compression::none, Compression::zlib, Compression::lz4}) {
+            SCOPED_TRACE(testing::Message() << shape << " " << name_of(compression));
+            const Grid grid = made(shape, 40);
+            ASSERT_TRUE(write_grid(grid, file, {.compression = compression}));
+            const ReadResult some = read(file, active_options({0.1})).value();
+            EXPECT_EQ(some.cells_in_file, grid.cells.count());
+            EXPECT_LT(some.grid.cells.count(), grid.cells.count() / 3);
+            EXPECT_EQ(some.grid.points.tuples(), grid.points.tuples());
+            const ReadResult all = read(file).value();
+            EXPECT_FALSE(all.cells_in_file);
+            EXPECT_EQ(all.grid.cells.count(), grid.cells.count());
+        }
+}
+
+TEST(ActiveCellsOfFiles, GiveTheFileOfAllCells) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    for (const char* shape : {"kuhn", "shuffled", "hex", "layer"})
+        for (const bool degenerate : {false, true}) {
+            SCOPED_TRACE(testing::Message() << shape << " " << degenerate);
+            const Grid grid = made(shape, 16);
+            ASSERT_TRUE(write_grid(grid, file));
+            ExtractJob job = active_job(file, folder.file("active.vtp"));
+            job.keep_degenerate = degenerate;
+            job.edge_ends = degenerate;
+            Listener listener;
+            const ExtractNumbers numbers = extract_files(job, listener).value();
+            EXPECT_EQ(numbers.cells, grid.cells.count());
+            EXPECT_FALSE(was_read_twice(listener));
+            EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+        }
+}
+
+TEST(ActiveCellsOfFiles, AreOfEachStep) {
+    const test::TemporaryFolder folder;
+    std::string entries;
+    for (const int step : {0, 1, 2}) {
+        const std::string name = "step" + std::to_string(step) + ".vtu";
+        ASSERT_TRUE(write_grid(made("kuhn", 8 + static_cast<std::uint64_t>(step)), folder.file(name)));
+        entries += "<DataSet timestep=\"" + std::to_string(step) + "\" file=\"" + name + "\"/>";
+    }
+    const std::string file =
+        folder.write("series.pvd", "<VTKFile type=\"Collection\"><Collection>" + entries + "</Collection></VTKFile>");
+    ExtractJob job = active_job(file, folder.file("s{step}.vtp"));
+    job.all_steps = true;
+    Listener listener;
+    const ExtractNumbers numbers = extract_files(job, listener).value();
+    ASSERT_EQ(numbers.surfaces.size(), 9u);
+    EXPECT_EQ(numbers.method, Method::direct);
+    for (const int step : {0, 1, 2}) {
+        ExtractJob one = active_job(folder.file("step" + std::to_string(step) + ".vtu"), "");
+        EXPECT_TRUE(test::content_of(folder.file("s" + std::to_string(step) + ".vtp")) == reference_file(one, folder));
+    }
+}
+
+TEST(ActiveCellsOfFiles, AreNotEnoughWhereUnusedPointsDecide) {
+    const test::TemporaryFolder folder;
+    Grid grid = made("kuhn", 8);
+    std::vector<double> points{1e6, 1e6, 1e6}; // no cell has it, and rounding to float32 goes by the bounds
+    for (std::size_t i = 0; i < grid.points.size(); ++i) points.push_back(grid.points.at(i / 3, i % 3) + 5e5);
+    std::vector<std::int32_t> corners;
+    for (std::size_t i = 0; i < grid.cells.connectivity.size(); ++i)
+        corners.push_back(static_cast<std::int32_t>(grid.cells.connectivity.at(i)) + 1);
+    std::vector<float> values{0};
+    for (const float value : grid.point_fields[0].values.as<float>()) values.push_back(value);
+    grid.points = Array::own(std::move(points), 3);
+    grid.cells.connectivity = Array::own(std::move(corners));
+    grid.point_fields = {{"gyroid", Array::own(std::move(values))}};
+    ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+    const ExtractJob job = active_job(folder.file("grid.vtu"), folder.file("active.vtp"));
+    Listener listener;
+    const ExtractNumbers numbers = extract_files(job, listener).value();
+    EXPECT_TRUE(was_read_twice(listener));
+    EXPECT_EQ(numbers.cells, grid.cells.count());
+    EXPECT_TRUE(test::content_of(job.out) == reference_file(job, folder));
+}
+
+TEST(ActiveCellsOfFiles, AreNotReadAloneWhereOthersMatter) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.file("grid.vtu");
+    Grid grid = made("kuhn", 6);
+    std::vector<float> numbers(grid.cells.count());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i);
+    grid.cell_fields = {{"number", Array::own(std::move(numbers))}};
+    ASSERT_TRUE(write_grid(grid, file));
+    ReadOptions options = active_options({0.1});
+    EXPECT_TRUE(read(file, options).value().cells_in_file);
+    options.cell_fields.reset(); // all of them
+    EXPECT_FALSE(read(file, options).value().cells_in_file);
+    options = active_options({0.1});
+    options.active_cells->field = "number";
+    EXPECT_FALSE(read(file, options).value().cells_in_file);
+    options.active_cells = ReadActiveCells{"gyroid", {}, {}};
+    EXPECT_FALSE(read(file, options).value().cells_in_file);
+
+    ASSERT_TRUE(write_grid(made("mixed", 6), file));
+    EXPECT_FALSE(read(file, active_options({0.1})).value().cells_in_file);
+
+    grid = made("kuhn", 6);
+    std::vector<float> twice(grid.points.as<float>().begin(), grid.points.as<float>().end());
+    twice.insert(twice.end(), twice.begin(), twice.begin() + static_cast<std::ptrdiff_t>(twice.size()));
+    grid.points = Array::own(std::move(twice), 3);
+    for (Field& field : grid.point_fields) {
+        std::vector<double> values(2 * field.values.tuples());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = field.values.at(i % field.values.tuples());
+        field.values = Array::own(std::move(values));
+    }
+    ASSERT_TRUE(write_grid(grid, file));
+    EXPECT_FALSE(read(file, active_options({0.1})).value().cells_in_file);
+}
+
+TEST(ActiveCellsOfFiles, TellWhichCellIsBroken) {
+    const test::TemporaryFolder folder;
+    const Grid grid = made("kuhn", 12);
+    const std::string file = folder.file("grid.vtu");
+    ASSERT_TRUE(write_grid(grid, file));
+    const auto corners = grid.cells.connectivity.as<std::int32_t>();
+    const std::string_view bytes(reinterpret_cast<const char*>(corners.data()), corners.size_bytes());
+    std::string text = test::content_of(file);
+    const std::size_t at = text.find(bytes);
+    ASSERT_NE(at, std::string::npos);
+    const std::int32_t wrong = 98765;
+    text.replace(at + 4 * (4 * 1234 + 2), 4, reinterpret_cast<const char*>(&wrong), 4);
+    folder.write("grid.vtu", text);
+    Listener listener;
+    const auto failed = extract_files(active_job(file, folder.file("active.vtp")), listener);
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().code, ErrorCode::invalid_data);
+    EXPECT_NE(failed.error().message.find("tets[1234] has point 98765"), std::string::npos) << failed.error().message;
+}
+
+} // namespace
+} // namespace isotet::jobs
