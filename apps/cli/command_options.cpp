@@ -254,6 +254,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     const Option out = command.add_file("OUT", extract.out, "OUT_FILE", "The surface, as -o");
     command.add_file("-o,--output", extract.out, "OUT_FILE", "The surface; the ending says the format").excludes(out);
     add_field(command, extract.field, "The field to contour; may be left out where there is only one");
+    add_centre(command, extract.field);
     add_levels(command, extract);
     add_time(command, extract.grid);
     command.add_flag("--all-steps", extract.all_steps, "Every time step; OUT then needs {step} or {time}")
@@ -418,6 +419,19 @@ Option add_field(const Command& command, FieldChoice& field, const std::string& 
     const Option name = command.add_text("-f,--field", field.name, "FIELD", description);
     command.add_flag("--cell-field", field.cell_field, "Use the cell field if a point field has the same name");
     return name;
+}
+
+void add_centre(const Command& command, FieldChoice& field) {
+    command.add_value(
+        "--centre",
+        [&field](const std::string& text) {
+            if (text != "mean" && text != "own") refuse_value("--centre", text, "mean or own");
+            field.own_centres = text == "own";
+        },
+        "mean|own",
+        "Polyhedra, of a cell field: the value at the point inside that a polyhedron is split around is the mean of "
+        "its points "
+        "(mean, the default), or the cell's own (own): sharper, and beyond the values around");
 }
 
 Option add_isovalues(const Command& command, std::vector<double>& isovalues) {

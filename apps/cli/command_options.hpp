@@ -16,6 +16,7 @@ Command add_bench_command(const Command& program, BenchCommand& bench);
 
 // Options that several commands have.
 Option add_field(const Command& command, FieldChoice& field, const std::string& description);
+void add_centre(const Command& command, FieldChoice& field);
 Option add_isovalues(const Command& command, std::vector<double>& isovalues);
 void add_refinement(const Command& command, RefineChoice& refine);
 void add_device(const Command& command, DeviceChoice& device);

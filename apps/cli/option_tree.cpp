@@ -2,6 +2,7 @@
 #include "option_tree.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -290,6 +291,9 @@ bool OptionTree::has_command(const std::string& word) const { return find(*progr
 
 Result<void> OptionTree::parse(const std::vector<std::string>& words) {
     std::vector<std::string> backwards(words.rbegin(), words.rend() - (words.empty() ? 0 : 1));
+    for (std::string& word : backwards) // CLI11 takes -i=3 as the value "=3"
+        if (word.size() > 3 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) && word[2] == '=')
+            word.erase(2, 1);
     try {
         program_->parse(backwards); // CLI11 takes the words from the back
     } catch (const CLI::CallForHelp&) {

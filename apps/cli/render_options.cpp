@@ -208,6 +208,7 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp")
         .excludes(out);
     add_field(command, render.field, "The field to contour; without it the one that varies most");
+    add_centre(command, render.field);
     const Option isovalues = add_isovalues(command, render.isovalues);
     command
         .add_count(

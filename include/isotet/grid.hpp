@@ -160,10 +160,12 @@ ISOTET_API Result<MergedPoints> merge_points(const Grid& grid, const MergeOption
 
 /// A field to contour: one scalar per point of the grid, and how it was found.
 struct PointField {
-    std::string name;      ///< as asked for, such as "velocity:x"
-    Array values;          ///< one component, one scalar a point
-    bool averaged = false; ///< made from a cell field by volume-weighted averaging
-    std::string note;      ///< empty, or a sentence for the user (a name that is both a point and a cell field, say)
+    std::string name;       ///< as asked for, such as "velocity:x"
+    Array values;           ///< one component, one scalar a point
+    bool averaged = false;  ///< made from a cell field by volume-weighted averaging
+    std::string note;       ///< empty, or a sentence for the user (a name that is both a point and a cell field, say)
+    Array cell_values = {}; ///< empty, or one scalar a cell: a session gives them to the derived points around which
+                            ///< polyhedra are split, in place of means of the points around
 };
 
 /// What a name means that is both a point and a cell field.
@@ -171,6 +173,7 @@ struct FindFieldOptions {
     Association prefer = Association::point;
     bool for_pieces = false; ///< average a cell field so that pieces with a layer of ghost cells get the values of the
                              ///< whole grid, bit for bit: cells are added in the order of their values
+    bool keep_cell_values = false; ///< PointField::cell_values, where a cell field is averaged
 };
 
 /// Finds the scalar field called `name` on a grid.

@@ -60,10 +60,10 @@ struct RefinementReport {
     double geometry_bound = 0;          ///< proven: the tets are nowhere farther from the curved cells
     bool too_fine = false;              ///< an edge could not be bisected any further: bounds may exceed tolerances
     std::vector<double> isovalues;      ///< the only ones that the grid is good for, ascending; empty: all
-    bool too_bent = false;              ///< an edge bends strongly at every length, as where a cell folds: it was bisected
-                                        ///< to 1/64 of a cell only, and geometry_bound may be large
-    double distance = 0;         ///< with RefineOptions::distance: 99 of 100 tets have a surface not farther from that of the
-                                 ///< quadratic field, by estimate: the tet's bound over its gradient
+    bool too_bent = false; ///< an edge bends strongly at every length, as where a cell folds: it was bisected
+                           ///< to 1/64 of a cell only, and geometry_bound may be large
+    double distance = 0;   ///< with RefineOptions::distance: 99 of 100 tets have a surface not farther from that of the
+                           ///< quadratic field, by estimate: the tet's bound over its gradient
     double largest_distance = 0; ///< the largest of all tets; infinite where the field is flat
 };
 
@@ -77,7 +77,7 @@ struct LinearizeReport {
     std::uint64_t folded = 0; ///< centred ones where no point was found that sees all faces
     std::uint64_t open = 0;   ///< polyhedra left out: some edge is not in two faces, or the faces are not one shell
     std::uint64_t cells = 0;  ///< linear cells that polyhedra became
-    std::uint64_t unmet = 0;  ///< polyhedra that LinearizeOptions::isovalues left out; the other counts are without them
+    std::uint64_t unmet = 0; ///< polyhedra that LinearizeOptions::isovalues left out; the other counts are without them
     std::uint64_t high_degree = 0;       ///< Lagrange cells of degree 3 and above, and Bezier cells, that were split
     std::uint64_t high_degree_parts = 0; ///< cells of degree 2 that these became
 
@@ -106,6 +106,11 @@ struct ISOTET_API LinearGrid {
     /// Cost         one pass; a copy of the array, and the derived tuples
     /// Errors       invalid_argument when it has not one tuple a user's point; out_of_memory; cancelled
     Result<Array> extend(const Array& values, const Run& run = {}) const;
+
+    /// The same of one scalar a point, but a point around which a polyhedron was split has its cell's value of `cell_values`,
+    /// one scalar a user's cell, which may lie outside those of the corners.
+    /// Errors   invalid_argument also where there are points inside other cells (report.high_degree, refined)
+    Result<Array> extend(const Array& values, const Array& cell_values, const Run& run = {}) const;
 
     /// An array of one tuple a user's cell, for the cells of `grid`, in its own type.
     /// Errors   invalid_argument when it has not one tuple a user's cell; out_of_memory; cancelled

@@ -99,8 +99,8 @@ void add_grids(nb::module_& module) {
                const std::optional<ArrayIn>& face_offsets) {
                 new (self) Cells(cells_in(connectivity, offsets, types, uniform_type, faces, face_offsets));
             },
-            "connectivity"_a, "offsets"_a.none(), "types"_a.none(), "uniform_type"_a,
-            "faces"_a.none() = nb::none(), "face_offsets"_a.none() = nb::none())
+            "connectivity"_a, "offsets"_a.none(), "types"_a.none(), "uniform_type"_a, "faces"_a.none() = nb::none(),
+            "face_offsets"_a.none() = nb::none())
         .def("__len__", &Cells::count)
         .def("arrays", &cells_out);
 
@@ -135,12 +135,14 @@ void add_grids(nb::module_& module) {
 
     module.def(
         "find_field",
-        [](const Grid& grid, const std::string& name, bool for_pieces, const CallOptions& options) {
+        [](const Grid& grid, const std::string& name, bool for_pieces, bool own_centres, const CallOptions& options) {
             FindFieldOptions how;
             how.for_pieces = for_pieces;
+            how.keep_cell_values = own_centres;
+            if (own_centres) how.prefer = Association::cell;
             return call(options, [&](const Run& run) { return find_field(grid, name, how, run); });
         },
-        "grid"_a, "name"_a, "for_pieces"_a, "call"_a);
+        "grid"_a, "name"_a, "for_pieces"_a, "own_centres"_a, "call"_a);
 
     nb::class_<ReadOptions>(module, "ReadOptions")
         .def(

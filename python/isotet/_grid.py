@@ -111,11 +111,21 @@ class Grid:
         """Arrays with one row a cell, by name."""
         return self._grid.cell_fields
 
-    def _field(self, field, call: _isotet.CallOptions | None = None, for_pieces: bool = False) -> _isotet.PointField:
+    def _field(self, field, call: _isotet.CallOptions | None = None, for_pieces: bool = False,
+               centre: str = "mean") -> _isotet.PointField:  # fmt: skip
         """A field by name, or of values."""
+        if centre not in ("mean", "own"):
+            raise ValueError(f"centre is {centre!r}, but must be 'mean' or 'own'")
+        own = centre == "own"
+        if own and for_pieces:
+            raise ValueError("centre is 'own', but pieces of a grid take 'mean' only")
         if field is None or isinstance(field, str):
-            return _isotet.find_field(self._grid, field or "", for_pieces, call or call_options(0, None))
-        return _isotet.PointField("values", scalars_in("field", field))
+            found = _isotet.find_field(self._grid, field or "", for_pieces, own, call or call_options(0, None))
+        else:
+            found = _isotet.PointField("values", scalars_in("field", field))
+        if own and not found.averaged:
+            raise ValueError("centre is 'own', but the field is one of points: it takes the name of a cell field")
+        return found
 
     def _carried(self, fields, of: str) -> list[tuple[str, np.ndarray]]:
         """Fields to carry: of a mapping; or names of fields of the grid."""
@@ -137,7 +147,7 @@ class Grid:
                 source_cells: bool = False, ties: str = "merge", precision: str = "float32", method: str | None = None,
                 split_cells: bool = False, frame: Frame | None = None, tolerance: float | str | None = None,
                 geometry_tolerance: float = 0.0, distance: float = 0.0, exact_vertices: bool = False,
-                threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
+                centre: str = "mean", threads: int = 0, progress: Progress | None = None) -> Surface:  # fmt: skip
         """The surface on which a field has a value. Nothing is kept: for many surfaces see `pack` and `Contour`.
 
         isovalues
@@ -173,6 +183,9 @@ class Grid:
             or beside one.
         exact_vertices
             Vertices are put to where the quadratic field of curved cells has the isovalue on their edges.
+        centre
+            Of a cell field: the value at the point inside a polyhedron that it is split around. "mean": of its points; "own": the
+            cell's own, which may be beyond those around.
         threads
             At most so many; 0: all.
         progress
@@ -186,9 +199,17 @@ class Grid:
                                          split_cells, frame and frame._frame,
                                          *tolerances_in(tolerance, geometry_tolerance, distance),
                                          exact_vertices, values)  # fmt: skip
-        session = _isotet.Contour(self._grid, self._field(field, call, frame is not None), self._carried(fields, "fields"),
-                                  self._carried(cell_fields, "cell_fields"), options, call)  # fmt: skip
+        session = _isotet.Contour(self._grid, self._field(field, call, frame is not None, centre),
+                                  self._carried(fields, "fields"), self._carried(cell_fields, "cell_fields"), options,
+                                  call)  # fmt: skip
         return Surface._of(*session.extract(values, call))
+
+    def pack(self, field=None, *, gradients: bool = False, source_cells: bool = False, split_cells: bool = False,
+             precision: str = "float32", frame: Frame | None = None, threads: int = 0,
+             progress: Progress | None = None) -> PackedGrid:  # fmt: skip
+        """Packs the grid once, to contour it many times: `pack` of this grid and field."""
+        return pack(self, values=field, gradients=gradients, source_cells=source_cells, split_cells=split_cells,
+                    precision=precision, frame=frame, threads=threads, progress=progress)  # fmt: skip
 
     def survey(self, field=None, *, fields: Mapping[str, Any] | Iterable[str] | None = None, split_cells: bool = False,
                threads: int = 0, progress: Progress | None = None) -> bytes:  # fmt: skip
@@ -342,7 +363,7 @@ class Contour:
     same as before.
 
     grid, field, fields, cell_fields, normals, edge_ends, source_cells, ties, precision, method, split_cells, frame, tolerance,
-    geometry_tolerance, distance, exact_vertices
+    geometry_tolerance, distance, exact_vertices, centre
         As for `Grid.contour`. With a tolerance curved cells are refined for each isovalue, field and step again.
     surfaces
         How many surfaces will be asked for in all; 0: not known.
@@ -356,19 +377,20 @@ class Contour:
     'field'
     """
 
-    __slots__ = ("_session", "_options", "_refinement", "__weakref__")
+    __slots__ = ("_session", "_options", "_refinement", "_centre", "__weakref__")
 
     def __init__(self, grid: Grid, field=None, *, fields=None, cell_fields=None, normals: str = "none",
                  edge_ends: bool = False, source_cells: bool = False, ties: str = "merge", precision: str = "float32",
                  method: str | None = None, split_cells: bool = False, surfaces: int = 0,
                  frame: Frame | None = None, tolerance: float | str | None = None,
                  geometry_tolerance: float = 0.0, distance: float = 0.0,
-                 exact_vertices: bool = False):  # fmt: skip
+                 exact_vertices: bool = False, centre: str = "mean"):  # fmt: skip
         call = call_options(0, None)
+        self._centre = centre
         self._refinement = (*tolerances_in(tolerance, geometry_tolerance, distance), exact_vertices)
         self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
-        self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None), grid._carried(fields, "fields"),
-                                        grid._carried(cell_fields, "cell_fields"), self._options_with(frame),
+        self._session = _isotet.Contour(grid._grid, grid._field(field, call, frame is not None, centre),
+                                        grid._carried(fields, "fields"), grid._carried(cell_fields, "cell_fields"), self._options_with(frame),
                                         call)  # fmt: skip
 
     def _options_with(self, frame: Frame | None) -> _isotet.ContourOptions:
@@ -383,7 +405,7 @@ class Contour:
         Raises ValueError as `Grid.contour`; the session is then as before.
         """
         call = call_options(threads, progress)
-        return self._session.set(grid._grid, grid._field(field, call, frame is not None),
+        return self._session.set(grid._grid, grid._field(field, call, frame is not None, self._centre),
                                  grid._carried(fields, "fields"), grid._carried(cell_fields, "cell_fields"),
                                  self._options_with(frame), call)  # fmt: skip
 

@@ -112,6 +112,7 @@ Result<PointField> find_by_name(const Grid& grid, std::string_view name, const F
         auto values = average(grid, field, *scalar, options.for_pieces);
         if (!values) return values.error();
         found.values = std::move(*values);
+        if (options.keep_cell_values) found.cell_values = core::scalar_of(field.values, *scalar);
     } else {
         if (auto fits = check_length(field, "point", grid.points.tuples()); !fits) return fits.error();
         found.values = core::scalar_of(field.values, *scalar);

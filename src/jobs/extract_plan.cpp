@@ -120,6 +120,7 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source
     if (!collection) return collection.error();
     plan.collection = *std::move(collection);
 
+    if (job.piece && job.field.own_centres) return refusal("`piece` takes `centre` mean only");
     Result<FoundField> field = choose_field(source, job.field);
     if (!field) return field.error();
     plan.field = *std::move(field);

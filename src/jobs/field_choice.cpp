@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <isotet/field_statistics.hpp>
+#include <isotet/linear_cells.hpp>
 
 #include "jobs/refuse.hpp"
 
@@ -80,9 +81,14 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
 }
 
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller) {
-    const auto prefer = choice.cell_field ? Association::cell : Association::point;
-    Result<PointField> field = find_field(grid, name, {prefer}, caller.run());
-    if (field) caller.note(field->note);
+    const auto prefer = choice.cell_field || choice.own_centres ? Association::cell : Association::point;
+    Result<PointField> field = find_field(grid, name, {prefer, false, choice.own_centres}, caller.run());
+    if (!field) return field;
+    if (choice.own_centres && !field->averaged)
+        return refusal("`centre` own takes a cell field, but '{}' is one of points", name);
+    if (choice.own_centres && !has_cells_to_linearize(grid.cells))
+        caller.note("`centre` own changes nothing: no cell is a polyhedron");
+    caller.note(field->note);
     return field;
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "linear/derived.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -10,6 +11,7 @@
 
 #include "core/buffer.hpp"
 #include "core/carry_out.hpp"
+#include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "linear/node_values.hpp"
@@ -103,6 +105,45 @@ Result<Array> LinearGrid::extend(const Array& values, const Run& run) const {
             using To = std::conditional_t<std::is_floating_point_v<T>, T, double>;
             return extended<To>(derived, refined, from, values.components(), report.high_degree == 0, progress);
         });
+        if (progress.cancelled()) return cancelled_extension();
+        return out;
+    });
+}
+
+Result<Array> LinearGrid::extend(const Array& values, const Array& cell_values, const Run& run) const {
+    if (values.components() != 1 || cell_values.components() != 1)
+        return invalid_argument(
+            fmt::format("fields of {} and {} components were given, but one scalar a point and a cell "
+                        "is needed",
+                        values.components(), cell_values.components()));
+    if (report.high_degree > 0 || refined.count() > 0)
+        return invalid_argument("points inside curved cells have no values of their own");
+    const Result<Array> means = extend(values, run);
+    if (!means || derived.count() == 0) return means;
+    return core::carry_out("extending an array", run, [&](const Progress& progress) -> Result<Array> {
+        if (auto fits = has_tuples(cell_values, user_cells, "cell"); !fits) return fits.error();
+        const auto sources = source_cells.as<std::uint64_t>();
+        const auto cells = core::CellReader::open(grid);
+        if (!cells) return cells.error();
+        const auto put_centres = [&]<class T>(std::span<const T> from) -> Array {
+            core::Buffer<T> to(from.size());
+            core::parallel_pieces(from.size(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+                std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin),
+                          from.begin() + static_cast<std::ptrdiff_t>(end), to.data() + begin);
+            });
+            // Cells around a centre are of one polyhedron, and stand together: the first one of each writes.
+            core::parallel_pieces(cells->count(), derived_grain, progress, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t cell = begin; cell < end; ++cell) {
+                    if (cell > 0 && sources[cell - 1] == sources[cell]) continue;
+                    for (std::uint64_t i = 0; i < cells->corners(cell); ++i)
+                        if (const std::uint64_t point = cells->corner(cells->first(cell) + i); point >= user_points)
+                            to[point] = static_cast<T>(cell_values.at(sources[cell]));
+                }
+            });
+            return std::move(to).to_array();
+        };
+        const Array out =
+            means->type() == ScalarType::float32 ? put_centres(means->as<float>()) : put_centres(means->as<double>());
         if (progress.cancelled()) return cancelled_extension();
         return out;
     });

@@ -9,11 +9,11 @@ std::vector<std::string> LinearizeReport::notes() const {
     std::vector<std::string> out;
     if (unmet > 0)
         out.push_back(fmt::format("{} of {} polyhedra have values on both sides of an isovalue: {} were split around a "
-                                  "point inside, whose values are means of the corners' (docs/cells.md)",
+                                  "point inside (docs/cells.md)",
                                   polyhedra, polyhedra + unmet, centred));
     else if (centred > 0)
-        out.push_back(fmt::format("{} of {} polyhedra were split around a point inside, whose values are means of the "
-                                  "corners': with the others they are {} linear cells (docs/cells.md)",
+        out.push_back(fmt::format("{} of {} polyhedra were split around a point inside: with the others they are {} "
+                                  "linear cells (docs/cells.md)",
                                   centred, polyhedra, cells));
     if (folded > 0)
         out.push_back(fmt::format(

@@ -70,6 +70,8 @@ Result<void> CurvedInput::take(ContourInput input, const ContourOptions& options
         return invalid_argument(
             "the grid has curved cells and is a piece (it has a frame), but curved cells are refined "
             "in whole grids only");
+    if (!input.field.cell_values.empty())
+        return invalid_argument("values of cells are for the centres of polyhedra, but the grid has curved cells, too");
     const auto cells = core::CellReader::open(input.grid);
     if (!cells) return cells.error();
     if (input.field.values.components() != 1 || input.field.values.tuples() != cells->points())

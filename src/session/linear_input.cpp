@@ -70,7 +70,14 @@ Result<ContourInput> on_linear_grid(ContourInput input, const LinearGrid& linear
         array = *std::move(longer);
         return {};
     };
-    if (auto done = replace(input.field.values, false); !done) return done.error();
+    if (input.field.cell_values.empty()) {
+        if (auto done = replace(input.field.values, false); !done) return done.error();
+    } else {
+        auto longer = linear.extend(input.field.values, input.field.cell_values, run);
+        if (!longer) return longer.error();
+        input.field.values = *std::move(longer);
+        input.field.cell_values = {};
+    }
     for (Field& field : input.point_fields)
         if (auto done = replace(field.values, false); !done) return done.error();
     for (Field& field : input.cell_fields)

@@ -68,8 +68,9 @@ bool MetInput::suits(const ContourInput& input, const ContourOptions& options) {
     return !options.expected_isovalues.empty() && options.surfaces > 0 && method == Method::direct &&
            options.engine->extracts_directly() && !gradients && !options.edge_ends && !options.exact_vertices &&
            !options.frame && input.grid.point_numbers.empty() && input.grid.points.type() == ScalarType::float32 &&
-           has_cells_to_linearize(input.grid.cells) && !has_curved_cells(input.grid.cells) &&
-           is_stored_as_it_is(input.field.values) && std::ranges::all_of(input.point_fields, plain);
+           input.field.cell_values.empty() && has_cells_to_linearize(input.grid.cells) &&
+           !has_curved_cells(input.grid.cells) && is_stored_as_it_is(input.field.values) &&
+           std::ranges::all_of(input.point_fields, plain);
 }
 
 bool MetInput::is_good_for(std::span<const double> isovalues) const {

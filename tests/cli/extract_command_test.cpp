@@ -30,6 +30,15 @@ const Array* field(const std::vector<Field>& fields, std::string_view name) {
     return nullptr;
 }
 
+TEST_F(Program, ShortOptionsMayHaveAnEqualsSign) {
+    for (const std::vector<std::string>& isovalue :
+         {std::vector<std::string>{"-i=-0.3"}, {"-i-0.3"}, {"-i", "-0.3"}, {"--isovalue=-0.3"}}) {
+        std::vector<std::string> words{"extract", "make:kuhn:6:gyroid", "-f=gyroid"};
+        words.insert(words.end(), isovalue.begin(), isovalue.end());
+        EXPECT_EQ(json_of(words)["surfaces"][0]["isovalue"], -0.3) << isovalue.front();
+    }
+}
+
 TEST_F(Program, ExtractHasEveryPromisedKey) {
     const json report = json_of({"extract", "make:kuhn:6:sphere", path("s.vtp"), "-i", "0.5"});
     for (const char* key : {"schema", "points", "tets", "cells_left_out", "field", "engine", "method", "method_why",

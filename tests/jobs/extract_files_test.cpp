@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <isotet/make.hpp>
 #include <isotet/read.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
 #include "support/temporary_folder.hpp"
@@ -63,6 +65,31 @@ TEST(ExtractFiles, WritesNoFileOfTheCallerAndNoInput) {
     EXPECT_FALSE(std::filesystem::exists(folder.file("a-0.5.vtp")));
     job.out = job.other_outputs[0];
     EXPECT_EQ(extract_files(job, listener).error().code, ErrorCode::invalid_argument);
+}
+
+TEST(ExtractFiles, GivesCentresOfPolyhedraTheValuesOfTheirCells) {
+    const test::TemporaryFolder folder;
+    Grid grid = make_grid({.shape = "kelvin", .side = 4, .fields = {"sphere"}}).value();
+    std::vector<float> numbers(grid.cells.count());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i * 31 % 17);
+    grid.cell_fields = {{"number", Array::own(std::move(numbers))}};
+    ASSERT_TRUE(write_grid(grid, folder.file("grid.vtu")));
+    ExtractJob job = job_of(folder.file("grid.vtu"), folder.file("mean.vtp"));
+    job.field.name = "number";
+    job.isovalues = {8.5};
+    Listener listener;
+    const std::uint64_t mean = extract_files(job, listener).value().surfaces[0].triangles;
+    job.field.own_centres = true;
+    job.out = folder.file("own.vtp");
+    const std::uint64_t own = extract_files(job, listener).value().surfaces[0].triangles;
+    EXPECT_GT(own, mean); // a bubble around each cell that stands out
+
+    job.field.name = "sphere";
+    EXPECT_EQ(extract_files(job, listener).error().message,
+              "`centre` own takes a cell field, but 'sphere' is one of points");
+    job.field.name = "number";
+    job.piece = PieceOf{0, 2};
+    EXPECT_EQ(extract_files(job, listener).error().message, "`piece` takes `centre` mean only");
 }
 
 TEST(ExtractFiles, AnEmptySurfaceIsAnErrorWhereAsked) {

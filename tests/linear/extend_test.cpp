@@ -52,6 +52,32 @@ TEST(Extend, HasNoDataWhereAPointHasNone) {
     }
 }
 
+TEST(Extend, GivesCentresTheValuesOfTheirCells) {
+    const LinearGrid linear = linearize(octree_grid({.seed = 2})).value();
+    const auto sources = linear.source_cells.as<std::uint64_t>();
+    std::vector<float> points(linear.user_points), numbers(linear.user_cells);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = -static_cast<float>(i);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i);
+    for (const bool wide : {false, true}) {
+        const Array given = wide ? Array::own(std::vector<double>(points.begin(), points.end())) : Array::own(points);
+        const Array out = linear.extend(given, Array::own(numbers)).value();
+        ASSERT_EQ(out.type(), given.type());
+        ASSERT_EQ(out.tuples(), linear.grid.points.tuples());
+        for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(out.at(i), points[i]);
+        std::size_t centres = 0;
+        const Cells& cells = linear.grid.cells;
+        for (std::size_t cell = 0; cell < cells.count(); ++cell)
+            for (auto i = static_cast<std::size_t>(cells.offsets.at(cell)); i < cells.offsets.at(cell + 1); ++i)
+                if (const auto point = static_cast<std::size_t>(cells.connectivity.at(i)); point >= points.size()) {
+                    ASSERT_EQ(out.at(point), static_cast<double>(sources[cell]));
+                    ++centres;
+                }
+        EXPECT_GT(centres, linear.derived.count());
+    }
+    EXPECT_EQ(linear.extend(Array::own(points), Array::own(points)).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(linear.extend(linear.grid.points, Array::own(numbers)).error().code, ErrorCode::invalid_argument);
+}
+
 TEST(Extend, TakesVectorsAndCells) {
     const LinearGrid linear = linearize(octree_grid({.seed = 2})).value();
     const Array points = linear.extend(octree_grid({.seed = 2}).points).value();

@@ -94,6 +94,34 @@ TEST(PolyhedralSession, StaysAsItWasAfterAnError) {
     EXPECT_EQ(bytes_of(session.extract(3).value().surfaces[0].surface), before);
 }
 
+TEST(PolyhedralSession, GivesCentresTheValuesOfTheirCells) {
+    Grid grid = octree_grid({.seed = 3});
+    std::vector<float> values(grid.cells.count());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 7);
+    grid.cell_fields = {{"c", Array::own(std::move(values))}};
+    FindFieldOptions keep;
+    keep.keep_cell_values = true;
+    const PointField own = find_field(grid, "c", keep).value(), mean = find_field(grid, "c").value();
+    EXPECT_EQ(own.cell_values.tuples(), grid.cells.count());
+    EXPECT_TRUE(mean.cell_values.empty());
+    const LinearGrid linear = linearize(grid).value();
+    const auto surface_of = [&](const PointField& field) {
+        return bytes_of(Contour::create({grid, field, {}, {}}).value().extract(3.2).value().surfaces[0].surface);
+    };
+    PointField extended = own;
+    extended.values = linear.extend(own.values, own.cell_values).value();
+    const double isovalue = 3.2;
+    const auto wanted = extract_direct(linear.grid, extended, std::span(&isovalue, 1)).value();
+    EXPECT_TRUE(surface_of(own) == bytes_of(wanted.surfaces[0].surface));
+    EXPECT_FALSE(surface_of(own) == surface_of(mean));
+    ContourOptions expected;
+    expected.surfaces = 1;
+    expected.expected_isovalues = {isovalue}; // all are split: a cell's own value may be beyond its corners'
+    EXPECT_TRUE(
+        surface_of(own) ==
+        bytes_of(Contour::create({grid, own, {}, {}}, expected).value().extract(3.2).value().surfaces[0].surface));
+}
+
 TEST(PolyhedralGrids, AverageCellFieldsAsTheCellsThatTheyAre) {
     Grid grid = made_grid("mixed", 4, {}, 1);
     grid.cell_fields = {cell_numbers(grid)};

@@ -110,6 +110,13 @@ def test_packed_grids_take_fields_and_points(sphere):
         isotet.PackedGrid()
 
 
+def test_grids_pack_themselves():
+    grid = isotet.make("kuhn", 6, ["sphere", "gyroid"])
+    packed = grid.pack("gyroid", source_cells=True)
+    assert np.array_equal(packed.contour(0.1).points, isotet.pack(grid, values="gyroid").contour(0.1).points)
+    assert packed.contour(0.1, source_cells=True).source_cells is not None
+
+
 def test_sessions_find_out_what_is_the_same(sphere):
     session = isotet.Contour(sphere, "sphere", surfaces=100, fields=[])
     assert session.method == "clusters"
@@ -224,6 +231,21 @@ def test_of_polyhedra_only_those_are_split_that_the_isovalue_meets():
     session = isotet.Contour(grid, "sphere", method="direct")
     assert same(once, session.contour(0.7))
     assert "have values on both sides of an isovalue" in once.notes[0]
+
+
+def test_centres_of_polyhedra_take_their_cells_values():
+    made = isotet.make("kelvin", 4, ["sphere"])
+    numbers = np.arange(len(made)) * 31 % 17
+    grid = isotet.Grid(made.points, made.cells, offsets=made.offsets, types=made.types, faces=made.faces,
+                       face_offsets=made.face_offsets, fields=made.fields, cell_fields={"number": numbers})  # fmt: skip
+    mean, own = grid.contour(8.5, "number"), grid.contour(8.5, "number", centre="own")
+    assert len(own.triangles) > len(mean.triangles)
+    session = isotet.Contour(grid, "number", centre="own")
+    assert np.array_equal(session.contour(8.5).points, own.points)
+    for arguments in ({"field": "sphere", "centre": "own"}, {"field": numbers, "centre": "own"},
+                      {"field": "number", "centre": "middle"}):  # fmt: skip
+        with pytest.raises(ValueError, match="centre is"):
+            grid.contour(8.5, **arguments)
 
 
 def test_points_are_merged():

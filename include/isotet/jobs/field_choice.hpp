@@ -16,6 +16,7 @@ namespace isotet::jobs {
 struct FieldChoice {
     std::string name; ///< empty: the only one there is
     bool cell_field = false;
+    bool own_centres = false; ///< of a cell field: points inside polyhedra have the values of their cells
 };
 
 /// A field as find_field() will look for it, and the arrays that it is made of.
@@ -43,6 +44,7 @@ Result<CarriedFields> choose_carried(const GridSource& source, const std::vector
 void add_names(std::vector<std::string>& names, const std::vector<std::string>& more);
 
 /// find_field() as a FieldChoice means it, with its note.
+/// Errors   as find_field(); invalid_argument: own values of centres are asked for of a point field
 Result<PointField> find_chosen(const Grid& grid, const std::string& name, const FieldChoice& choice, Caller& caller);
 
 /// Reads a time step into `grid`: what the field needs, and `beside`; all fields where none is named, of which the one
