@@ -18,20 +18,13 @@ namespace {
 constexpr std::size_t grain = 1 << 14;
 constexpr double left_out = -1; // a volume that no cell has
 
-double volume_of(const CellReader& cells, const PointReader& points, std::size_t cell) {
-    if (!is_contoured(cells.type(cell))) return left_out;
-    double volume = 0;
-    for (const Tet& tet : cells.tets(cell)) volume += std::abs(points.six_volumes(tet));
-    return volume;
-}
-
 Buffer<double> volumes_of(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
                           std::span<const double> known) {
     const PointReader points(grid.points);
     Buffer<double> volumes(cells.count());
     parallel_each(cells.count(), grain, [&](std::size_t cell) {
         if (std::isnan(scalar_at(values, scalar, cell))) volumes[cell] = left_out;
-        else volumes[cell] = known.empty() ? volume_of(cells, points, cell) : known[cell];
+        else volumes[cell] = known.empty() ? six_volumes_of(cells, points, cell) : known[cell];
     });
     return volumes;
 }
@@ -86,19 +79,11 @@ Array average(const CellReader& cells, const Buffer<double>& volumes, const Arra
 
 } // namespace
 
-std::vector<double> volumes_by_source(const LinearGrid& linear) {
-    const PointReader points(linear.grid.points);
-    const auto cells = CellReader::open(linear.grid);
-    std::vector<double> volumes(linear.user_cells, left_out);
-    if (!cells) return volumes;
-    const auto sources = linear.source_cells.as<std::uint64_t>();
-    for (std::size_t cell = 0; cell < cells->count(); ++cell) {
-        const double volume = volume_of(*cells, points, cell);
-        if (volume == left_out) continue;
-        double& sum = volumes[linear.source_cells.empty() ? cell : sources[cell]];
-        sum = sum == left_out ? volume : sum + volume;
-    }
-    return volumes;
+double six_volumes_of(const CellReader& cells, const PointReader& points, std::size_t cell) {
+    if (!is_contoured(cells.type(cell))) return left_out;
+    double volume = 0;
+    for (const Tet& tet : cells.tets(cell)) volume += std::abs(points.six_volumes(tet));
+    return volume;
 }
 
 Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar, bool by_value,

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include <isotet/grid.hpp>
-#include <isotet/linear_cells.hpp>
 
 #include "core/cells.hpp"
+#include "core/orientation.hpp"
 #include "core/scalar_of.hpp"
 
 namespace isotet::core {
@@ -29,7 +28,7 @@ namespace isotet::core {
 Array average_to_points(const Grid& grid, const CellReader& cells, const Array& values, Scalar scalar,
                         bool by_value = false, std::span<const double> volumes = {});
 
-/// The volumes of the user's cells, from those of the linear cells that they became; -1 where there is none.
-std::vector<double> volumes_by_source(const LinearGrid& linear);
+/// Six times the volume of a cell: the sum over its tets, each taken as positive; -1 for one that is not contoured.
+double six_volumes_of(const CellReader& cells, const PointReader& points, std::size_t cell);
 
 } // namespace isotet::core

@@ -34,12 +34,17 @@ std::string fault_of_point(const Grid& grid, std::uint64_t point) {
 }
 
 /// What is wrong with a cell; empty: nothing.
-std::string fault_of_polyhedron(const Grid& grid, const CellReader& cells, const FaceReader& faces, std::size_t cell) {
+/// `sound`   all points are: then a face's need no look beside that of fault_of_faces()
+std::string fault_of_polyhedron(const Grid& grid, const CellReader& cells, const FaceReader& faces, std::size_t cell,
+                                bool sound) {
     if (std::string fault = fault_of_faces(faces, cell, cells.points()); !fault.empty()) return fault;
     if (cells.type(cell) != polyhedron_type || faces.begin(cell) == faces.end(cell)) return {};
     const std::uint64_t first = cells.first(cell), corners = cells.corners(cell);
-    for (std::uint64_t i = first; i < first + corners; ++i)
+    for (std::uint64_t i = first; i < first + corners; ++i) {
+        if (sound && cells.corner(i) < cells.points()) continue;
         if (std::string fault = fault_of_point(grid, cells.corner(i)); !fault.empty()) return fault;
+    }
+    if (sound) return {};
     std::uint64_t at = faces.begin(cell) + 1;
     while (at < faces.end(cell))
         for (const std::uint64_t end = at + faces.at(at) + 1; ++at < end;)
@@ -96,10 +101,11 @@ Result<void> check_faces(const Grid& grid, const CellReader& cells, const Progre
     if (!faces) return faces.error();
     if (!faces->has_faces()) return {};
     std::atomic<std::size_t> lowest{std::numeric_limits<std::size_t>::max()};
+    const bool sound = all_points_are_sound(grid);
     parallel_pieces(cells.count(), 1 << 12, progress, [&](std::size_t begin, std::size_t end) {
         if (begin > lowest.load(std::memory_order_relaxed)) return;
         for (std::size_t cell = begin; cell < end; ++cell) {
-            if (fault_of_polyhedron(grid, cells, *faces, cell).empty()) continue;
+            if (fault_of_polyhedron(grid, cells, *faces, cell, sound).empty()) continue;
             std::size_t seen = lowest.load(std::memory_order_relaxed);
             while (cell < seen && !lowest.compare_exchange_weak(seen, cell, std::memory_order_relaxed)) {}
             return;
@@ -108,7 +114,7 @@ Result<void> check_faces(const Grid& grid, const CellReader& cells, const Progre
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "checking the faces was cancelled"};
     if (const std::size_t cell = lowest.load(); cell < cells.count())
         return invalid_data(fmt::format("cells[{}] ({}) {}", cell, name_of_cell_type(cells.type(cell)),
-                                        fault_of_polyhedron(grid, cells, *faces, cell)));
+                                        fault_of_polyhedron(grid, cells, *faces, cell, sound)));
     return {};
 }
 

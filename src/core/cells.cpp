@@ -123,7 +123,8 @@ bool is_sound(const Grid& grid, std::uint64_t point) {
                                                      : is_sound(grid.points.as<double>().data() + 3 * point);
 }
 
-/// True for nearly every grid; then the points of each cell need no look.
+} // namespace
+
 bool all_points_are_sound(const Grid& grid) {
     std::atomic<bool> sound{true};
     parallel_ranges(grid.points.tuples(), 1 << 16, [&](std::size_t begin, std::size_t end) {
@@ -133,6 +134,8 @@ bool all_points_are_sound(const Grid& grid) {
     });
     return sound;
 }
+
+namespace {
 
 /// Whether the cells [begin, end), four point numbers each, use only points that are there.
 bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::size_t end) {

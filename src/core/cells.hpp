@@ -148,6 +148,9 @@ private:
     bool only_tets_ = false; ///< every cell is a tetrahedron by declaration
 };
 
+/// Whether all coordinates are finite and below 2^91, as in nearly every grid: then the points of each cell need no look.
+bool all_points_are_sound(const Grid& grid);
+
 /// Checks the content of all cells: offsets, numbers of corners, point numbers, and the coordinates of the points that
 /// contoured cells use (finite, below 2^91). Parallel; one pass.
 ///

@@ -67,9 +67,9 @@ Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar,
     if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
     if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
     if (has_cells_to_linearize(grid.cells)) {
-        const auto linear = linearize(bare, {}, {.threads = core::threads_here()});
-        if (!linear) return linear.error();
-        return core::average_to_points(bare, *cells, field.values, scalar, by_value, core::volumes_by_source(*linear));
+        const auto volumes = relative_volumes(bare, {.threads = core::threads_here()});
+        if (!volumes) return volumes.error();
+        return core::average_to_points(bare, *cells, field.values, scalar, by_value, *volumes);
     }
     if (by_value && !grid.point_numbers.empty())
         if (auto numbers = core::check_point_numbers(bare); !numbers) return numbers.error();

@@ -2,6 +2,7 @@
 #include "linear/polyhedron.hpp"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "linear/known_shape.hpp"
@@ -22,12 +23,25 @@ constexpr std::uint8_t vtk_type_of(core::CellKind kind) {
 
 } // namespace
 
-bool PolyhedronSplitter::keep_known_shape(std::size_t cell, Parts& out) {
+std::optional<core::WholeCell> PolyhedronSplitter::find_known_shape(std::size_t cell) {
     listed_.clear();
     const std::uint64_t first = cells_.first(cell), corners = cells_.corners(cell);
     if (corners <= 8)
         for (std::uint64_t i = 0; i < corners; ++i) listed_.push_back(cells_.corner(first + i));
-    const auto known = known_shape(shell_, listed_, points_);
+    return known_shape(shell_, listed_, points_);
+}
+
+double PolyhedronSplitter::six_volumes(std::size_t cell) {
+    if (!shell_.read(faces_, cell, points_)) return -1;
+    const auto known = find_known_shape(cell);
+    if (!known) return shell_.six_volumes(points_);
+    double sum = 0;
+    for (const core::Tet& tet : core::split_cell(*known)) sum += std::abs(points_.six_volumes(tet));
+    return sum;
+}
+
+bool PolyhedronSplitter::keep_known_shape(std::size_t cell, Parts& out) {
+    const auto known = find_known_shape(cell);
     if (!known) return false;
     out.add_cell(vtk_type_of(known->kind), std::span(known->corners).first(core::corner_count(known->kind)), cell);
     ++out.report.known_shapes;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "linear/centre.hpp"
@@ -34,7 +35,11 @@ public:
     /// Adds what the cell becomes; an open one becomes a cell of type 0.
     void split(std::size_t cell, Parts& out);
 
+    /// Six times the volume; -1 of an open one.
+    double six_volumes(std::size_t cell);
+
 private:
+    std::optional<core::WholeCell> find_known_shape(std::size_t cell);
     bool keep_known_shape(std::size_t cell, Parts& out);
     void cut_faces();
     void split_around_centre(std::size_t cell, Parts& out);

@@ -40,13 +40,14 @@ public:
         bool forward; ///< from the lower point to the higher one, in the loop
     };
     const std::vector<Edge>& edges() const { return edges_; }
+    /// Enclosed by the faces, each a fan from the first point of its loop.
+    double six_volumes(const core::PointReader& points) const;
 
 private:
     bool read_loops(const core::FaceReader& faces, std::size_t cell);
     void sort_loops();
     bool find_edges();
     bool wind();
-    double six_volumes(const core::PointReader& points) const;
 
     std::vector<std::uint64_t> loops_, points_, unsorted_;
     std::vector<std::size_t> ends_, unsorted_ends_;
