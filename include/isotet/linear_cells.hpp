@@ -18,7 +18,8 @@ namespace isotet {
 /// Points made of the user's, D of them. Derived point d is the sum of weights[i] times point points[i] for
 /// first[d] <= i < first[d + 1]; its weights have the sum 1.
 ///
-/// `first`     uint64, D + 1, ascending from 0;  `points`  uint64, user's point numbers;  `weights`  float64
+/// `first`     uint64, D + 1, ascending from 0;  `points`  uint64, user's point numbers;  `weights`  float64, or empty: each is
+///             1 over the number of points of its row
 struct DerivedPoints {
     Array first;
     Array points;

@@ -69,7 +69,12 @@ Array extended(const DerivedPoints& derived, const RefinedPoints& refined, std::
                 const auto at = [&](std::size_t i) {
                     return static_cast<double>(from[points[first[row] + i] * components + c]);
                 };
-                double value = linear::weighted_sum(count, [&](std::size_t i) { return weights[first[row] + i]; }, at);
+                const double equal = 1 / static_cast<double>(count);
+                double value =
+                    weights.empty()
+                        ? linear::weighted_sum(
+                              count, [&](std::size_t) { return equal; }, at)
+                        : linear::weighted_sum(count, [&](std::size_t i) { return weights[first[row] + i]; }, at);
                 if (inside) value = linear::within(value, count, at);
                 to[(users + row) * components + c] = static_cast<To>(value);
             }

@@ -150,9 +150,20 @@ private:
         cells.types = std::move(types).to_array();
     }
 
+    /// Whether all weights are those of the mean of their row.
+    bool are_means() const {
+        return std::ranges::all_of(blocks_, [](const KeptParts& block) {
+            for (std::size_t i = 0; i < block.term_counts_.size(); ++i) // one weight stands for a row of equal ones
+                if (!block.alike_[i] || block.term_weights_[i] != 1 / static_cast<double>(block.term_counts_[i]))
+                    return false;
+            return true;
+        });
+    }
+
     void join_sources_and_rows(LinearGrid& out) {
+        const bool means = out.report.high_degree == 0 && are_means(); // of nearly every grid
         core::Buffer<std::uint64_t> sources(end().cell), first(end().row + 1), points(end().term);
-        core::Buffer<double> weights(end().term);
+        core::Buffer<double> weights(means ? 0 : end().term);
         first[0] = 0;
         core::parallel_each(blocks_.size(), 1, [&](std::size_t b) {
             const KeptParts& block = blocks_[b];
@@ -164,8 +175,8 @@ private:
             const double* weight = block.term_weights_.data();
             for (std::size_t i = 0; i < block.term_counts_.size(); ++i) {
                 const std::uint32_t count = block.term_counts_[i];
-                if (block.alike_[i]) std::fill_n(weights.data() + sum, count, *weight);
-                else std::copy_n(weight, count, weights.data() + sum);
+                if (block.alike_[i] && !means) std::fill_n(weights.data() + sum, count, *weight);
+                else if (!means) std::copy_n(weight, count, weights.data() + sum);
                 weight += block.alike_[i] ? std::min(count, 1U) : count;
                 first[at.row + i + 1] = sum += count;
             }
@@ -174,7 +185,8 @@ private:
             blocks_[b] = {};
         });
         out.source_cells = std::move(sources).to_array();
-        out.derived = {std::move(first).to_array(), std::move(points).to_array(), std::move(weights).to_array()};
+        out.derived = {std::move(first).to_array(), std::move(points).to_array(), {}};
+        if (!means) out.derived.weights = std::move(weights).to_array();
     }
 
     std::vector<KeptParts>& blocks_;

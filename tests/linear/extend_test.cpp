@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/linear_cells.hpp>
+#include <isotet/make.hpp>
 
 #include "linear/polyhedral_grid.hpp"
 #include "support/small_grid.hpp"
@@ -50,6 +51,30 @@ TEST(Extend, HasNoDataWhereAPointHasNone) {
                                    hole) != of.begin() + static_cast<std::ptrdiff_t>(first[row + 1]);
         EXPECT_EQ(std::isnan(out.at(linear.user_points + row)), has);
     }
+}
+
+TEST(Extend, NeedsNoWeightsForMeans) {
+    const Grid foam = make_grid({.shape = "kelvin", .side = 3, .fields = {}}).value();
+    const LinearGrid linear = linearize(foam).value();
+    ASSERT_EQ(linear.report.moved_centres, 0u);
+    ASSERT_GT(linear.derived.count(), 0u);
+    EXPECT_TRUE(linear.derived.weights.empty());
+    std::vector<double> values(linear.user_points);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * i % 101);
+    const auto first = linear.derived.first.as<std::uint64_t>(), of = linear.derived.points.as<std::uint64_t>();
+    const Array out = linear.extend(Array::borrow(values)).value();
+    LinearGrid weighted = linear; // with the same weights written out
+    std::vector<double> weights;
+    for (std::size_t row = 0; row < linear.derived.count(); ++row) {
+        const std::size_t count = first[row + 1] - first[row];
+        double sum = 0;
+        for (std::uint64_t i = first[row]; i < first[row + 1]; ++i) sum += values[of[i]];
+        EXPECT_NEAR(out.at(values.size() + row), sum / static_cast<double>(count), 1e-12);
+        weights.insert(weights.end(), count, 1 / static_cast<double>(count));
+    }
+    weighted.derived.weights = Array::own(std::move(weights));
+    const Array same = weighted.extend(Array::borrow(values)).value();
+    EXPECT_TRUE(std::ranges::equal(out.as<double>(), same.as<double>()));
 }
 
 TEST(Extend, GivesCentresTheValuesOfTheirCells) {

@@ -182,7 +182,7 @@ TEST(Polyhedra, GiveTheSameBytesForAnyNumberOfThreads) {
         const LinearGrid linear = linearize(grid, {.known_shapes = false}, {.threads = threads}).value();
         std::string bytes;
         for (const Array* array : {&linear.grid.points, &linear.grid.cells.connectivity, &linear.grid.cells.offsets,
-                                   &linear.source_cells, &linear.derived.weights})
+                                   &linear.source_cells, &linear.derived.points, &linear.derived.weights})
             append_bytes(bytes, *array);
         if (first.empty()) first = bytes;
         EXPECT_TRUE(bytes == first) << threads << " threads";

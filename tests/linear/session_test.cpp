@@ -58,7 +58,7 @@ TEST(PolyhedralSession, StoresOnlyWhatChanges) {
     const Grid grid = octree_grid({.seed = 4});
     auto session = Contour::create({grid, axis_field(grid, 0), {}, {}}, {.method = Method::clusters}).value();
     ASSERT_TRUE(session.extract(3));
-    const auto table = session.linear_grid()->derived.weights.data();
+    const auto table = session.linear_grid()->derived.points.data();
     EXPECT_EQ(session.set({grid, axis_field(grid, 0), {}, {}}).value(), ContourUpdate::nothing);
     EXPECT_EQ(session.set({grid, axis_field(grid, 1), {}, {}}).value(), ContourUpdate::field);
     ASSERT_TRUE(session.extract(3));
@@ -67,7 +67,7 @@ TEST(PolyhedralSession, StoresOnlyWhatChanges) {
     for (double& x : points) x = 1.5 * x + 1;
     moved.points = Array::own(std::move(points), 3);
     EXPECT_EQ(session.set({moved, axis_field(moved, 1), {}, {}}).value(), ContourUpdate::points);
-    EXPECT_EQ(session.linear_grid()->derived.weights.data(), table) << "the same derived points";
+    EXPECT_EQ(session.linear_grid()->derived.points.data(), table) << "the same derived points";
     const Surface surface = session.extract(5.2).value().surfaces[0].surface;
     ASSERT_GT(surface.vertex_count(), 0u);
     for (std::size_t v = 0; v < surface.vertex_count(); ++v) ASSERT_NEAR(surface.positions.at(v, 1), 5.2, 1e-5);
