@@ -2,7 +2,6 @@
 #include "option_tree.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -149,6 +148,16 @@ std::string unknown_option(const CLI::App& program, const CommandText& command) 
     return {};
 }
 
+/// Whether some command has the option -c.
+bool has_short_option(const CLI::App& app, char c) {
+    const auto has_it = [&](const CLI::Option* option) { return option->check_sname(std::string(1, c)); };
+    const std::vector<const CLI::Option*> own = app.get_options();
+    if (std::any_of(own.begin(), own.end(), has_it)) return true;
+    const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
+    return std::any_of(commands.begin(), commands.end(),
+                       [&](const CLI::App* command) { return has_short_option(*command, c); });
+}
+
 } // namespace
 
 void refuse_value(const std::string& names, std::string_view given, std::string_view rule) {
@@ -292,7 +301,7 @@ bool OptionTree::has_command(const std::string& word) const { return find(*progr
 Result<void> OptionTree::parse(const std::vector<std::string>& words) {
     std::vector<std::string> backwards(words.rbegin(), words.rend() - (words.empty() ? 0 : 1));
     for (std::string& word : backwards) // CLI11 takes -i=3 as the value "=3"
-        if (word.size() > 3 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) && word[2] == '=')
+        if (word.size() > 3 && word[0] == '-' && word[2] == '=' && has_short_option(*program_, word[1]))
             word.erase(2, 1);
     try {
         program_->parse(backwards); // CLI11 takes the words from the back

@@ -14,7 +14,9 @@
 #include "io/own/legacy_vtk.hpp"
 #include "io/own/old_hexahedra.hpp"
 #include "io/own/text_scanner.hpp"
+#include "io/own/vtk_xml/columns.hpp"
 #include "io/own/vtk_xml/load.hpp"
+#include "io/own/vtk_xml/uniform_cells.hpp"
 
 namespace isotet::io {
 namespace {

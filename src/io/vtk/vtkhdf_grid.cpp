@@ -9,7 +9,7 @@
 #include "core/cell_faces.hpp"
 #include "io/own/shared_faces.hpp"
 #include "io/own/vtk_xml/columns.hpp"
-#include "io/own/vtk_xml/load.hpp"
+#include "io/own/vtk_xml/uniform_cells.hpp"
 #include "io/vtk/hdf5_array.hpp"
 #include "io/vtk/vtk_grid.hpp"
 

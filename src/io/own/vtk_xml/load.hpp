@@ -42,9 +42,6 @@ Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options
 /// Points and cells of all pieces of an UnstructuredGrid, and its fields.
 Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress);
 
-/// Takes types and offsets away where they say nothing: all cells of one linear kind, one after another.
-ISOTET_API void simplify(Cells& cells);
-
 /// Points and hexahedra of the structured kinds, and their fields. A flat grid has no hexahedra and no cell fields.
 Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress,
                               std::vector<std::string>& notes);
