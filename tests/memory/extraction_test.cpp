@@ -2,6 +2,7 @@
 // Extraction takes no more memory than its header promises, and than it predicts: allocations are counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
