@@ -115,6 +115,21 @@ TEST_P(CellsOfAFile, KeepBothWhereTheLastCellIsLonger) { expect_kept({.last_type
 TEST_P(CellsOfAFile, KeepBothWhereOnlyTheLastOffsetDiffers) { expect_kept({.last_corners = 5}); }
 TEST_P(CellsOfAFile, KeepBothWhereTheOneTypeIsNotContoured) { expect_kept({.type = 9, .last_type = 9}); }
 
+TEST(LegacyCells, WithoutTypesTakeNothingOfWhatFollows) {
+    const std::string text = "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n" +
+                             bytes_of(std::vector<float>(15, 0.5F), true) +
+                             "\nCELL_TYPES 0\nPOINT_DATA 5\nSCALARS f float 1\nLOOKUP_TABLE default\n" +
+                             bytes_of(std::vector<float>{1, 2, 3, 4, 5}, true) + "\n";
+    for (const io::Depth depth : {io::Depth::arrays, io::Depth::description}) {
+        const auto loaded = io::load_legacy(io::ByteSource(text), {}, depth, {});
+        ASSERT_TRUE(loaded) << loaded.error().message;
+        ASSERT_EQ(loaded->info.fields.size(), 1u);
+        EXPECT_EQ(loaded->info.fields[0].name, "f");
+        if (depth == io::Depth::description) continue;
+        EXPECT_EQ(values_of(loaded->pieces.at(0).grid.point_fields.at(0).values), (std::vector<double>{1, 2, 3, 4, 5}));
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, CellsOfAFile, testing::Values(false, true),
                          [](const auto& format) { return format.param ? "Legacy" : "Vtu"; });
 

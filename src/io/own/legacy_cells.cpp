@@ -185,6 +185,7 @@ private:
 
     /// The type of all cells of a binary file; nothing, and the place as before, where there are several.
     Result<std::optional<std::uint8_t>> read_one_type(std::uint64_t count) {
+        if (count == 0) return std::optional<std::uint8_t>();
         constexpr std::int32_t unknown = -1;
         std::atomic<std::int32_t> first = unknown;
         const auto same = values_.read_while<std::int32_t>(
@@ -196,7 +197,7 @@ private:
                 return different == 0 && own >= 0 && own <= 255;
             });
         if (!same) return same.error();
-        return *same && count > 0 ? std::optional(static_cast<std::uint8_t>(first.load())) : std::nullopt;
+        return *same ? std::optional(static_cast<std::uint8_t>(first.load())) : std::nullopt;
     }
 
     LegacyValues& values_;
