@@ -430,8 +430,7 @@ void add_centre(const Command& command, FieldChoice& field) {
         },
         "mean|own",
         "Polyhedra, of a cell field: the value at the point inside that a polyhedron is split around is the mean of "
-        "its points "
-        "(mean, the default), or the cell's own (own): sharper, and beyond the values around");
+        "its points (mean, the default), or the cell's own (own): sharper, and beyond the values around");
 }
 
 Option add_isovalues(const Command& command, std::vector<double>& isovalues) {

@@ -30,7 +30,7 @@ class ISOTET_API ActiveCellFilter {
 public:
     /// `points`      of the whole grid, as Grid::points
     /// `field`       one scalar a point
-    /// `isovalues`   at least one; those that will be extracted, in the same order
+    /// `isovalues`   at least one; those that will be extracted
     /// `options`     those of the extraction. Cell fields, source cells and gradient normals need all cells
     ///
     /// Cost     two passes over points and values for each isovalue

@@ -5,8 +5,6 @@
 #include <new>
 #include <utility>
 
-#include <fmt/core.h>
-
 #include "api/active_cells.hpp"
 #include "api/finish.hpp"
 #include "core/cells.hpp"
@@ -47,14 +45,7 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
         grid.cells.uniform_type = type;
         const auto cells = core::CellReader::open(grid);
         if (!cells) return cells.error();
-        if (field.values.tuples() != points.tuples() || field.values.components() != 1)
-            return invalid_argument(fmt::format("field '{}' has {} values of {} components, but the grid has {} points",
-                                                field.name, field.values.tuples(), field.values.components(),
-                                                points.tuples()));
-        for (const Field& carried : extract.point_fields)
-            if (carried.values.tuples() != points.tuples())
-                return invalid_argument(fmt::format("point field '{}' has {} tuples, but the grid has {} points",
-                                                    carried.name, carried.values.tuples(), points.tuples()));
+        if (auto ok = api::check_point_fields(points.tuples(), field, extract.point_fields); !ok) return ok.error();
         const ops::DirectInput input{grid, *cells, field, extract.point_fields, nullptr};
         ops::DirectRequest request;
         request.isovalues = isovalues;

@@ -19,19 +19,10 @@ namespace isotet {
 
 namespace {
 
-/// Fields against the grid; the contoured one in the words of pack().
+/// Fields against the grid.
 Result<void> check_fields(const Grid& grid, const PointField& field, const ExtractOptions& options) {
-    const std::size_t points = grid.points.tuples(), cells = grid.cells.count();
-    if (field.values.components() != 1 && !field.values.empty())
-        return invalid_argument(fmt::format("field '{}' has {} components, but the contoured field must have 1",
-                                            field.name, field.values.components()));
-    if (field.values.tuples() != points)
-        return invalid_argument(fmt::format("field '{}' has {} values, but the grid has {} points", field.name,
-                                            field.values.tuples(), points));
-    for (const Field& carried : options.point_fields)
-        if (carried.values.tuples() != points)
-            return invalid_argument(fmt::format("point field '{}' has {} tuples, but the grid has {} points",
-                                                carried.name, carried.values.tuples(), points));
+    if (auto ok = api::check_point_fields(grid.points.tuples(), field, options.point_fields); !ok) return ok;
+    const std::size_t cells = grid.cells.count();
     for (const Field& carried : options.cell_fields)
         if (carried.values.tuples() != cells)
             return invalid_argument(fmt::format("cell field '{}' has {} tuples, but the grid has {} cells",
@@ -134,6 +125,20 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
 }
 
 } // namespace
+
+Result<void> api::check_point_fields(std::size_t points, const PointField& field, std::span<const Field> carried) {
+    if (field.values.components() != 1 && !field.values.empty())
+        return invalid_argument(fmt::format("field '{}' has {} components, but the contoured field must have 1",
+                                            field.name, field.values.components()));
+    if (field.values.tuples() != points)
+        return invalid_argument(fmt::format("field '{}' has {} values, but the grid has {} points", field.name,
+                                            field.values.tuples(), points));
+    for (const Field& other : carried)
+        if (other.values.tuples() != points)
+            return invalid_argument(fmt::format("point field '{}' has {} tuples, but the grid has {} points",
+                                                other.name, other.values.tuples(), points));
+    return {};
+}
 
 Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& field, std::span<const double> isovalues,
                                         const DirectOptions& options, const Run& run) {

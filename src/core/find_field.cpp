@@ -12,6 +12,7 @@
 #include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "core/renumber.hpp"
 #include "core/scalar_of.hpp"
 
 namespace isotet {
@@ -65,12 +66,12 @@ Result<Array> average(const Grid& grid, const Field& field, core::Scalar scalar,
     const auto cells = core::CellReader::open(bare);
     if (!cells) return cells.error();
     if (auto fits = check_length(field, "cell", cells->count()); !fits) return fits.error();
-    if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
-    if (has_cells_to_linearize(grid.cells)) {
+    if (has_cells_to_linearize(grid.cells)) { // which checks the cells, too
         const auto volumes = relative_volumes(bare, {.threads = core::threads_here()});
         if (!volumes) return volumes.error();
         return core::average_to_points(bare, *cells, field.values, scalar, by_value, *volumes);
     }
+    if (auto sound = core::check_cells(bare, *cells, {}); !sound) return sound.error();
     if (by_value && !grid.point_numbers.empty())
         if (auto numbers = core::check_point_numbers(bare); !numbers) return numbers.error();
     return core::average_to_points(bare, *cells, field.values, scalar, by_value);

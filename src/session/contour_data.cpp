@@ -56,6 +56,20 @@ void Contour::Data::note_new_cells() {
     std::ranges::move(session::notes_on(linear.grid()->refinement), std::back_inserter(notes));
 }
 
+/// Without an input, and without what was made of the last one.
+void Contour::Data::start_over(FieldSample next_sample, const ContourOptions& next_options) {
+    grid.reset();
+    packed.reset();
+    range.reset();
+    linear = {};
+    met = {};
+    curved = {};
+    input = {};
+    sample = std::move(next_sample);
+    options = next_options;
+    behind = ContourUpdate::grid;
+}
+
 /// Starts over with an input of which only cells that the expected isovalues meet are made linear, unless all must be, for
 /// what is asked for, or since no cell is met: then nothing is done.
 Result<Contour::Data::Met> Contour::Data::take_met(const ContourInput& next, const ContourOptions& next_options) {
@@ -68,16 +82,9 @@ Result<Contour::Data::Met> Contour::Data::take_met(const ContourInput& next, con
     std::optional<ContourInput> made = *std::move(some);
     Result<FieldSample> next_sample = FieldSample::create(made->grid, made->field, next_options.split_cells);
     if (!next_sample) return next_sample.error();
-    grid.reset();
-    packed.reset();
-    range.reset();
-    linear = {};
-    curved = {};
+    start_over(*std::move(next_sample), next_options);
     met = std::move(taken);
     input = *std::move(made);
-    sample = *std::move(next_sample);
-    options = next_options;
-    behind = ContourUpdate::grid;
     std::ranges::move(met.grid()->report.notes(), std::back_inserter(notes));
     update_seconds += session::seconds_since(start);
     return Met::some;
@@ -116,16 +123,8 @@ Result<void> Contour::Data::take_curved(ContourInput next, const ContourOptions&
     const ContourInput& corners = taken.corners();
     Result<FieldSample> next_sample = FieldSample::create(corners.grid, corners.field, next_options.split_cells);
     if (!next_sample) return next_sample.error();
-    grid.reset();
-    packed.reset();
-    range.reset();
-    linear = {};
-    met = {};
-    input = {};
+    start_over(*std::move(next_sample), next_options);
     curved = std::move(taken);
-    sample = *std::move(next_sample);
-    options = next_options;
-    behind = ContourUpdate::grid;
     return {};
 }
 
