@@ -126,13 +126,16 @@ TEST_F(Program, KilledAtAnyMomentItLeavesTheOldFileOrTheNewOne) {
         return std::vector<std::string>{program_path(), "make", "kuhn", "--side", side, "-o", out};
     };
     ASSERT_EQ(run_program(make("3", path("old.vtu"))).status, 0);
+    const auto start = std::chrono::steady_clock::now();
     ASSERT_EQ(run_program(make("30", path("new.vtu"))).status, 0);
+    const std::chrono::duration<double> whole_run = std::chrono::steady_clock::now() - start;
     const std::string old_content = content_of(path("old.vtu")), new_content = content_of(path("new.vtu"));
+    constexpr int trials = 24;
     int killed = 0;
-    for (int trial = 0; trial < 12; ++trial) {
+    for (int trial = 0; trial < trials; ++trial) {
         put_content(path("out.vtu"), old_content);
         std::vector<std::string> command = make("30", path("out.vtu"));
-        const std::string moment = fmt::format("{:.3f}", 0.01 + 0.012 * trial);
+        const std::string moment = fmt::format("{:.6f}", whole_run.count() * (trial + 0.5) / trials);
         command.insert(command.begin(), {"/usr/bin/timeout", "-s", "KILL", moment});
         killed += run_program(command).status != 0;
         const std::string content = content_of(path("out.vtu"));
