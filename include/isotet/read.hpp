@@ -35,7 +35,7 @@ struct FieldInfo {
 };
 
 /// A part of a file that can be read without the others: an element block of Exodus, a zone of CGNS, a part of EnSight,
-/// a block of another of VTK's readers.
+/// a block of a VTM or of another of VTK's readers.
 struct BlockInfo {
     std::int64_t number = 0; ///< of the file where it numbers blocks, else from 1 in its order
     std::string name;        ///< empty where the file has none; "Base/Zone" where blocks are in others

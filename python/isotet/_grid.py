@@ -503,7 +503,7 @@ def read(path: str | os.PathLike[str], *, fields: Iterable[str] | None = None, c
          step: int | None = None, blocks: Iterable[str | int] = (), format: str = "", merge_pieces: bool = True,
          allow_outside: bool = False, displace: str = "", reader_program: str = "",
          progress: Progress | None = None) -> Grid:  # fmt: skip
-    """Reads a grid: VTU, PVTU, legacy VTK, Gmsh, Medit, TetGen, Gocad, GRDECL and more (`formats`).
+    """Reads a grid: VTU, PVTU, VTM, legacy VTK, Gmsh, Medit, TetGen, Gocad, GRDECL and more (`formats`).
 
     path, format
         The file; its format is found out by its content, then its name, unless it is named.

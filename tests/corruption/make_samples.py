@@ -4,7 +4,7 @@
     python3 tests/corruption/make_samples.py tests/corruption/samples
 
 Needs VTK's Python package, which writes VTK's own formats: 9.4 or later for VTKHDF. Polyhedra in
-other formats are written by make_polyhedral_samples.cpp.
+other formats are written by make_polyhedral_samples.cpp; blocks.vtm and times.vtm.series are text that names these files.
 """
 import os
 import struct

@@ -97,7 +97,7 @@ TEST_F(IndexFiles, UrlsAreRefusedAlways) {
 
 TEST_F(IndexFiles, AnIndexThatNamesItselfIsRefused) {
     EXPECT_NE(error_of("case/a.pvtu", pvtu({"a.pvtu"})).find("names itself"), std::string::npos);
-    EXPECT_NE(error_of("case/a.pvd", pvd({{"0", "a.pvd"}})).find("only .vtu, .pvtu"), std::string::npos);
+    EXPECT_NE(error_of("case/a.pvd", pvd({{"0", "a.pvd"}})).find("only .vtu, .vti"), std::string::npos);
 }
 
 TEST_F(IndexFiles, APieceThatIsMissingOrNoFileIsAnErrorThatNamesIt) {

@@ -1,8 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/own/loaded.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "io/own/escape.hpp"
-#include "io/own/loaded.hpp"
 
 namespace isotet::io {
 
@@ -12,8 +17,20 @@ void announce(FileInfo& info, FieldInfo field) {
     info.fields.push_back(std::move(field));
 }
 
+void append(Loaded& whole, Loaded part) {
+    for (FieldInfo& field : part.info.fields) announce(whole.info, std::move(field));
+    std::ranges::move(part.info.files, std::back_inserter(whole.info.files));
+    std::ranges::move(part.pieces, std::back_inserter(whole.pieces));
+    std::ranges::move(part.notes, std::back_inserter(whole.notes));
+    whole.cells += part.cells;
+}
+
 Error broken(const std::string& path, std::string_view what) {
     return {ErrorCode::invalid_data, fmt::format("{}: {}", escaped(path), what)};
+}
+
+Error in_file(const std::string& path, const Error& error) {
+    return error.code == ErrorCode::invalid_data ? broken(path, error.message) : error;
 }
 
 } // namespace isotet::io

@@ -2,6 +2,7 @@
 // What readers of files in pieces give, before the pieces are joined to one grid.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,11 +24,14 @@ struct Piece {
     Array cell_ids;                                  ///< empty, or a global number for each cell
     std::vector<std::uint8_t> left_out;              ///< empty, or nonzero for each ghost or blanked cell
     std::optional<std::uint64_t> cells_in_file = {}; ///< where the grid has only active cells
+    /// Of a structured grid: first and last point along each axis, as the file numbers them.
+    std::optional<std::array<std::int64_t, 6>> extent = {};
 };
 
 struct Loaded {
     FileInfo info;
     std::size_t step = 0;
+    std::uint64_t cells = 0; ///< that a VTK XML file announces, of all types
     std::vector<Piece> pieces;
     std::vector<std::string> notes;
 };
@@ -38,6 +42,12 @@ enum class Depth { description, arrays };
 /// Adds a field to the description unless it is there.
 ISOTET_API void announce(FileInfo& info, FieldInfo field);
 
+/// Makes the pieces of `part` further ones of `whole`, with its fields, files and notes.
+void append(Loaded& whole, Loaded part);
+
 ISOTET_API Error broken(const std::string& path, std::string_view what);
+
+/// An error about content, with the path of its file in front; others as they are.
+Error in_file(const std::string& path, const Error& error);
 
 } // namespace isotet::io

@@ -177,6 +177,7 @@ Format grid_format(const char* name, const char* title, std::vector<std::string>
 std::span<const GridReader> own_readers() {
     static const std::vector<GridReader> readers = [] {
         std::vector<GridReader> all = vtk_xml_readers();
+        all.push_back(series_reader());
         all.push_back(legacy_vtk_reader());
         all.push_back(openfoam_reader());
         all.push_back(grdecl_reader());

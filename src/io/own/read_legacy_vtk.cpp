@@ -154,20 +154,16 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     return loaded;
 }
 
-namespace {
-
 Result<Loaded> load_legacy_file(const std::string& path, const ReadOptions& options, Depth depth,
                                 const Progress& progress) {
     const auto source = ByteSource::open(path);
     if (!source) return source.error();
     auto loaded = load_legacy(*source, options, depth, progress);
-    if (!loaded) return loaded.error().code == ErrorCode::invalid_data ? broken(path, loaded.error().message) : loaded;
+    if (!loaded) return in_file(path, loaded.error());
     for (Piece& piece : loaded->pieces) piece.name = path;
     loaded->info.format = "vtk";
     return loaded;
 }
-
-} // namespace
 
 GridReader legacy_vtk_reader() {
     GridReader reader;

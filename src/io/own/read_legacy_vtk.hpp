@@ -15,4 +15,8 @@ GridReader legacy_vtk_reader();
 /// Errors   invalid_data: polygon data; as read_legacy_vtk(); cancelled
 Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options, Depth depth, const Progress& progress);
 
+/// The same of a file, whose path its errors and its piece name.
+Result<Loaded> load_legacy_file(const std::string& path, const ReadOptions& options, Depth depth,
+                                const Progress& progress);
+
 } // namespace isotet::io

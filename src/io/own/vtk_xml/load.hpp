@@ -1,9 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// VTU, PVTU, VTI, VTR and VTS, in this process and on all threads.
+// VTU, VTI, VTR and VTS, alone and in pieces, in this process and on all threads.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,16 +36,50 @@ Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadO
 Result<Loaded> load_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                          bool ids, const Progress& progress);
 
-/// An index of VTU files, which are read side by side.
-Result<Loaded> load_parallel(const std::string& path, const ReadOptions& options, Depth depth,
-                             const Progress& progress);
+/// One of several files that make one grid.
+struct File {
+    std::string path;
+    std::string_view type;
+    Depth depth = Depth::arrays;
+};
+
+/// Reads files side by side, with global numbers to join them by.
+Result<std::vector<Loaded>> load_files(std::span<const File> files, const ReadOptions& options,
+                                       const Progress& progress);
+
+/// All pieces, one after another. That structured grids became hexahedra is told once.
+Loaded put_together(std::vector<Loaded> parts);
+
+/// The type of the pieces of an index: "ImageData" for "PImageData".
+inline std::string_view type_of_pieces(std::string_view type) { return type.substr(1); }
+
+/// The files that an index of type PUnstructuredGrid, PImageData and so on names.
+///
+/// Errors   invalid_data: it is of another type, or names none; as named_file()
+Result<std::vector<std::string>> files_of_pieces(const std::string& path, std::string_view type, bool allow_outside,
+                                                 const Progress& progress);
+
+/// The grid of such an index.
+Result<Loaded> load_pieces(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
+                           const Progress& progress);
 
 /// Points and cells of all pieces of an UnstructuredGrid, and its fields.
 Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress);
 
+/// How many cells an UnstructuredGrid announces; of a structured kind as many hexahedra as it stands for.
+Result<std::uint64_t> count_unstructured(const Document& document);
+Result<std::uint64_t> count_structured(const Document& document);
+
 /// Points and hexahedra of the structured kinds, and their fields. A flat grid has no hexahedra and no cell fields.
 Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress,
                               std::vector<std::string>& notes);
+
+/// Leaves out cells of structured pieces that an earlier one has, too: their boxes may overlap, with or without marks of
+/// ghost cells.
+///
+/// Errors   invalid_data when the pieces lie far apart; out_of_memory
+/// Cost     one byte and one pass for each cell of the box around them
+Result<void> leave_out_overlaps(std::span<Loaded> parts);
 
 /// A grid of so many points along each axis, whose cells are implied.
 struct GridSize {

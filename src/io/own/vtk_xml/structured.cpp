@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // VTI, VTR and VTS: boxes of points whose cells are implied. Each piece is a box within the whole one.
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -263,6 +264,59 @@ Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& not
     return cells;
 }
 
+Result<std::uint64_t> count_structured(const Document& document) {
+    const auto whole = extent_of(document.primary(), "WholeExtent");
+    if (!whole) return whole.error();
+    const GridSize size = size_of_box(*whole);
+    if (size.x < 2 || size.y < 2 || size.z < 2) return std::uint64_t{0};
+    return (size.x - 1) * (size.y - 1) * (size.z - 1);
+}
+
+Result<void> leave_out_overlaps(std::span<Loaded> parts) {
+    std::vector<Piece*> pieces;
+    std::vector<Extent> boxes;
+    Extent whole;
+    std::uint64_t total = 0;
+    for (Loaded& part : parts)
+        for (Piece& piece : part.pieces) {
+            if (!piece.extent || piece.grid.cells.count() == 0) continue;
+            Extent box;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                box.first[axis] = (*piece.extent)[2 * axis];
+                box.last[axis] = (*piece.extent)[2 * axis + 1];
+                whole.first[axis] = boxes.empty() ? box.first[axis] : std::min(whole.first[axis], box.first[axis]);
+                whole.last[axis] = boxes.empty() ? box.last[axis] : std::max(whole.last[axis], box.last[axis]);
+            }
+            pieces.push_back(&piece);
+            boxes.push_back(box);
+            total += all_cells(box);
+        }
+    if (boxes.size() < 2) return {};
+    double in_whole = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) in_whole *= static_cast<double>(whole.cells(axis));
+    if (in_whole > 64 * static_cast<double>(total))
+        return invalid_data(
+            fmt::format("the pieces fill {} of the {:.0f} cells of the box around them", total, in_whole));
+    if (auto fits = core::require_memory("joining the pieces of a structured grid", all_cells(whole)); !fits)
+        return fits;
+    std::vector<std::uint8_t> seen(static_cast<std::size_t>(all_cells(whole)));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        std::vector<std::uint8_t>& left_out = pieces[i]->left_out;
+        left_out.resize(pieces[i]->grid.cells.count());
+        const auto width = static_cast<std::size_t>(boxes[i].cells(0));
+        each_row(whole, boxes[i], false, [&](std::size_t row, std::uint64_t begin) {
+            std::uint8_t* const out = left_out.data() + row * width;
+            std::uint8_t* const known = seen.data() + begin;
+            for (std::size_t x = 0; x < width; ++x) {
+                out[x] = out[x] != 0 || known[x] != 0;
+                known[x] |= out[x] == 0;
+            }
+        });
+        if (std::ranges::all_of(left_out, [](std::uint8_t out) { return out == 0; })) left_out.clear();
+    }
+    return {};
+}
+
 Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress,
                               std::vector<std::string>& notes) {
     const auto boxes = boxes_of(document);
@@ -279,6 +333,8 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
     else places = load_points(document, pieces_of(document), points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
+    const Extent& whole = boxes->whole;
+    piece.extent = {whole.first[0], whole.last[0], whole.first[1], whole.last[1], whole.first[2], whole.last[2]};
     auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), notes);
     if (!hexahedra_of_all) return hexahedra_of_all.error();
     piece.grid.cells = std::move(*hexahedra_of_all);

@@ -11,21 +11,36 @@
 
 namespace isotet::io::vtk_xml {
 
+namespace {
+
+/// Tuples of each piece, by an attribute that counts them.
+Result<Layout> layout_by(const Document& document, const char* attribute) {
+    Layout layout;
+    for (const auto& element : pieces_of(document)) {
+        const auto count = count_of(element, attribute);
+        if (!count) return count.error();
+        if (*count > document.source.size() * 0x4000ULL - layout.total) // no compressor makes that of the file
+            return invalid_data(
+                fmt::format("{} points or cells are announced in a file of {} bytes", *count, document.source.size()));
+        layout.tuples.push_back(*count);
+        layout.total += *count;
+    }
+    return layout;
+}
+
+} // namespace
+
+Result<std::uint64_t> count_unstructured(const Document& document) {
+    const auto cells = layout_by(document, "NumberOfCells");
+    return cells ? Result<std::uint64_t>(cells->total) : cells.error();
+}
+
 Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress) {
     const auto elements = pieces_of(document);
-    Layout points, cells;
-    for (const auto& element : elements) {
-        const auto point_count = count_of(element, "NumberOfPoints"), cell_count = count_of(element, "NumberOfCells");
-        if (!point_count) return point_count.error();
-        if (!cell_count) return cell_count.error();
-        for (const auto& [layout, count] : {std::pair(&points, *point_count), std::pair(&cells, *cell_count)}) {
-            if (count > document.source.size() * 0x4000ULL - layout->total) // no compressor makes that of the file
-                return invalid_data(fmt::format("{} points or cells are announced in a file of {} bytes", count,
-                                                document.source.size()));
-            layout->tuples.push_back(count);
-            layout->total += count;
-        }
-    }
+    const auto all_points = layout_by(document, "NumberOfPoints"), all_cells = layout_by(document, "NumberOfCells");
+    if (!all_points) return all_points.error();
+    if (!all_cells) return all_cells.error();
+    const Layout &points = *all_points, &cells = *all_cells;
     Piece piece;
     auto places = load_points(document, elements, points, wanted.step, progress);
     if (!places) return places.error();
