@@ -152,7 +152,8 @@ void add_reading(const Command& command, GridOptions& grid, const std::string& f
                      "Format of the grid; without it content decides, then the name");
     command.add_texts(
         "--block", [&](const std::vector<std::string>& names) { grid.blocks = names; }, "NAME|NUMBER",
-        "Read only this block, zone or part of the file, by its name or number as info lists them; may be repeated");
+        "Read only this block, zone, part or region of the file, by its name or number as info lists them; may be "
+        "repeated");
     command.add_text("--displace", grid.displace, "FIELD", "Move the points by this vector field");
     command.add_number(
         "--merge-points", [&](double t) { grid.merge_points = t; }, "TOLERANCE",

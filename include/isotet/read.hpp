@@ -35,11 +35,11 @@ struct FieldInfo {
 };
 
 /// A part of a file that can be read without the others: an element block of Exodus, a zone of CGNS, a part of EnSight,
-/// a block of a VTM or of another of VTK's readers.
+/// a block of a VTM or of another of VTK's readers, a region of Gmsh, Medit or TetGen.
 struct BlockInfo {
     std::int64_t number = 0; ///< of the file where it numbers blocks, else from 1 in its order
     std::string name;        ///< empty where the file has none; "Base/Zone" where blocks are in others
-    std::string kind;        ///< "element block", "zone", "part", "block"
+    std::string kind;        ///< "element block", "zone", "part", "block", "region"
     std::uint64_t cells = 0; ///< of all types and dimensions
 };
 
@@ -57,7 +57,8 @@ struct FileInfo {
     std::vector<double> times; ///< empty where the file knows no time; ascending as stored
     std::vector<std::string>
         files;                     ///< those that were opened to find this out, or to read: the file and its companions
-    std::vector<BlockInfo> blocks; ///< empty where the format has none that can be chosen
+    std::vector<BlockInfo> blocks; ///< empty where the format has none that can be chosen; regions are listed when
+                                   ///< some were chosen and read
     std::vector<RegionName> regions; ///< names of physical groups of volumes (Gmsh); not always all numbers have one
 };
 

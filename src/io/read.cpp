@@ -15,6 +15,7 @@
 #include "core/parallel.hpp"
 #include "core/rising_progress.hpp"
 #include "io/formats.hpp"
+#include "io/own/region_choice.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/reader.hpp"
 
@@ -66,9 +67,9 @@ Result<void> check_names(const std::vector<std::string>& asked, Association asso
     return {};
 }
 
-/// Readers of formats that have blocks know them all.
+/// Readers of formats that have blocks know them all. Regions are known when the cells have been read.
 Result<void> check_blocks(const FileInfo& info, const ReadOptions& options) {
-    if (options.blocks.empty() || !info.blocks.empty()) return {};
+    if (options.blocks.empty() || !info.blocks.empty() || !region_field(info).empty()) return {};
     return Error{ErrorCode::invalid_argument,
                  fmt::format("block {} cannot be chosen: the file ({}) has no blocks that can be read alone",
                              in_quotes(options.blocks.front()), info.format)};
@@ -133,10 +134,23 @@ Result<void> check_bezier(const ReadResult& result) {
     return {};
 }
 
+/// Where blocks are chosen, and regions may be meant, the field that numbers them must be read.
+Result<ReadOptions> with_regions(const GridReader& reader, const std::string& path, ReadOptions options,
+                                 const Progress& progress) {
+    if (options.blocks.empty() || !options.cell_fields) return options;
+    const auto info = reader.inspect(path, options, progress);
+    if (!info) return info.error();
+    const std::string_view field = region_field(*info);
+    if (!field.empty() && !wanted(options, Association::cell, field)) options.cell_fields->emplace_back(field);
+    return options;
+}
+
 Result<ReadResult> read_checked(const std::string& path, const ReadOptions& options, const Progress& progress) {
     const auto reader = choose_reader(path, options);
     if (!reader) return reader.error();
-    const ReadOptions all = with_displacement(options);
+    const auto extended = with_regions(**reader, path, with_displacement(options), progress);
+    if (!extended) return extended.error();
+    const ReadOptions& all = *extended;
     auto result = (*reader)->read(path, all, progress);
     if (!result) return result;
     if (auto known = check_blocks(result->info, options); !known) return known.error();
@@ -153,6 +167,11 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     };
     if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
     if (auto checked = check_bezier(*result); !checked) return in_file(checked.error());
+    if (const std::string_view regions = region_field(result->info); !options.blocks.empty() && !regions.empty()) {
+        if (auto chosen = choose_regions(*result, options); !chosen) return chosen.error();
+        if (!wanted(options, Association::cell, regions))
+            std::erase_if(result->grid.cell_fields, [&](const Field& field) { return field.name == regions; });
+    }
     if (options.displace.empty()) return result;
     if (auto displaced = displace(options.displace, *result); !displaced) return displaced.error();
     if (!wanted(options, Association::point, options.displace)) {

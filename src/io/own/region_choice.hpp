@@ -1,0 +1,23 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Parts of files that number the regions of their cells: physical groups of Gmsh, references of Medit, regions of TetGen.
+#pragma once
+
+#include <string_view>
+
+#include <isotet/export.hpp>
+#include <isotet/read.hpp>
+#include <isotet/result.hpp>
+
+namespace isotet::io {
+
+/// The cell field that numbers the regions of a file; empty where its format has none.
+std::string_view region_field(const FileInfo& info);
+
+/// Keeps the cells of the regions that `options.blocks` name, the points that they use and what belongs to them, and
+/// lists all regions of volumes in the file's blocks. The region field must have been read.
+///
+/// Errors   invalid_argument, with a list of the regions, when what is asked for is not there
+/// Cost     one pass over the cells and a copy of what stays
+ISOTET_API Result<void> choose_regions(ReadResult& result, const ReadOptions& options);
+
+} // namespace isotet::io
