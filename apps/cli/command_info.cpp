@@ -106,8 +106,9 @@ std::string block_table(const FileInfo& file) {
     using enum Table::Align;
     Table table({left, right, left, left, right});
     for (const BlockInfo& block : file.blocks)
-        table.row({"block", std::to_string(block.number), block.name.empty() ? "-" : block.name, block.kind,
-                   fmt::format("{} cell{}", grouped(block.cells), block.cells == 1 ? "" : "s")});
+        table.row(
+            {"block", std::to_string(block.number), block.name.empty() ? "-" : block.name, block.kind,
+             block.cells == 0 ? "" : fmt::format("{} cell{}", grouped(block.cells), block.cells == 1 ? "" : "s")});
     return table.text();
 }
 

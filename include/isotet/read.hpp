@@ -35,12 +35,13 @@ struct FieldInfo {
 };
 
 /// A part of a file that can be read without the others: an element block of Exodus, a zone of CGNS, a part of EnSight,
-/// a block of a VTM or of another of VTK's readers, a region of Gmsh, Medit or TetGen.
+/// a block of a VTM or of another of VTK's readers, a region of Gmsh, Medit, TetGen
+/// or OpenFOAM.
 struct BlockInfo {
     std::int64_t number = 0; ///< of the file where it numbers blocks, else from 1 in its order
     std::string name;        ///< empty where the file has none; "Base/Zone" where blocks are in others
     std::string kind;        ///< "element block", "zone", "part", "block", "region"
-    std::uint64_t cells = 0; ///< of all types and dimensions
+    std::uint64_t cells = 0; ///< of all types and dimensions; 0 where only reading the block would tell (OpenFOAM)
 };
 
 /// What a number of a cell field stands for.

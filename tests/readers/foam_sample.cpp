@@ -333,4 +333,32 @@ FoamFiles foam_case(const FoamBox& box, const FoamFunction& f, const FoamStyle& 
     return files;
 }
 
+FoamFiles collated(const FoamFiles& files, const std::vector<int>& groups, bool grouped) {
+    const int total = std::accumulate(groups.begin(), groups.end(), 0);
+    FoamFiles result;
+    const std::string any = "processor0/";
+    int first = 0;
+    for (const int count : groups) {
+        std::string folder = "processors" + std::to_string(total);
+        if (grouped) folder += "_" + std::to_string(first) + "-" + std::to_string(first + count - 1);
+        for (const auto& [name, content] : files) {
+            if (!name.starts_with("processor")) result[name] = content;
+            if (!name.starts_with(any)) continue;
+            const std::string rest = name.substr(any.size() - 1);
+            std::string text = "FoamFile\n{\n    version 2.0;\n    format binary;\n    class decomposedBlockData;\n"
+                               "    object " +
+                               rest.substr(rest.rfind('/') + 1) + ";\n}\n// * * * //\n";
+            for (int i = 0; i < count; ++i) {
+                std::string block = files.at("processor" + std::to_string(first + i) + rest);
+                if (i > 0) block.erase(0, block.find('}') + 1);
+                text += "\n// Processor" + std::to_string(i) + "\n\n" + std::to_string(block.size()) + "\n(" + block +
+                        ")\n";
+            }
+            result[folder + rest] = text;
+        }
+        first += count;
+    }
+    return result;
+}
+
 } // namespace isotet::test

@@ -53,6 +53,10 @@ void add_fields(FoamFiles& files, const std::string& time_folder, const FoamBox&
 /// The whole case, or one of `processors` parts, with the times 0 and 0.5.
 FoamFiles foam_case(const FoamBox& box, const FoamFunction& f, const FoamStyle& style, int processors = 0);
 
+/// The files of the folders processor0 and so on, as blocks of files in folders like "processors4"; with `groups`, in
+/// one for each so many processors ("processors4_0-2", "processors4_3-3"). Blocks but the first have no header.
+FoamFiles collated(const FoamFiles& files, const std::vector<int>& groups, bool grouped);
+
 /// FoamFile { } with what follows.
 std::string foam_file(const std::string& type, const std::string& name, const FoamStyle& style,
                       const std::string& body);

@@ -1,10 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // OpenFOAM cases: every encoding, polyhedra, decomposed cases, values on patches, and files that are broken.
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <sys/stat.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <libdeflate.h>
 
@@ -277,6 +279,76 @@ TEST_F(DecomposedCase, AMissingProcessorIsAnError) {
     EXPECT_NE(result.error().message.find("processor1"), std::string::npos) << result.error().message;
 }
 
+class CollatedFoam : public ReadOpenfoamCase {
+protected:
+    std::string message_of(const FoamFiles& files) {
+        const TemporaryFolder folder;
+        write_case(folder, files);
+        const auto result = read(folder.file(""), last_step());
+        return result ? "read" : result.error().message;
+    }
+};
+
+TEST_F(CollatedFoam, IsTheWholeCase) {
+    write_case(folder_, foam_case(box_, wave, {}));
+    const Grid whole = read_whole(folder_.file(""));
+    for (const bool binary : {false, true})
+        for (const std::vector<int>& groups : {std::vector<int>{2}, {4}, {3, 1}, {1, 1, 2}}) {
+            const TemporaryFolder folder;
+            const int processors = std::accumulate(groups.begin(), groups.end(), 0);
+            SCOPED_TRACE(
+                fmt::format("{} processors in {} folders{}", processors, groups.size(), binary ? ", binary" : ""));
+            write_case(folder,
+                       collated(foam_case(box_, wave, {binary, 32, 64}, processors), groups, groups.size() > 1));
+            expect_same_grid(read_whole(folder.file("")), whole);
+            const auto info = inspect(folder.write("a.foam", ""));
+            ASSERT_TRUE(info) << info.error().message;
+            EXPECT_EQ(info->times, (std::vector<double>{0, 0.5}));
+            EXPECT_EQ(info->fields.size(), 4u);
+        }
+}
+
+TEST_F(CollatedFoam, PlainFoldersGoFirst) {
+    FoamFiles files = foam_case(box_, wave, {}, 2);
+    for (const auto& [name, content] : collated(files, {2}, false)) files[name] = name.ends_with("/T") ? "" : content;
+    write_case(folder_, files);
+    EXPECT_EQ(read_whole(folder_.file("")).cells.count(), 34u);
+}
+
+TEST_F(CollatedFoam, FoldersThatLackProcessorsAreErrors) {
+    const FoamFiles files = collated(foam_case(box_, wave, {}, 4), {1, 1, 2}, true);
+    for (const char* missing : {"processors4_0-0", "processors4_1-1", "processors4_2-3"}) {
+        FoamFiles some;
+        for (const auto& [name, content] : files)
+            if (!name.starts_with(missing)) some[name] = content;
+        EXPECT_NE(message_of(some).find("processor"), std::string::npos) << missing;
+    }
+    FoamFiles twice = files;
+    for (const auto& [name, content] : collated(foam_case(box_, wave, {}, 2), {2}, false)) twice[name] = content;
+    EXPECT_NE(message_of(twice).find("another number of processors"), std::string::npos) << message_of(twice);
+}
+
+TEST_F(CollatedFoam, BrokenBlocksAreErrorsThatNameTheFile) {
+    const FoamFiles files = collated(foam_case(box_, wave, {true, 32, 64}, 3), {3}, false);
+    for (const char* name : {"processors3/constant/polyMesh/points", "processors3/0.5/T"}) {
+        FoamFiles changed = files;
+        std::string& content = changed.at(name);
+        const std::string whole = content;
+        for (std::size_t length = 20; length < whole.size() - 2; length += whole.size() / 40 + 1) {
+            content = whole.substr(0, length);
+            EXPECT_NE(message_of(changed).find(name), std::string::npos)
+                << name << " cut to " << length << ": " << message_of(changed);
+        }
+        content = whole + "\n0\n";
+        EXPECT_NE(message_of(changed).find("more blocks"), std::string::npos) << message_of(changed);
+        content = whole.substr(0, whole.find("// Processor2"));
+        EXPECT_NE(message_of(changed).find("fewer blocks"), std::string::npos) << message_of(changed);
+        content = whole;
+        content.insert(content.find("// Processor1") + 15, "99999999999");
+        EXPECT_NE(message_of(changed).find("bytes"), std::string::npos) << message_of(changed);
+    }
+}
+
 class BrokenOpenfoam : public ReadOpenfoamCase {
 protected:
     std::string message_of(const std::string& name, const std::string& content,
@@ -419,6 +491,35 @@ TEST_F(ReadOpenfoamCase, RegionsAreJoined) {
     const Grid grid = read_whole(folder_.file(""));
     EXPECT_EQ(grid.cells.count(), 2 * box_.centres.size());
     EXPECT_EQ(field_of(grid.cell_fields, "T").tuples(), 2 * box_.centres.size());
+}
+
+TEST_F(ReadOpenfoamCase, RegionsAreBlocks) {
+    FoamFiles files;
+    const FoamBox large = foam_box(4, in_the_middle);
+    for (const auto& [region, box] : {std::pair<const char*, const FoamBox*>("air", &box_), {"iron", &large}})
+        for (const auto& [name, content] : foam_case(*box, wave, {})) {
+            const std::size_t slash = name.find('/');
+            files[name.substr(0, slash + 1) + region + name.substr(slash)] = content;
+        }
+    write_case(folder_, files);
+    const auto info = inspect(folder_.file(""));
+    ASSERT_TRUE(info) << info.error().message;
+    ASSERT_EQ(info->blocks.size(), 2u);
+    EXPECT_EQ(info->blocks[1].name, "iron");
+    EXPECT_EQ(info->blocks[1].number, 2);
+    for (const char* asked : {"iron", "2"}) {
+        ReadOptions options = last_step();
+        options.blocks = {asked};
+        const auto iron = read(folder_.file(""), options);
+        ASSERT_TRUE(iron) << iron.error().message;
+        EXPECT_EQ(iron->grid.cells.count(), large.centres.size());
+        EXPECT_EQ(iron->info.blocks[1].cells, large.centres.size());
+    }
+    ReadOptions wrong;
+    wrong.blocks = {"steel"};
+    const auto refused = read(folder_.file(""), wrong);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("1 'air', 2 'iron'"), std::string::npos) << refused.error().message;
 }
 
 } // namespace

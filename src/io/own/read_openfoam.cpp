@@ -8,8 +8,10 @@
 
 #include <fmt/core.h>
 
+#include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
 #include "io/own/foam/case_layout.hpp"
+#include "io/own/foam/collated_case.hpp"
 #include "io/own/foam/fields.hpp"
 #include "io/own/foam/scanner.hpp"
 #include "io/own/join.hpp"
@@ -67,6 +69,9 @@ void announce_field(FileInfo& info, const AnnouncedField& field) {
 Result<void> describe(const CaseFiles& files, const CaseLayout& layout, FileInfo& info) {
     info.format = "openfoam";
     for (const auto& [time, name] : layout.times) info.times.push_back(time);
+    if (layout.regions.size() > 1)
+        for (const std::string& region : layout.regions)
+            info.blocks.push_back({static_cast<std::int64_t>(info.blocks.size() + 1), region, "region", 0});
     for (const std::string& region : layout.regions) {
         std::set<std::string> seen;
         for (std::size_t step = 0; step < layout.times.size(); ++step) {
@@ -178,7 +183,10 @@ Result<ReadResult> read_openfoam(const std::string& path, const ReadOptions& opt
 
 } // namespace
 
-Result<Loaded> load_openfoam_case(const CaseFiles& files, const ReadOptions& options, Depth depth) {
+Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions& options, Depth depth) {
+    const auto collated = foam::CollatedCase::over(case_files);
+    if (!collated) return collated.error();
+    const CaseFiles& files = *collated ? **collated : case_files;
     auto layout = foam::layout_of(files);
     if (!layout) return layout.error();
     Loaded loaded;
@@ -188,9 +196,18 @@ Result<Loaded> load_openfoam_case(const CaseFiles& files, const ReadOptions& opt
     if (!step) return step.error();
     loaded.step = *step;
     loaded.notes = layout->notes;
-    for (const std::string& region : layout->regions) {
-        auto piece = read_region(files, *layout, region, *step, options, loaded.notes);
+    std::vector<BlockInfo>& blocks = loaded.info.blocks;
+    std::vector<bool> chosen{true};
+    if (!blocks.empty()) {
+        auto asked = chosen_blocks(blocks, options);
+        if (!asked) return asked.error();
+        chosen = std::move(*asked);
+    }
+    for (std::size_t i = 0; i < layout->regions.size(); ++i) {
+        if (!chosen[i]) continue;
+        auto piece = read_region(files, *layout, layout->regions[i], *step, options, loaded.notes);
         if (!piece) return piece.error();
+        if (!blocks.empty()) blocks[i].cells = piece->grid.cells.count();
         loaded.pieces.push_back(std::move(*piece));
     }
     return loaded;
@@ -200,7 +217,8 @@ bool is_openfoam_case(const std::string& folder) {
     const Progress none;
     const foam::DiskCase files(folder, true, none);
     if (files.has("system/controlDict") || files.has("constant/polyMesh/faces")) return true;
-    if (files.has("processor0/constant/polyMesh/faces")) return true;
+    for (const std::string& name : files.list("").folders)
+        if (name.starts_with("processor") && files.has(name + "/constant/polyMesh/faces")) return true;
     for (const std::string& name : files.list("constant").folders)
         if (files.has("constant/" + name + "/polyMesh/faces")) return true;
     return false;

@@ -56,14 +56,12 @@ std::vector<std::string> regions_in(const CaseFiles& files, const std::string& p
 /// processor0, processor1 and so on, without a gap.
 Result<std::vector<std::string>> processors_in(const CaseFiles& files) {
     std::vector<std::size_t> numbers;
-    bool collated = false;
     for (const std::string& name : files.list("").folders) {
         constexpr std::string_view begin = "processor";
         if (!name.starts_with(begin) || name.size() == begin.size()) continue;
         std::size_t number = 0;
         const auto [rest, error] = std::from_chars(name.data() + begin.size(), name.data() + name.size(), number);
         if (error == std::errc{} && rest == name.data() + name.size()) numbers.push_back(number);
-        else collated = collated || name.starts_with("processors");
     }
     std::ranges::sort(numbers);
     std::vector<std::string> prefixes;
@@ -73,7 +71,6 @@ Result<std::vector<std::string>> processors_in(const CaseFiles& files) {
                           fmt::format("is not there, but processor{} is", number));
         prefixes.push_back(fmt::format("processor{}/", number));
     }
-    if (prefixes.empty() && collated) prefixes.emplace_back("processors");
     return prefixes;
 }
 
@@ -86,13 +83,6 @@ Result<CaseLayout> layout_of(const CaseFiles& files) {
     layout.prefixes = {""};
     layout.times = times_in(files, "");
     layout.regions = regions_in(files, "", layout.times);
-    if (processors->size() == 1 && processors->front() == "processors") {
-        if (layout.regions.empty())
-            return broken(files.path_of(""),
-                          "is decomposed in the collated format, which is not read: reconstruct it, or "
-                          "decompose it uncollated");
-        return layout;
-    }
     if (!processors->empty()) {
         auto times = times_in(files, processors->front());
         const bool later = !times.empty() && (layout.times.empty() || times.back().first > layout.times.back().first);

@@ -22,7 +22,7 @@ struct CaseLayout {
 
 /// The processor folders are read where the case's own folder has no mesh, or they have a later time.
 ///
-/// Errors   invalid_data: no mesh, a processor folder that is missing, the collated format
+/// Errors   invalid_data: no mesh, a processor folder that is missing
 Result<CaseLayout> layout_of(const CaseFiles& files);
 
 /// Where the mesh of a region is at a time: the latest one up to it.

@@ -128,6 +128,13 @@ bool Scanner::is_foam() const {
 }
 
 Result<Header> Scanner::header() {
+    auto read = any_header();
+    if (read && read->type == "decomposedBlockData")
+        return fail("is of the collated format, which is read in folders processorsN only");
+    return read;
+}
+
+Result<Header> Scanner::any_header() {
     header_ = {};
     if (token() != "FoamFile" || !take('{')) return fail("is no file of OpenFOAM: it does not begin with FoamFile { }");
     while (!take('}')) {
@@ -148,7 +155,6 @@ Result<Header> Scanner::header() {
         }
         if (!take(';')) return fail("has a header entry without ';'");
     }
-    if (header_.type == "decomposedBlockData") return fail("is of the collated format, which is not read");
     return header_;
 }
 
@@ -208,6 +214,25 @@ Result<std::uint64_t> Scanner::count(std::string_view what) {
     std::int64_t value = 0;
     if (!number(value) || value < 0) return fail(fmt::format("{}: no count of it", what));
     return static_cast<std::uint64_t>(value);
+}
+
+Result<std::string_view> Scanner::bytes(std::string_view what) {
+    const auto size = count(what);
+    if (!size) return size.error();
+    if (*size == 0 && peek() != '(') return std::string_view();
+    if (auto begun = expect('(', what); !begun) return begun.error();
+    if (*size > text_.size() - at_)
+        return fail(fmt::format("{} states {} bytes, but {} are left", what, *size, text_.size() - at_));
+    const std::string_view found = text_.substr(at_, static_cast<std::size_t>(*size));
+    at_ += found.size();
+    if (auto ended = expect(')', what); !ended) return ended.error();
+    return found;
+}
+
+std::string_view Scanner::bytes_begun() {
+    std::int64_t size = 0;
+    if (!number(size) || size < 0 || !take('(')) return {};
+    return text_.substr(at_, static_cast<std::size_t>(size));
 }
 
 /// `read(bytes, count)`  count items as bytes; with null: one item as text, from the cursor on

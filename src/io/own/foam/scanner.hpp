@@ -39,6 +39,8 @@ public:
 
     /// Reads FoamFile { ... } and applies it to what follows.
     Result<Header> header();
+    /// The same of a collated file, too, whose type is decomposedBlockData.
+    Result<Header> any_header();
     const Header& format() const noexcept { return header_; }
     /// For a file without a header of its own, which another one includes.
     void use(const Header& header) { header_ = header; }
@@ -66,6 +68,12 @@ public:
     Result<std::vector<double>> tuple(std::size_t components, std::string_view what);
     Result<Faces> faces();
     Result<std::uint64_t> count(std::string_view what);
+    /// A list of bytes, as they are: N(...).
+    Result<std::string_view> bytes(std::string_view what);
+    /// What there is of such a list, in a file of which only the beginning was opened.
+    std::string_view bytes_begun();
+    /// Up to the cursor.
+    std::string_view text_so_far() const noexcept { return text_.substr(0, at_); }
 
     const CaseText& file() const noexcept { return file_; }
     Error fail(std::string_view what) const;
