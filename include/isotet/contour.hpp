@@ -62,8 +62,8 @@ struct ContourOptions {
     /// have no such edges. Costs edge ends and source cells for a while.
     bool exact_vertices = false;
     /// Isovalues that will be asked for first: where they are extracted directly, only the polyhedra that they meet are made
-    /// linear, unless something needs the others (gradients, edge ends, a frame, values that are rounded when they are
-    /// stored). The surfaces are the same. Another isovalue makes all linear.
+    /// linear, unless something needs the others (gradients, edge ends, a frame, integers, values that are scaled when they
+    /// are stored). The surfaces are the same. Another isovalue makes all linear.
     std::vector<double> expected_isovalues = {};
 };
 

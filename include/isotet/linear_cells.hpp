@@ -124,6 +124,7 @@ struct LinearizeOptions {
     /// scalar a point. Not for grids with curved cells or point numbers.
     std::vector<double> isovalues = {};
     Array values = {};
+    std::vector<std::uint64_t> also = {}; ///< user's cells that stay though no isovalue meets them, ascending
 };
 
 /// True when some cells are polyhedra with faces or of a degree above 1: linearize() makes linear cells of them.

@@ -140,7 +140,8 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
                 const bool is_polyhedron =
                     cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell);
-                if (is_polyhedron && !options.isovalues.empty() && !met.meets(cell, corner_values))
+                if (is_polyhedron && !options.isovalues.empty() && !met.meets(cell, corner_values) &&
+                    !std::ranges::binary_search(options.also, cell))
                     ++parts.report.unmet;
                 else if (is_polyhedron) splitter.split(cell, parts);
                 else if (const auto what = high_degree_of(cells->type(cell), cells->corners(cell)))

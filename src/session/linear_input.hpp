@@ -44,10 +44,12 @@ private:
 class MetInput {
 public:
     /// Whether the polyhedra that isovalues do not meet can be left out: nothing needs them, and coordinates and values are
-    /// stored as they are, whatever the other cells have. Cost: a pass over the values
+    /// stored without a change of scale, whatever the other cells have. Cost: a pass over the values
     static bool suits(const ContourInput& input, const ContourOptions& options);
 
-    /// The input with linear cells, where the expected isovalues of the options are; nothing where they meet no cell.
+    /// The input with linear cells, where the expected isovalues of the options are; nothing where they meet no cell, or where
+    /// coordinates or values would be rounded in another way: offset and origin come from the ends of their ranges, so
+    /// polyhedra that have these stay, too, unless they are open.
     /// Errors   as linearize() and LinearGrid::extend()
     Result<std::optional<ContourInput>> make(const ContourInput& input, const ContourOptions& options);
 

@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Where isovalues are expected only the polyhedra that they meet are split: with the bytes of all.
+#include <algorithm>
+#include <map>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -8,6 +10,8 @@
 #include <isotet/linear_cells.hpp>
 #include <isotet/make.hpp>
 
+#include "core/cell_faces.hpp"
+#include "core/cells.hpp"
 #include "linear/polyhedral_grid.hpp"
 #include "support/surface_bytes.hpp"
 
@@ -76,6 +80,88 @@ TEST(MetCells, GiveTheSurfacesOfAll) {
     }
 }
 
+/// In double precision, far from the origin.
+Grid far_away(const Grid& grid) {
+    std::vector<double> places;
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            places.push_back(1000.1 * static_cast<double>(axis + 1) + grid.points.at(i, axis) / 3);
+    Grid moved = grid;
+    moved.points = Array::own(std::move(places), 3);
+    return moved;
+}
+
+/// Values of a narrow range about `base`, which are rounded from there when they are stored.
+PointField double_field(const Grid& grid, unsigned seed, double base) {
+    std::mt19937 random(seed);
+    std::vector<double> values(grid.points.tuples());
+    for (double& value : values) value = base + std::uniform_real_distribution<double>(0, 4)(random);
+    return {"f", Array::own(std::move(values)), false, {}};
+}
+
+bool were_chosen(const std::vector<std::string>& told) {
+    return std::ranges::any_of(
+        told, [](const std::string& note) { return note.find("have values on both sides") != std::string::npos; });
+}
+
+TEST(MetCells, GiveTheSurfacesOfAllInDoublePrecision) {
+    for (const Grid& near : {foam(), octree(3), octree(9)}) {
+        const Grid grid = far_away(near);
+        for (const double base : {0.0, 300.0, -1e6}) {
+            for (const double above : {0.002, 2.0, 3.99}) {
+                const PointField field = double_field(grid, 7, base);
+                ContourInput input = input_of(grid, field);
+                input.point_fields.push_back(Field{"other", double_field(grid, 8, 7e4).values});
+                ContourOptions options{.method = Method::direct, .surfaces = 1};
+                options.source_cells = true;
+                const std::string all = surfaces_of(input, options, {base + above});
+                options.expected_isovalues = {base + above};
+                std::vector<std::string> told;
+                EXPECT_TRUE(surfaces_of(input, options, {base + above}, &told) == all) << base << ' ' << above;
+                EXPECT_TRUE(above > 1 || base < 0 || were_chosen(told)) << base << ": some need not be split";
+            }
+        }
+    }
+}
+
+/// One face of each cell at a point takes the place of another one of as many corners.
+void open_cells_at(Grid& grid, std::size_t point) {
+    const core::CellReader cells = core::CellReader::open(grid).value();
+    const core::FaceReader faces = core::FaceReader::open(grid.cells).value();
+    std::vector<std::int64_t> stream;
+    for (std::size_t i = 0; i < grid.cells.faces.size(); ++i) stream.push_back(static_cast<std::int64_t>(faces.at(i)));
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        bool has_it = false;
+        for (std::uint64_t i = 0; i < cells.corners(cell); ++i) has_it |= cells.corner(cells.first(cell) + i) == point;
+        if (!has_it) continue;
+        std::map<std::int64_t, std::size_t> first_of_size;
+        for (std::size_t at = faces.begin(cell) + 1; at < faces.end(cell);
+             at += 1 + static_cast<std::size_t>(stream[at])) {
+            const auto [known, is_new] = first_of_size.emplace(stream[at], at);
+            if (is_new) continue;
+            std::copy_n(stream.begin() + static_cast<std::ptrdiff_t>(known->second), stream[at] + 1,
+                        stream.begin() + static_cast<std::ptrdiff_t>(at));
+            break;
+        }
+    }
+    grid.cells.faces = Array::own(std::move(stream));
+}
+
+TEST(MetCells, OpenOnesDoNotDecideHowOthersAreStored) {
+    Grid grid = far_away(foam());
+    std::vector<double> places(grid.points.as<double>().begin(), grid.points.as<double>().end());
+    places[3 * 5] += 500; // alone at the end of the range
+    grid.points = Array::own(std::move(places), 3);
+    open_cells_at(grid, 5);
+    ContourOptions options{.method = Method::direct, .surfaces = 1};
+    const ContourInput input = input_of(grid, double_field(grid, 3, 300));
+    const std::string all = surfaces_of(input, options, {300.05});
+    options.expected_isovalues = {300.05};
+    std::vector<std::string> told;
+    EXPECT_TRUE(surfaces_of(input, options, {300.05}, &told) == all);
+    EXPECT_FALSE(were_chosen(told));
+}
+
 TEST(MetCells, AreThoseOnly) {
     MakeOptions options;
     options.shape = "kelvin";
@@ -137,8 +223,8 @@ TEST(MetCells, AreNotChosenWhereOthersDecide) {
     EXPECT_FALSE(splits_all(field, {.normals = Normals::face}));
     EXPECT_TRUE(splits_all(field, {.normals = Normals::gradient})) << "of cells around";
     EXPECT_TRUE(splits_all(field, {.edge_ends = true})) << "rows of the table of all";
-    std::vector<double> doubles(grid.points.tuples(), 0.1);
-    EXPECT_TRUE(splits_all({"f", Array::own(std::move(doubles)), false, {}}, {})) << "rounded by the range of all";
+    std::vector<std::int32_t> integers(grid.points.tuples(), 1);
+    EXPECT_TRUE(splits_all({"f", Array::own(std::move(integers)), false, {}}, {})) << "rounded by the range of all";
     std::vector<float> tiny(grid.points.tuples(), 1e-35F);
     EXPECT_TRUE(splits_all({"f", Array::own(std::move(tiny)), false, {}}, {})) << "scaled by the range of all";
 }
