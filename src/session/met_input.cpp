@@ -23,8 +23,10 @@ bool keeps_its_scale(const Array& array) {
         std::atomic<bool> plain{true};
         core::parallel_ranges(values.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
             const bool odd = std::ranges::any_of(values.subspan(begin, end - begin), [](auto value) {
-                const auto magnitude = std::abs(static_cast<double>(value));
-                return magnitude > 0 && (magnitude < 1e-30 || (magnitude > 1e30 && !std::isinf(magnitude)));
+                using Value = decltype(value);
+                const Value magnitude = std::abs(value);
+                return magnitude > 0 &&
+                       (magnitude < Value(1e-30) || (magnitude > Value(1e30) && !std::isinf(magnitude)));
             });
             if (odd) plain.store(false, std::memory_order_relaxed);
         });
