@@ -59,6 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const MemoryCase files(test::as_text(data, size));
     ReadOptions options;
     options.step = size % 2;
+    if (files.has("constant/polyMesh/cellZones")) options.blocks = {"1"};
     auto loaded = io::load_openfoam_case(files, options, io::Depth::arrays);
     if (!loaded) {
         if (loaded.error().message.empty() || loaded.error().code == ErrorCode::internal) std::abort();

@@ -261,6 +261,11 @@ FoamBox part_of(const FoamBox& whole, const std::vector<int>& processor_of, int 
         if (a == processor && b == processor) add(face);
         else if (a == processor || b == processor) between[a == processor ? b : a].push_back(face);
     }
+    for (const FoamBox::Zone& zone : whole.zones) {
+        FoamBox::Zone& own = part.zones.emplace_back(zone.name);
+        for (const std::int64_t cell : zone.cells)
+            if (own_cell(cell) >= 0) own.cells.push_back(own_cell(cell));
+    }
     for (const FoamBox::Patch& patch : whole.patches) {
         const std::size_t first = part.faces.size();
         for (std::size_t face = patch.first; face < patch.first + patch.count; ++face)
@@ -303,6 +308,11 @@ void add_mesh(FoamFiles& files, const std::string& prefix, const FoamBox& box, c
     FoamStyle text = style;
     text.binary = false;
     files[folder + "boundary"] = foam_file("polyBoundaryMesh", "boundary", text, boundary + ")\n");
+    std::string zones = fmt::format("{}\n(\n", box.zones.size());
+    for (const FoamBox::Zone& zone : box.zones)
+        zones += fmt::format("{}\n{{\n    type cellZone;\n    cellLabels List<label> {};\n}}\n", zone.name,
+                             label_list(zone.cells, style));
+    if (!box.zones.empty()) files[folder + "cellZones"] = foam_file("regIOobject", "cellZones", style, zones + ")\n");
     if (box.point_numbers.empty() || !style.addressing) return;
     files[folder + "pointProcAddressing"] =
         foam_file("labelList", "pointProcAddressing", style, label_list(box.point_numbers, style));

@@ -29,6 +29,11 @@ struct FoamBox {
         std::size_t first, count;
     };
     std::vector<Patch> patches;
+    struct Zone {
+        std::string name;
+        std::vector<std::int64_t> cells;
+    };
+    std::vector<Zone> zones;                               ///< none: no file of them
     std::vector<std::int64_t> point_numbers, cell_numbers; ///< in the whole, of a part
 
     std::array<double, 3> centre_of_face(std::size_t face) const;
@@ -37,7 +42,7 @@ struct FoamBox {
 /// `side` cubes of length 1 a direction; `refined` tells which become eight. Patches: "heated" (z = 0, wall), "sides".
 FoamBox foam_box(int side, const std::function<bool(int x, int y, int z)>& refined);
 
-/// The part of a processor, with processor patches.
+/// The part of a processor, with processor patches, and the zones' own cells.
 FoamBox part_of(const FoamBox& whole, const std::vector<int>& processor_of, int processor);
 
 using FoamFunction = std::function<double(const std::array<double, 3>&)>;

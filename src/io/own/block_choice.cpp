@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/cell_faces.hpp"
 #include "io/own/escape.hpp"
+#include "io/own/join.hpp"
 
 namespace isotet::io {
 
@@ -120,6 +122,19 @@ void drop_unused_points(Piece& piece) {
     grid.point_numbers = kept_tuples(grid.point_numbers, used, kept);
     piece.point_ids = kept_tuples(piece.point_ids, used, kept);
     for (Field& field : grid.point_fields) field.values = kept_tuples(field.values, used, kept);
+}
+
+Result<Grid> kept_cells(Grid grid, std::vector<std::uint8_t> left_out) {
+    Loaded loaded;
+    Piece& all = loaded.pieces.emplace_back();
+    all.grid = std::move(grid);
+    all.left_out = std::move(left_out);
+    auto rest = join(std::move(loaded), false); // its notes speak of ghost cells
+    if (!rest) return rest.error();
+    Piece kept;
+    kept.grid = std::move(rest->grid);
+    drop_unused_points(kept);
+    return std::move(kept.grid);
 }
 
 } // namespace isotet::io

@@ -11,11 +11,13 @@
 #include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
 #include "io/own/foam/case_layout.hpp"
+#include "io/own/foam/cell_zones.hpp"
 #include "io/own/foam/collated_case.hpp"
 #include "io/own/foam/fields.hpp"
 #include "io/own/foam/scanner.hpp"
 #include "io/own/join.hpp"
 #include "io/own/loaded.hpp"
+#include "io/own/text_scanner.hpp"
 
 namespace isotet::io {
 
@@ -69,9 +71,6 @@ void announce_field(FileInfo& info, const AnnouncedField& field) {
 Result<void> describe(const CaseFiles& files, const CaseLayout& layout, FileInfo& info) {
     info.format = "openfoam";
     for (const auto& [time, name] : layout.times) info.times.push_back(time);
-    if (layout.regions.size() > 1)
-        for (const std::string& region : layout.regions)
-            info.blocks.push_back({static_cast<std::int64_t>(info.blocks.size() + 1), region, "region", 0});
     for (const std::string& region : layout.regions) {
         std::set<std::string> seen;
         for (std::size_t step = 0; step < layout.times.size(); ++step) {
@@ -83,19 +82,77 @@ Result<void> describe(const CaseFiles& files, const CaseLayout& layout, FileInfo
     return {};
 }
 
-Result<foam::WholeMesh> mesh_of_region(const CaseFiles& files, const CaseLayout& layout, const std::string& region,
-                                       std::size_t step, const ReadOptions& options) {
-    std::vector<foam::Mesh> meshes;
+Result<std::vector<foam::MeshPlace>> places_of(const CaseFiles& files, const CaseLayout& layout,
+                                               const std::string& region, std::size_t step) {
     std::vector<foam::MeshPlace> places;
     for (const std::string& prefix : layout.prefixes) {
         auto place = foam::mesh_place(files, layout, prefix, region, step);
         if (!place) return place.error();
-        auto mesh = foam::read_mesh(files, *place);
-        if (!mesh) return mesh.error();
-        meshes.push_back(std::move(*mesh));
         places.push_back(std::move(*place));
     }
-    return foam::join_meshes(files, std::move(meshes), places, layout.prefixes, options.merge_pieces_by_coordinates);
+    return places;
+}
+
+/// What is wanted of a region.
+struct RegionChoice {
+    bool whole = true;
+    std::vector<std::string> zones; ///< else
+
+    bool empty() const { return !whole && zones.empty(); }
+};
+
+/// What the blocks of the description are: regions where there are several, then the zones of all.
+struct CaseBlocks {
+    struct Block {
+        std::size_t region = 0;
+        std::string zone; ///< empty: all of the region
+    };
+    std::vector<Block> blocks;
+
+    /// One a region.
+    Result<std::vector<RegionChoice>> chosen(const std::vector<BlockInfo>& listed, const ReadOptions& options,
+                                             std::size_t regions) const {
+        std::vector<RegionChoice> choices(regions);
+        if (options.blocks.empty()) return choices;
+        const auto flags = chosen_blocks(listed, options);
+        if (!flags) return flags.error();
+        for (RegionChoice& choice : choices) choice.whole = false;
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            if (!(*flags)[i]) continue;
+            RegionChoice& choice = choices[blocks[i].region];
+            if (blocks[i].zone.empty()) choice.whole = true;
+            else choice.zones.push_back(blocks[i].zone);
+        }
+        return choices;
+    }
+};
+
+Result<CaseBlocks> announce_blocks(const CaseFiles& files, const CaseLayout& layout, std::size_t step, FileInfo& info) {
+    CaseBlocks found;
+    const auto add = [&](CaseBlocks::Block block, const std::string& name, const char* kind, std::uint64_t cells) {
+        found.blocks.push_back(std::move(block));
+        info.blocks.push_back({static_cast<std::int64_t>(found.blocks.size()), name, kind, cells});
+    };
+    const bool several = layout.regions.size() > 1;
+    for (std::size_t region = 0; region < layout.regions.size() && several; ++region)
+        add({region, {}}, layout.regions[region], "region", 0);
+    for (std::size_t region = 0; region < layout.regions.size(); ++region) {
+        const auto places = places_of(files, layout, layout.regions[region], step);
+        if (!places) return places.error();
+        std::vector<foam::CellZone> zones; // of all parts
+        for (const foam::MeshPlace& place : *places) {
+            const auto of_part = foam::read_cell_zones(files, place.faces, {});
+            if (!of_part) return of_part.error();
+            for (const foam::CellZone& zone : *of_part) {
+                const auto known = std::ranges::find(zones, zone.name, &foam::CellZone::name);
+                if (known == zones.end()) zones.push_back(zone);
+                else known->count += zone.count;
+            }
+        }
+        for (const foam::CellZone& zone : zones)
+            add({region, zone.name}, (several ? layout.regions[region] + "/" : "") + zone.name, "zone", zone.count);
+    }
+    return found;
 }
 
 Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const std::string& region, std::size_t step,
@@ -132,8 +189,17 @@ Array point_array(foam::Mesh& mesh) {
 }
 
 Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, const std::string& region, std::size_t step,
-                          const ReadOptions& options, std::vector<std::string>& notes) {
-    auto whole = mesh_of_region(files, layout, region, step, options);
+                          const RegionChoice& choice, const ReadOptions& options, std::vector<std::string>& notes) {
+    const auto places = places_of(files, layout, region, step);
+    if (!places) return places.error();
+    std::vector<foam::Mesh> meshes;
+    for (const foam::MeshPlace& place : *places) {
+        auto mesh = foam::read_mesh(files, place);
+        if (!mesh) return mesh.error();
+        meshes.push_back(std::move(*mesh));
+    }
+    auto whole =
+        foam::join_meshes(files, std::move(meshes), *places, layout.prefixes, options.merge_pieces_by_coordinates);
     if (!whole) return whole.error();
     notes.insert(notes.end(), whole->notes.begin(), whole->notes.end());
     Piece piece;
@@ -141,6 +207,14 @@ Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, cons
     piece.grid.cells = foam::cells_of(whole->mesh);
     if (auto read = read_fields(files, layout, region, step, options, *whole, piece, notes); !read) return read.error();
     piece.grid.points = point_array(whole->mesh);
+    if (choice.whole) return piece;
+    auto outside = foam::cells_outside(choice.zones, files, *places, *whole);
+    if (!outside) return outside.error();
+    notes.push_back(fmt::format("{} of {} cells{} are in the chosen zones", std::ranges::count(*outside, 0),
+                                outside->size(), region.empty() ? "" : " of the region " + in_quotes(region)));
+    auto kept = kept_cells(std::move(piece.grid), *std::move(outside));
+    if (!kept) return kept.error();
+    piece.grid = *std::move(kept);
     return piece;
 }
 
@@ -191,23 +265,20 @@ Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions
     if (!layout) return layout.error();
     Loaded loaded;
     if (auto described = describe(files, *layout, loaded.info); !described) return described.error();
-    if (depth == Depth::description) return loaded;
     const auto step = choose_step(loaded.info, options);
-    if (!step) return step.error();
-    loaded.step = *step;
+    if (!step && depth == Depth::arrays) return step.error();
+    loaded.step = step ? *step : 0;
+    const auto blocks = announce_blocks(files, *layout, loaded.step, loaded.info);
+    if (!blocks) return blocks.error();
+    if (depth == Depth::description) return loaded;
     loaded.notes = layout->notes;
-    std::vector<BlockInfo>& blocks = loaded.info.blocks;
-    std::vector<bool> chosen{true};
-    if (!blocks.empty()) {
-        auto asked = chosen_blocks(blocks, options);
-        if (!asked) return asked.error();
-        chosen = std::move(*asked);
-    }
-    for (std::size_t i = 0; i < layout->regions.size(); ++i) {
-        if (!chosen[i]) continue;
-        auto piece = read_region(files, *layout, layout->regions[i], *step, options, loaded.notes);
+    const auto chosen = blocks->chosen(loaded.info.blocks, options, layout->regions.size());
+    if (!chosen) return chosen.error();
+    for (std::size_t i = 0; i < chosen->size(); ++i) {
+        if ((*chosen)[i].empty()) continue;
+        auto piece = read_region(files, *layout, layout->regions[i], loaded.step, (*chosen)[i], options, loaded.notes);
         if (!piece) return piece.error();
-        if (!blocks.empty()) blocks[i].cells = piece->grid.cells.count();
+        if (chosen->size() > 1 && (*chosen)[i].whole) loaded.info.blocks[i].cells = piece->grid.cells.count();
         loaded.pieces.push_back(std::move(*piece));
     }
     return loaded;

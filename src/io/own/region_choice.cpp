@@ -14,7 +14,6 @@
 #include <fmt/core.h>
 
 #include "io/own/block_choice.hpp"
-#include "io/own/join.hpp"
 
 namespace isotet::io {
 namespace {
@@ -86,25 +85,18 @@ Result<void> choose_regions(ReadResult& result, const ReadOptions& options) {
     result.info.blocks = listed(regions, name, result.info);
     const auto chosen = chosen_blocks(result.info.blocks, options);
     if (!chosen) return chosen.error();
-    Piece piece;
-    piece.left_out.assign(regions.size(), 1);
+    std::vector<std::uint8_t> left_out(regions.size(), 1);
     std::map<std::int64_t, bool> is_chosen;
     for (std::size_t i = 0; i < chosen->size(); ++i) is_chosen[result.info.blocks[i].number] = (*chosen)[i];
     std::uint64_t kept = 0;
     for (std::size_t cell = 0; cell < regions.size(); ++cell) {
         if (regions[cell] == no_region || !is_chosen.at(regions[cell])) continue;
-        piece.left_out[cell] = 0;
+        left_out[cell] = 0;
         ++kept;
     }
-    piece.grid = std::move(result.grid);
-    Loaded loaded;
-    loaded.pieces.push_back(std::move(piece));
-    auto rest = join(std::move(loaded), false); // its notes speak of ghost cells
+    auto rest = kept_cells(std::move(result.grid), std::move(left_out));
     if (!rest) return rest.error();
-    Piece with_points;
-    with_points.grid = std::move(rest->grid);
-    drop_unused_points(with_points);
-    result.grid = std::move(with_points.grid);
+    result.grid = *std::move(rest);
     result.notes.push_back(fmt::format("{} of {} cells are in the chosen regions", kept, regions.size()));
     return {};
 }

@@ -304,6 +304,21 @@ Result<std::vector<std::int32_t>> Scanner::labels(std::string_view what, std::si
     return out;
 }
 
+Result<std::uint64_t> Scanner::skip_labels(std::string_view what) {
+    if (header_.binary || peek() == '(') { // without a count numbers must be counted
+        const auto numbers = labels(what, 0);
+        if (!numbers) return numbers.error();
+        return std::uint64_t{numbers->size()};
+    }
+    const auto stated = count(what);
+    if (!stated) return stated.error();
+    if (*stated == 0 && peek() != '(') return *stated;
+    if (auto begins = expect('(', what); !begins) return begins.error();
+    at_ = std::min(text_.find(')', at_), text_.size());
+    if (auto ends = expect(')', what); !ends) return ends.error();
+    return *stated;
+}
+
 bool Scanner::tuple_here(std::size_t components, std::vector<double>& to) {
     const std::size_t before = at_;
     const bool parentheses = components > 1 || peek() == '(';

@@ -62,6 +62,8 @@ public:
     ///
     /// `repeated`   as many as N{x} may stand for
     Result<std::vector<std::int32_t>> labels(std::string_view what, std::size_t repeated);
+    /// Goes behind such a list, and says how many it has. Numbers are not looked at.
+    Result<std::uint64_t> skip_labels(std::string_view what);
     /// A list of tuples. `repeated` as above, in tuples.
     Result<std::vector<double>> tuples(std::size_t components, std::string_view what, std::size_t repeated);
     /// One tuple: a number, or numbers in parentheses.
