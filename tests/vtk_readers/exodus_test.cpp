@@ -169,6 +169,60 @@ TEST_P(ReadExodus, ABlockThatIsNotThereIsAnErrorThatListsThem) {
     EXPECT_FALSE(inspect(path, options));
 }
 
+ExodusSample with_sets() {
+    ExodusSample sample = named_blocks();
+    sample.sets = {{7, "weld", {2}}, {10, "", {2, 1}}, {8, "none", {}}};
+    return sample;
+}
+
+TEST_P(ReadExodus, ListsItsSetsBehindItsBlocks) {
+    const auto info = inspect(written(with_sets()));
+    ASSERT_TRUE(info) << info.error().message;
+    ASSERT_EQ(info->blocks.size(), 5u);
+    EXPECT_EQ(info->blocks[2].number, 7);
+    EXPECT_EQ(info->blocks[2].name, "weld");
+    EXPECT_EQ(info->blocks[2].kind, "element set");
+    EXPECT_EQ(info->blocks[3].name, "set 10");
+    EXPECT_EQ(info->blocks[3].cells, 2u);
+    EXPECT_EQ(info->blocks[4].cells, 0u);
+}
+
+TEST_P(ReadExodus, ReadsTheElementsOfASet) {
+    const auto read_some = [&](std::vector<std::string> names) {
+        ReadOptions options;
+        options.blocks = std::move(names);
+        auto result = read(written(with_sets()), options);
+        EXPECT_TRUE(result) << result.error().message;
+        return result ? std::move(result->grid) : Grid();
+    };
+    const Grid block = read_some({"rubber"}), set = read_some({"weld"});
+    ASSERT_EQ(set.cells.count(), 1u);
+    ASSERT_EQ(set.points.tuples(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(set.cells.connectivity.at(i), block.cells.connectivity.at(i));
+        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(set.points.at(i, axis), block.points.at(i, axis));
+        EXPECT_EQ(set.point_fields.at(3).values.at(i), block.point_fields.at(3).values.at(i));
+    }
+    EXPECT_TRUE(std::isnan(set.cell_fields.at(0).values.at(0)));
+    EXPECT_EQ(read_some({"set 10"}).cells.count(), 2u);
+    EXPECT_EQ(read_some({"10"}).cells.count(), 1u) << "a block goes before a set of its number";
+    EXPECT_EQ(read_some({"steel", "weld"}).cells.count(), 2u);
+    EXPECT_EQ(read_some({"none"}).cells.count(), 0u);
+}
+
+TEST_P(ReadExodus, IsAnErrorWhenASetHasAnElementThatIsNotThere) {
+    for (const int element : {0, 3, -1}) {
+        ExodusSample sample = with_sets();
+        sample.sets[0].cells[0] = element;
+        ReadOptions options;
+        options.blocks = {"weld"};
+        const auto result = read(written(sample), options);
+        ASSERT_FALSE(result) << element;
+        EXPECT_NE(result.error().message.find("set 7 has element " + std::to_string(element)), std::string::npos)
+            << result.error().message;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Containers, ReadExodus, testing::Values(0, EX_64BIT_OFFSET, EX_64BIT_DATA, EX_NETCDF4));
 
 /// Two parts of one run: the second block's cell is in both of them.
@@ -193,6 +247,25 @@ TEST_F(ReadExodusParts, BlocksAreChosenInAllOfThem) {
     const auto result = read(folder_.file("run.e.2.0"), options);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->info.blocks.at(1).cells, 2u);
+    EXPECT_EQ(result->grid.cells.count(), 2u); // elements 2 and 3
+    EXPECT_EQ(result->grid.points.tuples(), 6u - 1u);
+}
+
+TEST_F(ReadExodusParts, SetsAreChosenInAllOfThem) {
+    ExodusSample second;
+    second.nodes = {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 0}, {0, -1, 0}};
+    second.node_ids = {5, 3, 2, 1, 6};
+    second.blocks = {{4, 2, 3, 1}, {4, 3, 1, 5}};
+    second.cell_ids = {2, 3};
+    second.sets = {{1, "low", {1, 2}}};
+    write_exodus(second, folder_.file("run.e.2.1"));
+    ExodusSample first;
+    first.sets = {{1, "low", {2}}};
+    write_exodus(first, folder_.file("run.e.2.0"));
+    ReadOptions options;
+    options.blocks = {"low"};
+    const auto result = read(folder_.file("run.e.2.0"), options);
+    ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->grid.cells.count(), 2u); // elements 2 and 3
     EXPECT_EQ(result->grid.points.tuples(), 6u - 1u);
 }

@@ -15,7 +15,13 @@ void write(const ExodusSample& sample, const std::string& path) {
     const auto count = static_cast<std::int64_t>(sample.nodes.size());
     std::int64_t cells = 0;
     for (const auto& block : sample.blocks) cells += static_cast<std::int64_t>(block.size() / 4);
-    ex_put_init(file, "sample", 3, count, cells, static_cast<std::int64_t>(sample.blocks.size()), 0, 0);
+    ex_init_params sizes{};
+    sizes.num_dim = 3;
+    sizes.num_nodes = count;
+    sizes.num_elem = cells;
+    sizes.num_elem_blk = static_cast<std::int64_t>(sample.blocks.size());
+    sizes.num_elem_sets = static_cast<std::int64_t>(sample.sets.size());
+    ex_put_init_ext(file, &sizes);
     std::array<std::vector<Real>, 3> axes;
     for (const auto& node : sample.nodes)
         for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].push_back(static_cast<Real>(node[axis]));
@@ -26,6 +32,11 @@ void write(const ExodusSample& sample, const std::string& path) {
                      0);
         ex_put_conn(file, EX_ELEM_BLOCK, id, sample.blocks[b].data(), nullptr, nullptr);
         if (b < sample.block_names.size()) ex_put_name(file, EX_ELEM_BLOCK, id, sample.block_names[b].c_str());
+    }
+    for (const ExodusSample::Set& set : sample.sets) {
+        ex_put_set_param(file, EX_ELEM_SET, set.id, static_cast<std::int64_t>(set.cells.size()), 0);
+        ex_put_set(file, EX_ELEM_SET, set.id, set.cells.data(), nullptr);
+        if (!set.name.empty()) ex_put_name(file, EX_ELEM_SET, set.id, set.name.c_str());
     }
     ex_put_id_map(file, EX_NODE_MAP, sample.node_ids.data());
     ex_put_id_map(file, EX_ELEM_MAP, sample.cell_ids.data());

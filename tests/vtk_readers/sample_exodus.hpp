@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct ExodusSample {
                          ///< only
     int format = 0;      ///< a flag of ex_create: EX_64BIT_OFFSET, EX_NETCDF4 and so on
     std::vector<std::string> block_names; ///< empty: none has a name; ids are 10, 20 and so on
+    struct Set {
+        std::int64_t id;
+        std::string name;
+        std::vector<int> cells; ///< from 1
+    };
+    std::vector<Set> sets = {};
 };
 
 void write_exodus(const ExodusSample& sample, const std::string& path);

@@ -89,8 +89,9 @@ Result<std::vector<bool>> chosen_blocks(const std::vector<BlockInfo>& blocks, co
 }
 
 void announce_block(FileInfo& info, const BlockInfo& block) {
-    const auto known = std::ranges::find_if(
-        info.blocks, [&](const BlockInfo& other) { return other.number == block.number && other.name == block.name; });
+    const auto known = std::ranges::find_if(info.blocks, [&](const BlockInfo& other) {
+        return other.number == block.number && other.name == block.name && other.kind == block.kind;
+    });
     if (known == info.blocks.end()) info.blocks.push_back(block);
     else known->cells += block.cells;
 }
@@ -124,17 +125,22 @@ void drop_unused_points(Piece& piece) {
     for (Field& field : grid.point_fields) field.values = kept_tuples(field.values, used, kept);
 }
 
-Result<Grid> kept_cells(Grid grid, std::vector<std::uint8_t> left_out) {
+Result<void> drop_left_out_cells(Piece& piece) {
+    if (!piece.cell_ids.empty()) {
+        std::vector<std::uint8_t> kept;
+        for (const std::uint8_t mark : piece.left_out) kept.push_back(mark == 0);
+        const auto count = static_cast<std::size_t>(std::ranges::count(kept, 1));
+        piece.cell_ids = kept_tuples(piece.cell_ids, kept, count);
+    }
     Loaded loaded;
     Piece& all = loaded.pieces.emplace_back();
-    all.grid = std::move(grid);
-    all.left_out = std::move(left_out);
+    all.grid = std::move(piece.grid);
+    all.left_out = std::exchange(piece.left_out, {});
     auto rest = join(std::move(loaded), false); // its notes speak of ghost cells
     if (!rest) return rest.error();
-    Piece kept;
-    kept.grid = std::move(rest->grid);
-    drop_unused_points(kept);
-    return std::move(kept.grid);
+    piece.grid = std::move(rest->grid);
+    drop_unused_points(piece);
+    return {};
 }
 
 } // namespace isotet::io

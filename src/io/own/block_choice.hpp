@@ -2,7 +2,6 @@
 // Reading parts of a file: which of its blocks are asked for, and what they leave of a grid.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <isotet/export.hpp>
@@ -27,10 +26,9 @@ ISOTET_API void announce_block(FileInfo& info, const BlockInfo& block);
 /// Keeps the points that a cell uses, in their order, and what belongs to them.
 ISOTET_API void drop_unused_points(Piece& piece);
 
-/// Keeps the cells without a mark, the points that they use, and what belongs to both.
+/// Keeps the cells that are not marked as left out, the points that they use, and what belongs to both.
 ///
-/// `left_out`   a mark for each cell
-/// Errors       as join(): arrays that do not fit
-Result<Grid> kept_cells(Grid grid, std::vector<std::uint8_t> left_out);
+/// Errors   as join(): arrays that do not fit
+ISOTET_API Result<void> drop_left_out_cells(Piece& piece);
 
 } // namespace isotet::io

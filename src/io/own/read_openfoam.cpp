@@ -212,9 +212,8 @@ Result<Piece> read_region(const CaseFiles& files, const CaseLayout& layout, cons
     if (!outside) return outside.error();
     notes.push_back(fmt::format("{} of {} cells{} are in the chosen zones", std::ranges::count(*outside, 0),
                                 outside->size(), region.empty() ? "" : " of the region " + in_quotes(region)));
-    auto kept = kept_cells(std::move(piece.grid), *std::move(outside));
-    if (!kept) return kept.error();
-    piece.grid = *std::move(kept);
+    piece.left_out = *std::move(outside);
+    if (auto dropped = drop_left_out_cells(piece); !dropped) return dropped.error();
     return piece;
 }
 

@@ -85,18 +85,19 @@ Result<void> choose_regions(ReadResult& result, const ReadOptions& options) {
     result.info.blocks = listed(regions, name, result.info);
     const auto chosen = chosen_blocks(result.info.blocks, options);
     if (!chosen) return chosen.error();
-    std::vector<std::uint8_t> left_out(regions.size(), 1);
+    Piece piece;
+    piece.left_out.assign(regions.size(), 1);
     std::map<std::int64_t, bool> is_chosen;
     for (std::size_t i = 0; i < chosen->size(); ++i) is_chosen[result.info.blocks[i].number] = (*chosen)[i];
     std::uint64_t kept = 0;
     for (std::size_t cell = 0; cell < regions.size(); ++cell) {
         if (regions[cell] == no_region || !is_chosen.at(regions[cell])) continue;
-        left_out[cell] = 0;
+        piece.left_out[cell] = 0;
         ++kept;
     }
-    auto rest = kept_cells(std::move(result.grid), std::move(left_out));
-    if (!rest) return rest.error();
-    result.grid = *std::move(rest);
+    piece.grid = std::move(result.grid);
+    if (auto dropped = drop_left_out_cells(piece); !dropped) return dropped;
+    result.grid = std::move(piece.grid);
     result.notes.push_back(fmt::format("{} of {} cells are in the chosen regions", kept, regions.size()));
     return {};
 }

@@ -192,10 +192,12 @@ Result<void> read_displacement(ExodusFile& file, const std::string& name, std::s
     return {};
 }
 
+/// Blocks, then sets.
 std::vector<BlockInfo> blocks_of(const ExodusFile& file) {
     std::vector<BlockInfo> blocks;
     for (const ExodusFile::Block& block : file.blocks())
         blocks.push_back({block.id, block.name, "element block", block.cells});
+    for (const ExodusFile::Set& set : file.sets()) blocks.push_back({set.id, set.name, "element set", set.cells});
     return blocks;
 }
 
@@ -224,16 +226,30 @@ Result<FileInfo> describe_parts(const std::vector<std::string>& parts, const Rea
     return all;
 }
 
-/// Leaves out the blocks of one part that are not asked for.
-void choose_blocks(ExodusFile& file, const FileInfo& info, const std::vector<bool>& chosen) {
+/// Which blocks and sets of one part are asked for, in the order of blocks_of().
+std::vector<bool> chosen_here(const ExodusFile& file, const FileInfo& info, const std::vector<bool>& chosen) {
     std::vector<bool> here;
     for (const BlockInfo& block : blocks_of(file)) {
         const auto known = std::ranges::find_if(info.blocks, [&](const BlockInfo& other) {
-            return other.number == block.number && other.name == block.name;
+            return other.number == block.number && other.name == block.name && other.kind == block.kind;
         });
         here.push_back(chosen[static_cast<std::size_t>(known - info.blocks.begin())]);
     }
-    file.choose(here);
+    return here;
+}
+
+/// Marks the cells of all blocks that are in none of the chosen blocks and sets.
+Result<void> leave_out_others(const ExodusFile& file, const std::vector<bool>& chosen, Piece& piece) {
+    piece.left_out.clear();
+    for (std::size_t i = 0; i < file.blocks().size(); ++i)
+        piece.left_out.insert(piece.left_out.end(), file.blocks()[i].cells, chosen[i] ? 0 : 1);
+    for (std::size_t i = 0; i < file.sets().size(); ++i) {
+        if (!chosen[file.blocks().size() + i]) continue;
+        const auto cells = file.cells_of(file.sets()[i]);
+        if (!cells) return cells.error();
+        for (const std::int64_t cell : *cells) piece.left_out[static_cast<std::size_t>(cell)] = 0;
+    }
+    return {};
 }
 
 Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOptions& options, Loaded& loaded,
@@ -259,6 +275,23 @@ Result<Piece> read_piece(ExodusFile& file, const std::string& path, const ReadOp
     return piece;
 }
 
+Result<Piece> read_chosen(ExodusFile& file, const std::string& path, const ReadOptions& options,
+                          const std::vector<bool>& chosen, Loaded& loaded, bool with_ids) {
+    const std::vector<bool> here = chosen_here(file, loaded.info, chosen);
+    const auto sets = here.begin() + static_cast<std::ptrdiff_t>(file.blocks().size());
+    const bool all_blocks = std::find(sets, here.end(), true) != here.end();
+    if (!all_blocks) file.choose({here.begin(), sets});
+    auto piece = read_piece(file, path, options, loaded, with_ids);
+    if (!piece) return piece;
+    if (all_blocks) {
+        if (auto left_out = leave_out_others(file, here, *piece); !left_out) return left_out.error();
+        if (auto dropped = drop_left_out_cells(*piece); !dropped) return dropped.error();
+    } else {
+        drop_unused_points(*piece);
+    }
+    return piece;
+}
+
 } // namespace
 
 Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, Depth depth) {
@@ -278,10 +311,9 @@ Result<Loaded> load_exodus(const std::string& path, const ReadOptions& options, 
         const std::string& part = (*parts)[i];
         auto file = open_part(part, options);
         if (!file) return file.error();
-        if (!options.blocks.empty()) choose_blocks(*file, loaded.info, *chosen);
-        auto piece = read_piece(*file, part, options, loaded, parts->size() > 1);
+        auto piece = options.blocks.empty() ? read_piece(*file, part, options, loaded, parts->size() > 1)
+                                            : read_chosen(*file, part, options, *chosen, loaded, parts->size() > 1);
         if (!piece) return piece.error();
-        if (!options.blocks.empty()) drop_unused_points(*piece);
         loaded.pieces.push_back(std::move(*piece));
         report_progress(static_cast<double>(i + 1) / static_cast<double>(parts->size()));
     }

@@ -30,6 +30,7 @@ ExodusFile::ExodusFile(ExodusFile&& other) noexcept
       points_(other.points_),
       cells_(other.cells_),
       blocks_(std::move(other.blocks_)),
+      sets_(std::move(other.sets_)),
       all_blocks_(std::move(other.all_blocks_)),
       point_variables_(std::move(other.point_variables_)),
       cell_variables_(std::move(other.cell_variables_)),
@@ -69,13 +70,15 @@ Result<ExodusFile> ExodusFile::open(const std::string& path) {
 Result<void> ExodusFile::read_contents() {
     ex_init_params counts{};
     if (ex_get_init_ext(number_, &counts) < 0) return failed("the list of contents");
-    for (const std::int64_t count : {counts.num_dim, counts.num_nodes, counts.num_elem, counts.num_elem_blk})
+    for (const std::int64_t count :
+         {counts.num_dim, counts.num_nodes, counts.num_elem, counts.num_elem_blk, counts.num_elem_sets})
         if (count < 0 || static_cast<std::uint64_t>(count) > max_plausible)
             return failed(fmt::format("a count of {}", count));
     if (counts.num_dim < 1 || counts.num_dim > 3) return failed(fmt::format("a grid of {} dimensions", counts.num_dim));
     dimensions_ = static_cast<std::uint64_t>(counts.num_dim);
     points_ = static_cast<std::uint64_t>(counts.num_nodes);
     if (auto read = read_blocks(static_cast<std::size_t>(counts.num_elem_blk)); !read) return read;
+    if (auto read = read_sets(static_cast<std::size_t>(counts.num_elem_sets)); !read) return read;
 
     const std::int64_t steps = ex_inquire_int(number_, EX_INQ_TIME);
     if (steps < 0) return failed("the number of time steps");
@@ -126,12 +129,47 @@ Result<void> ExodusFile::read_blocks(std::size_t count) {
         result.faces = static_cast<std::uint64_t>(block.num_faces_per_entry);
         if (result.corners > 1000)
             return failed(fmt::format("element block {} with {} nodes an element", id, result.corners));
-        char name[max_name + 1] = {};
-        if (ex_get_name(number_, EX_ELEM_BLOCK, id, name) >= 0) result.name = name;
+        result.name = name_of(EX_ELEM_BLOCK, id);
         cells_ += result.cells;
         blocks_.push_back(std::move(result));
     }
     return {};
+}
+
+/// Empty: it has none.
+std::string ExodusFile::name_of(int entity, std::int64_t id) const {
+    char name[max_name + 1] = {};
+    return ex_get_name(number_, static_cast<ex_entity_type>(entity), id, name) >= 0 ? name : "";
+}
+
+Result<void> ExodusFile::read_sets(std::size_t count) {
+    std::vector<std::int64_t> ids(count);
+    if (count > 0 && ex_get_ids(number_, EX_ELEM_SET, ids.data()) < 0) return failed("the numbers of the element sets");
+    for (const std::int64_t id : ids) {
+        std::int64_t cells = 0, factors = 0;
+        if (ex_get_set_param(number_, EX_ELEM_SET, id, &cells, &factors) < 0)
+            return failed(fmt::format("element set {}", id));
+        if (cells < 0 || static_cast<std::uint64_t>(cells) > max_plausible)
+            return failed(fmt::format("element set {} of {} elements", id, cells));
+        std::string name = name_of(EX_ELEM_SET, id);
+        sets_.push_back(
+            {id, name.empty() ? fmt::format("set {}", id) : std::move(name), static_cast<std::uint64_t>(cells)});
+    }
+    return {};
+}
+
+Result<std::vector<std::int64_t>> ExodusFile::cells_of(const Set& set) const {
+    std::vector<std::int64_t> cells(set.cells);
+    if (set.cells > 0 && ex_get_set(number_, EX_ELEM_SET, set.id, cells.data(), nullptr) < 0)
+        return failed(fmt::format("the elements of set {}", set.id));
+    for (std::int64_t& cell : cells) {
+        if (cell < 1 || static_cast<std::uint64_t>(cell) > cells_)
+            return Error{ErrorCode::invalid_data,
+                         fmt::format("{}: element set {} has element {}, but the elements are 1 to {}", escaped(path_),
+                                     set.id, cell, cells_)};
+        --cell;
+    }
+    return cells;
 }
 
 void ExodusFile::choose(const std::vector<bool>& chosen) {

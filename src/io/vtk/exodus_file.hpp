@@ -25,6 +25,13 @@ public:
         bool has_faces() const { return topology.starts_with("NFACED"); }
     };
 
+    /// Elements of any blocks.
+    struct Set {
+        std::int64_t id = 0;
+        std::string name; ///< "set 3" where it has none
+        std::uint64_t cells = 0;
+    };
+
     static Result<ExodusFile> open(const std::string& path);
     ExodusFile(ExodusFile&& other) noexcept;
     ExodusFile& operator=(ExodusFile&&) = delete;
@@ -33,6 +40,7 @@ public:
     std::uint64_t points() const noexcept { return points_; }
     std::uint64_t cells() const noexcept { return cells_; }
     const std::vector<Block>& blocks() const noexcept { return blocks_; }
+    const std::vector<Set>& sets() const noexcept { return sets_; }
     const std::vector<std::string>& point_variables() const noexcept { return point_variables_; }
     const std::vector<std::string>& cell_variables() const noexcept { return cell_variables_; }
     const std::vector<double>& times() const noexcept { return times_; }
@@ -55,6 +63,8 @@ public:
     ///
     /// Errors   invalid_data: what the library does not read; counts whose sum is not that of the numbers
     Result<Ragged> faces_of(const Block& block);
+    /// The elements of a set, counted from 0 through all blocks of the file.
+    Result<std::vector<std::int64_t>> cells_of(const Set& set) const;
     Result<Array> point_variable(std::size_t variable, std::size_t step);
     /// One value a cell of all blocks; NaN in blocks that do not have the variable, which are counted.
     Result<Array> cell_variable(std::size_t variable, std::size_t step, std::size_t& blocks_without);
@@ -66,6 +76,8 @@ private:
     Error failed(std::string_view what) const;
     Result<void> read_contents();
     Result<void> read_blocks(std::size_t count);
+    Result<void> read_sets(std::size_t count);
+    std::string name_of(int entity, std::int64_t id) const;
     Result<Ragged> read_ragged(int entity, std::int64_t id, std::uint64_t count, std::uint64_t size) const;
     Result<std::vector<std::string>> variable_names(int entity);
     template <class T>
@@ -79,6 +91,7 @@ private:
     int word_ = 8;
     std::uint64_t dimensions_ = 3, points_ = 0, cells_ = 0; ///< cells of the chosen blocks
     std::vector<Block> blocks_;
+    std::vector<Set> sets_;
     std::vector<std::pair<std::uint64_t, bool>> all_blocks_; ///< cells, and whether chosen; empty: all are
     std::vector<std::string> point_variables_, cell_variables_;
     std::vector<double> times_;
