@@ -325,6 +325,7 @@ void add_view(const Command& program, ViewCommand& view) {
                      "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
     command.add_flag("--keep", view.keep, "Go on when the last page was closed; without it for a minute");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
+    add_refinement(command, view.refine);
     add_time(command, view.grid);
     add_reading(command, view.grid, "--format");
     add_common(command, view.common);

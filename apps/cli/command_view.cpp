@@ -24,8 +24,8 @@ namespace isotet::cli {
 
 namespace {
 
-/// Options that say how the file is read, for command lines of the page.
-std::vector<std::string> reading_options(const GridOptions& grid) {
+/// Options that say how the file is read and refined, for command lines of the page.
+std::vector<std::string> reading_options(const GridOptions& grid, const RefineChoice& refine) {
     std::vector<std::string> words;
     const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
     if (!grid.format.empty()) add("--format", grid.format);
@@ -35,6 +35,13 @@ std::vector<std::string> reading_options(const GridOptions& grid) {
     if (grid.allow_outside) words.emplace_back("--allow-outside");
     if (!grid.displace.empty()) add("--displace", grid.displace);
     for (const std::string& block : grid.blocks) add("--block", block);
+    const RefineOptions usual;
+    if (!refine) add("--tolerance", "nodes");
+    else if (refine->tolerance > 0) add("--tolerance", shortest(refine->tolerance));
+    else if (refine->relative_tolerance > 0 && refine->relative_tolerance != usual.relative_tolerance)
+        add("--tolerance", shortest(100 * refine->relative_tolerance) + "%");
+    if (refine && refine->distance > 0) add("--distance", shortest(refine->distance));
+    if (refine && refine->geometry_tolerance > 0) add("--geometry-tolerance", shortest(refine->geometry_tolerance));
     return words;
 }
 
@@ -101,7 +108,8 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     if (!steps) return steps.error();
     view::ViewerOptions options;
     options.file = valid_utf8(command.grid.file);
-    options.reading = reading_options(command.grid);
+    options.reading = reading_options(command.grid, command.refine);
+    options.refine = command.refine;
     options.port = static_cast<std::uint16_t>(command.port);
     options.hosts = command.hosts;
     options.version = ISOTET_VERSION;

@@ -45,6 +45,7 @@ struct ViewCommand {
     CommonOptions common;
     GridOptions grid;
     FieldChoice field;
+    RefineChoice refine = RefineOptions{};
     std::vector<double> isovalues;  ///< none: the page chooses one
     std::string color_by;           ///< a field; empty: each isovalue has its colour
     std::uint64_t port = 0;         ///< 0: a free one

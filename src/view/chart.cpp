@@ -46,8 +46,8 @@ double first_isovalue(const Chart& chart) {
 
 } // namespace
 
-Result<Chart> chart_of(const Grid& grid, const PointField& field, const Run& run) {
-    const auto statistics = statistics_of(field.values, run);
+Result<Chart> chart_of(const Array& values, const std::function<double(double isovalue)>& triangles, const Run& run) {
+    const auto statistics = statistics_of(values, run);
     if (!statistics) return statistics.error();
     Chart chart;
     chart.points.resize(Chart::bins);
@@ -58,13 +58,17 @@ Result<Chart> chart_of(const Grid& grid, const PointField& field, const Run& run
     chart.no_data = statistics->front().not_a_number;
     chart.first = chart.lower;
     if (!(chart.lower < chart.upper) || !std::isfinite(chart.upper - chart.lower)) return chart;
-    count_points(field.values, chart);
-    const Result<FieldSample> sample = FieldSample::create(grid, field);
-    if (!sample) return sample.error();
+    count_points(values, chart);
     for (std::size_t i = 0; i < Chart::bins; ++i)
-        chart.triangles[i] = sample->triangles(place_in_chart((static_cast<double>(i) + 0.5) / Chart::bins, chart));
+        chart.triangles[i] = triangles(place_in_chart((static_cast<double>(i) + 0.5) / Chart::bins, chart));
     chart.first = first_isovalue(chart);
     return chart;
+}
+
+Result<Chart> chart_of(const Grid& grid, const PointField& field, const Run& run) {
+    const Result<FieldSample> sample = FieldSample::create(grid, field);
+    if (!sample) return sample.error();
+    return chart_of(field.values, [&](double isovalue) { return sample->triangles(isovalue); }, run);
 }
 
 } // namespace isotet::view

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <isotet/plan.hpp>
@@ -24,8 +25,11 @@ struct Chart {
     std::uint64_t no_data = 0; ///< values that are NaN
 };
 
-/// Cost     one parallel pass over the values, and up to a million of them again
-/// Errors   as statistics_of() and FieldSample::create()
+/// `triangles`   how many an isosurface is expected to have
+/// Cost          one parallel pass over the values, and up to a million of them again
+/// Errors        as statistics_of()
+Result<Chart> chart_of(const Array& values, const std::function<double(double isovalue)>& triangles, const Run& run);
+/// Expected by a sample of the cells, which are linear. Errors   as above, and FieldSample::create()
 Result<Chart> chart_of(const Grid& grid, const PointField& field, const Run& run = {});
 
 } // namespace isotet::view

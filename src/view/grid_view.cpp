@@ -253,6 +253,18 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
 Result<Chart> GridView::chart(const std::string& field, const Run& run) {
     const Result<PointField> found = field_of(field, run);
     if (!found) return found.error();
+    if (has_cells_to_linearize(grid_.cells)) { // a session knows the linear ones
+        ViewState state;
+        state.field = field;
+        state.color_by = (is_packed_.load(std::memory_order_acquire) ? packed_ : direct_).color_by;
+        const Result<Source*> source = source_for(state, run);
+        if (!source) return source.error();
+        const auto expected = [&](double isovalue) {
+            const auto prediction = (*source)->contour->predict(isovalue);
+            return prediction ? prediction->triangles : 0;
+        };
+        return chart_of(found->values, expected, run);
+    }
     if (has_cells_) return chart_of(grid_, *found, run);
     Result<Chart> chart = chart_of(sample_->grid, *found, run);
     if (chart)

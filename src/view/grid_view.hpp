@@ -14,6 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/contour_spectrum.hpp>
 #include <isotet/isosurface_scene.hpp>
+#include <isotet/refine.hpp>
 
 #include "view/messages.hpp"
 #include "view/packed_source.hpp"
@@ -37,7 +38,8 @@ struct GridViewOptions {
     int threads = 0;                       ///< at most; 0: all
     std::size_t step = 0;                  ///< that the grid is
     std::size_t steps = 1;                 ///< of the file
-    ReadStep read_step;                    ///< of any step. Nothing: there is one step, and cells stay in memory
+    std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells, as ShowMessage::refined asks
+    ReadStep read_step; ///< of any step. Nothing: there is one step, and cells stay in memory
 };
 
 /// A frame in bytes. `known` of GridView::frame() are then the surfaces that the page has.
@@ -56,6 +58,8 @@ public:
     const Box& bounds() const noexcept { return bounds_; }
     std::uint64_t points() const noexcept { return grid_.points.tuples(); }
     std::uint64_t cells() const noexcept { return cell_count_; }
+    /// Whether ShowMessage::refined makes a difference.
+    bool refines() const { return options_.refine && has_curved_cells(grid_.cells); }
 
     /// Packs the grid for `field`. frame() extracts directly until then, and from the packed grid afterwards.
     /// Errors   as Contour::prepare(); frame() then goes on directly
@@ -92,7 +96,14 @@ private:
     struct Kept {
         std::string key;
         std::shared_ptr<const Mesh> mesh;
-        bool used = false; ///< by the frame that is made
+        bool used = false;      ///< by the frame that is made
+        double field_bound = 0; ///< where cells were refined
+    };
+    /// An isosurface of a frame.
+    struct Shown {
+        std::string key;
+        std::shared_ptr<const Mesh> mesh;
+        std::optional<double> field_bound; ///< where cells were refined
     };
     /// The session that surfaces come from, and what it was set to.
     struct Source {
@@ -126,6 +137,10 @@ private:
     Result<void> make_scene(const ShowMessage& message, const std::optional<ColorScale>& scale, const Run& run);
     std::optional<ColorField> color_field(const ViewState& state, const ColorScale& scale, const Run& run);
     Result<void> go_to_step(const ShowMessage& message, const Run& run);
+    Result<Shown> refined_at(const ViewState& state, double isovalue, const std::string& key, Making& making,
+                             const Run& run);
+    Result<Shown> surface_at(const ShowMessage& message, double isovalue, Source* source, Making& making,
+                             const Run& run);
     std::shared_ptr<const Mesh> kept_mesh(const std::string& key);
     Result<std::shared_ptr<const Mesh>> keep(const std::string& key, const Surface& surface,
                                              const std::optional<ColorScale>& scale, FrameFacts& facts, const Run& run);
@@ -135,7 +150,7 @@ private:
     Result<std::shared_ptr<const Mesh>> slice_at(const ViewState& state, const Plane& plane, const std::string& key,
                                                  const std::optional<ColorScale>& scale, FrameFacts& facts,
                                                  const Run& run);
-    Result<void> add_isosurfaces(const ViewState& state, const std::vector<std::string>& known, Making& making,
+    Result<void> add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known, Making& making,
                                  const Run& run);
     Result<void> add_slices(const ViewState& state, const std::vector<std::string>& known, Making& making,
                             const Run& run);

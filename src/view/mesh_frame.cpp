@@ -97,6 +97,45 @@ Result<std::shared_ptr<const Mesh>> GridView::mesh_at(Source& source, double iso
     return keep(key, extracted->surfaces.front().surface, scale, facts, run);
 }
 
+/// The refined grid is for one isovalue, and takes memory: it is made for the mesh, which is kept.
+Result<GridView::Shown> GridView::refined_at(const ViewState& state, double isovalue, const std::string& key,
+                                             Making& making, const Run& run) {
+    if (!kept_mesh(key)) {
+        Result<ContourInput> input = input_of(state.field, state.color_by, run);
+        if (!input) return input.error();
+        ContourOptions options;
+        options.method = Method::direct;
+        options.refine = options_.refine;
+        Result<Contour> contour = Contour::create(*std::move(input), options);
+        if (!contour) return contour.error();
+        const auto start = std::chrono::steady_clock::now();
+        const Result<ContourResult> extracted = contour->extract(isovalue, run);
+        if (!extracted) return extracted.error();
+        making.facts.extract_seconds += seconds_of(start);
+        const auto made = keep(key, extracted->surfaces.front().surface, making.facts.scale, making.facts, run);
+        if (!made) return made.error();
+        kept_.back().field_bound = extracted->refinement.field_bound;
+    }
+    const auto kept = std::ranges::find(kept_, key, &Kept::key);
+    return Shown{key, kept->mesh, kept->field_bound};
+}
+
+/// Refined where that is asked for, or was done before. `source` is null where the packed grid serves all.
+Result<GridView::Shown> GridView::surface_at(const ShowMessage& message, double isovalue, Source* source,
+                                             Making& making, const Run& run) {
+    const ViewState& state = message.state;
+    const std::string key = mesh_key(state, isovalue, step_), refined_key = "refined|" + key;
+    if ((message.refined && refines()) || kept_mesh(refined_key)) {
+        Result<Shown> refined = refined_at(state, isovalue, refined_key, making, run);
+        if (refined || refined.error().code == ErrorCode::cancelled) return refined;
+        making.facts.notes.push_back("The surface is not refined: " + refined.error().message);
+    }
+    auto mesh = source ? mesh_at(*source, isovalue, key, making.facts.scale, making.facts, run)
+                       : packed_mesh_at(state, isovalue, key, making, run);
+    if (!mesh) return mesh.error();
+    return Shown{key, *std::move(mesh), {}};
+}
+
 std::optional<ColorField> GridView::color_field(const ViewState& state, const ColorScale& scale, const Run& run) {
     ColorField colors{state.color_by, {}, Association::point, scale, false, {}};
     if (const Field* cells = cell_colors(grid_, state.color_by)) {
@@ -152,38 +191,40 @@ void GridView::add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh
     making.surfaces.push_back(std::move(surface));
 }
 
-Result<void> GridView::add_isosurfaces(const ViewState& state, const std::vector<std::string>& known, Making& making,
-                                       const Run& run) {
+Result<void> GridView::add_isosurfaces(const ShowMessage& message, const std::vector<std::string>& known,
+                                       Making& making, const Run& run) {
+    const ViewState& state = message.state;
     const bool lean = is_packed_.load(std::memory_order_acquire) && lean_;
     if (lean) direct_.contour.reset();
     Result<Source*> source = lean ? Result<Source*>(nullptr) : source_for(state, run);
     if (!source) return source.error();
-    std::vector<std::shared_ptr<const Mesh>> meshes;
+    std::vector<Shown> shown;
     std::vector<double> values; // each once
     std::vector<Box> boxes;
     for (const double isovalue : state.isovalues) {
-        const std::string key = mesh_key(state, isovalue, step_);
-        auto mesh = lean ? packed_mesh_at(state, isovalue, key, making, run)
-                         : mesh_at(**source, isovalue, key, making.facts.scale, making.facts, run);
-        if (!mesh) return mesh.error();
-        meshes.push_back(*mesh);
+        auto surface = surface_at(message, isovalue, *source, making, run);
+        if (!surface) return surface.error();
+        shown.push_back(*std::move(surface));
         if (std::ranges::find(values, isovalue) != values.end()) continue;
         values.push_back(isovalue);
-        boxes.push_back((*mesh)->box);
+        boxes.push_back(shown.back().mesh->box);
     }
+    if (std::ranges::all_of(shown, [](const Shown& one) { return one.field_bound.has_value(); }))
+        for (const Shown& one : shown)
+            making.facts.field_bound = std::max(making.facts.field_bound.value_or(0), *one.field_bound);
     SceneLook look;
     look.map = state.map;
     look.opacity = state.opacity;
     const std::vector<SurfaceLook> looks = looks_of(values, boxes, look);
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
+    for (std::size_t i = 0; i < shown.size(); ++i) {
         const double isovalue = state.isovalues[i];
         const auto which = static_cast<std::size_t>(std::ranges::find(values, isovalue) - values.begin());
         FrameSurface surface;
-        surface.key = mesh_key(state, isovalue, step_);
+        surface.key = std::move(shown[i].key);
         surface.isovalue = isovalue;
         surface.color = looks[which].color;
         surface.opacity = looks[which].opacity;
-        add(std::move(surface), meshes[i], known, making);
+        add(std::move(surface), shown[i].mesh, known, making);
     }
     if (making.facts.method.empty())
         making.facts.method = name_of(lean ? Method::clusters : (*source)->contour->method());
@@ -233,7 +274,7 @@ Result<Frame> GridView::frame(const ShowMessage& message, double wait_seconds, s
     making.facts.wait_seconds = wait_seconds;
     making.facts.scale = *scale;
     making.facts.step = step_;
-    if (Result<void> added = add_isosurfaces(state, known, making, run); !added) return added.error();
+    if (Result<void> added = add_isosurfaces(message, known, making, run); !added) return added.error();
     if (Result<void> added = add_slices(state, known, making, run); !added) return added.error();
     add_boundary(state, known, making);
     std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });

@@ -35,7 +35,7 @@ std::optional<std::uint64_t> message_number(const Json& json) {
     return number ? whole_number(*number) : std::nullopt;
 }
 
-Result<PageMessage> parse_show(const Json& json) {
+Result<PageMessage> parse_show(const Json& json, bool refined) {
     const auto number = message_number(json);
     if (!number) return wrong_message("\"number\" takes a whole number");
     Result<ViewState> state = message_state(json);
@@ -43,6 +43,7 @@ Result<PageMessage> parse_show(const Json& json) {
     ShowMessage message;
     message.number = *number;
     message.state = *std::move(state);
+    message.refined = refined;
     const Json* moving = find(json, "moving");
     message.moving = moving && moving->is_boolean() && moving->get<bool>();
     if (const Json* most = find(json, "most")) message.most = whole_number(*most);
@@ -124,7 +125,7 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
         if (token) return PageMessage(HelloMessage{*std::move(token)});
         return wrong_message("\"token\" takes a text");
     }
-    if (action == "show") return parse_show(json);
+    if (action == "show" || action == "refine") return parse_show(json, action == "refine");
     if (action == "shown") {
         if (const auto number = message_number(json)) return PageMessage(ShownMessage{*number});
         return wrong_message("\"number\" takes a whole number");
@@ -147,7 +148,7 @@ Result<PageMessage> parse_known(const std::string& action, const Json& json) {
     }
     if (action == "pick") return parse_pick(json);
     if (action == "save") return parse_save(json);
-    return wrong_message("\"do\" is none of hello, show, shown, chart, spectrum, command, paste, pick, save");
+    return wrong_message("\"do\" is none of hello, show, refine, shown, chart, spectrum, command, paste, pick, save");
 }
 
 double milliseconds(double seconds) { return std::round(seconds * 1e5) / 100; }
@@ -206,6 +207,7 @@ std::string frame_bytes(const FrameFacts& facts, const std::vector<FrameSurface>
                  {"wait_ms", milliseconds(facts.wait_seconds)},
                  {"step", facts.step},
                  {"notes", facts.notes}};
+    if (facts.field_bound) head["field_bound"] = *facts.field_bound;
     if (facts.scale)
         head["scale"] = {{"lower", facts.scale->lower},
                          {"upper", facts.scale->upper},

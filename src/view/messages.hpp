@@ -28,11 +28,13 @@ struct HelloMessage {
     std::string token;
 };
 
+/// {"do": "refine", ...}: the same once more with curved cells refined, when nothing else is to be done.
 /// {"do": "show", "number": n, "state": ..., "moving": true, "most": N, "next": N, "picture": [w, h]}: what the page wants to see. `number` grows.
 struct ShowMessage {
     std::uint64_t number = 0;
     ViewState state;
     bool moving = false; ///< a preview will do
+    bool refined = false;
     std::optional<std::uint64_t>
         most; ///< triangles of a surface that the page draws in time; nothing: the server's limit
     std::optional<std::uint64_t> next;                   ///< the step that will be wanted next: read ahead
@@ -104,6 +106,7 @@ struct FrameFacts {
     std::optional<ColorScale> scale; ///< of values on the surfaces
     std::vector<std::string> notes;
     std::uint64_t step = 0;
+    std::optional<double> field_bound = {};     ///< of the refined cells; nothing: none was refined
     std::optional<EncodedPicture> picture = {}; ///< instead of meshes
 };
 

@@ -150,7 +150,7 @@ void Viewer::Data::set_grid(const ViewerInput& input) {
         fields.push_back({{"name", field.name}, {"cell", field.association == Association::cell}});
     Json grid = {{"say", "grid"},          {"file", options.file},        {"points", view->points()},
                  {"cells", view->cells()}, {"fields", std::move(fields)}, {"state", to_json(input.state)},
-                 {"notes", input.notes},   {"times", input.times}};
+                 {"notes", input.notes},   {"times", input.times},        {"refines", view->refines()}};
     const Box& box = view->bounds();
     if (!box.empty()) {
         grid["lower"] = {box.lower[0], box.lower[1], box.lower[2]};
@@ -183,6 +183,7 @@ void Viewer::Data::read_and_pack() {
     view_options.step = input->state.step.value_or(0);
     view_options.steps = std::max<std::size_t>(1, input->times.size());
     view_options.read_step = options.read_step;
+    view_options.refine = options.refine;
     Result<std::unique_ptr<GridView>> made = GridView::create(std::move(input->grid), view_options);
     if (!made) return set_failure(made.error());
     view = *std::move(made);
@@ -248,8 +249,10 @@ void Viewer::Data::save(ConnectionNumber from, const SaveRequest& request) {
 }
 
 void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
-    if (auto* show = std::get_if<ShowMessage>(&message)) worker->wish(from, std::move(*show));
-    else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
+    if (auto* show = std::get_if<ShowMessage>(&message)) {
+        if (show->refined) worker->ask_refined(from, std::move(*show));
+        else worker->wish(from, std::move(*show));
+    } else if (std::holds_alternative<ShownMessage>(message)) worker->acknowledge(from);
     else if (auto* chart = std::get_if<ChartMessage>(&message)) worker->ask_chart(from, std::move(chart->field));
     else if (auto* spectrum = std::get_if<SpectrumMessage>(&message))
         worker->ask_spectrum(from, std::move(spectrum->field));

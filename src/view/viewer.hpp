@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <isotet/grid.hpp>
 #include <isotet/progress.hpp>
+#include <isotet/refine.hpp>
 #include <isotet/result.hpp>
 
 #include "view/state.hpp"
@@ -40,8 +42,10 @@ struct ViewerOptions {
     int threads = 0;                                     ///< at most; 0: all
     std::function<Result<ViewerInput>(const Run&)> read; ///< called by a thread of its own
     ReadStep read_step;                                  ///< of any step; nothing: the file is not read again
-    std::string out;                                     ///< a folder where pages may save files; empty: they may not
-    std::string program;                                 ///< that writes these files, by command lines of isotet
+    std::optional<RefineOptions> refine =
+        RefineOptions{}; ///< of curved cells where a page rests; nothing: it is not done
+    std::string out;     ///< a folder where pages may save files; empty: they may not
+    std::string program; ///< that writes these files, by command lines of isotet
 };
 
 /// 128 random bits as 32 hexadecimal digits. Errors   system

@@ -29,7 +29,7 @@ void Worker::start(std::shared_ptr<FrameMaker> maker) {
 
 void Worker::add_page(PageNumber page) {
     const std::lock_guard lock(mutex_);
-    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}, {}});
+    pages_.emplace(page, Page{Slot<Wish>(rules_), {}, {}, {}, {}, {}});
 }
 
 void Worker::remove_page(PageNumber page) {
@@ -45,6 +45,7 @@ void Worker::wish(PageNumber page, ShowMessage message) {
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
         found->second.slot.put({std::move(message), clock_()});
+        found->second.refined.reset();
         cancel_if_stale();
         interrupt_background();
     }
@@ -79,6 +80,17 @@ void Worker::ask_spectrum(PageNumber page, std::string field) {
         const auto found = pages_.find(page);
         if (found == pages_.end()) return;
         found->second.spectrum = std::move(field);
+        interrupt_background();
+    }
+    changed_.notify_all();
+}
+
+void Worker::ask_refined(PageNumber page, ShowMessage message) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pages_.find(page);
+        if (found == pages_.end()) return;
+        found->second.refined = std::move(message);
         interrupt_background();
     }
     changed_.notify_all();
@@ -138,7 +150,8 @@ void Worker::work() {
             const std::optional<PageNumber> later = next_in_background();
             const double idle = clock_() - busy_;
             const bool restless = maker_ && has_background_ && !rested_;
-            if (later && idle >= pause) make_spectrum(lock, *later);
+            if (later && idle >= pause && pages_.at(*later).refined) make_refined(lock, *later);
+            else if (later && idle >= pause) make_spectrum(lock, *later);
             else if (!later && restless && idle >= rest_pause) rest(lock);
             else if (later || restless) changed_.wait_for(lock, std::chrono::milliseconds(20));
             else changed_.wait(lock);
@@ -164,8 +177,37 @@ void Worker::rest(std::unique_lock<std::mutex>& lock) {
 std::optional<PageNumber> Worker::next_in_background() const {
     if (!maker_ || !has_background_) return std::nullopt;
     for (const auto& [number, page] : pages_)
-        if (page.spectrum) return number;
+        if (page.spectrum || page.refined) return number;
     return std::nullopt;
+}
+
+/// What is wanted stays wanted while it is made: a cancelled frame is made anew, unless the page wishes something else.
+void Worker::make_refined(std::unique_lock<std::mutex>& lock, PageNumber number) {
+    const ShowMessage message = *pages_.at(number).refined;
+    std::vector<std::string> known = pages_.at(number).known;
+    const std::shared_ptr<FrameMaker> maker = maker_;
+    is_in_background_ = true;
+    cancel_ = stop_;
+    lock.unlock();
+    Result<std::string> frame = maker->frame(message, 0, known, {0, {{}, &cancel_}});
+    lock.lock();
+    is_in_background_ = false;
+    rested_ = false;
+    busy_ = clock_();
+    const auto page = pages_.find(number);
+    const bool cancelled = !frame && frame.error().code == ErrorCode::cancelled;
+    if (page == pages_.end() || cancelled) return;
+    page->second.refined.reset();
+    if (frame) page->second.known = std::move(known);
+    lock.unlock();
+    send_frame(number, message.number, std::move(frame));
+    lock.lock();
+}
+
+void Worker::send_frame(PageNumber number, std::uint64_t wish, Result<std::string> frame) {
+    if (frame) output_.frame(number, *std::move(frame));
+    else if (frame.error().code != ErrorCode::cancelled)
+        output_.text(number, refusal_text(wish, frame.error().message));
 }
 
 void Worker::make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number) {
@@ -237,8 +279,7 @@ void Worker::make_frame(std::unique_lock<std::mutex>& lock, PageNumber number) {
     found->second.slot.finish(made ? End::frame : cancelled ? End::cancelled : End::nothing);
     if (made) found->second.known = std::move(known);
     lock.unlock();
-    if (made) output_.frame(number, *std::move(frame));
-    else if (!cancelled) output_.text(number, refusal_text(wish->message.number, frame.error().message));
+    send_frame(number, wish->message.number, std::move(frame));
     lock.lock();
 }
 

@@ -63,6 +63,8 @@ public:
     /// The newest counts. Begun after start_background(), when `pause` seconds nothing else was done, and begun anew when
     /// it was cancelled for something else.
     void ask_spectrum(PageNumber page, std::string field);
+    /// A frame with curved cells refined. The same; forgotten at the page's next wish.
+    void ask_refined(PageNumber page, ShowMessage message);
     void start_background();
     void acknowledge(PageNumber page);
 
@@ -78,6 +80,7 @@ private:
         Slot<Wish> slot;
         std::optional<std::string> chart;
         std::optional<PickMessage> pick;
+        std::optional<ShowMessage> refined;
         std::optional<std::string> spectrum;
         std::vector<std::string> known;
     };
@@ -86,11 +89,13 @@ private:
     std::optional<PageNumber> next_page() const;
     void make_chart(std::unique_lock<std::mutex>& lock, PageNumber number);
     std::optional<PageNumber> next_in_background() const;
+    void make_refined(std::unique_lock<std::mutex>& lock, PageNumber number);
     void make_spectrum(std::unique_lock<std::mutex>& lock, PageNumber number);
     void interrupt_background();
     void rest(std::unique_lock<std::mutex>& lock);
     void make_pick(std::unique_lock<std::mutex>& lock, PageNumber number);
     void tell(PageNumber number, std::string_view about, Result<std::string> answer);
+    void send_frame(PageNumber number, std::uint64_t wish, Result<std::string> frame);
     void make_frame(std::unique_lock<std::mutex>& lock, PageNumber number);
     void cancel_if_stale();
 

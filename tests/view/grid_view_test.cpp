@@ -130,6 +130,109 @@ TEST_F(GridViewTest, AnotherFieldIsFollowedDirectlyAndPacked) {
     EXPECT_EQ(packed["surfaces"][0]["triangles"], direct);
 }
 
+class CurvedGridView : public testing::Test {
+protected:
+    static std::unique_ptr<GridView> view_with(const std::optional<RefineOptions>& refine) {
+        GridViewOptions options;
+        options.refine = refine;
+        return GridView::create(grid(), options).value();
+    }
+    static Grid grid() {
+        MakeOptions options;
+        options.shape = "curved";
+        options.side = 3;
+        options.fields = {"sphere"};
+        return make_grid(options).value();
+    }
+    static ShowMessage refined(std::uint64_t number, std::vector<double> isovalues) {
+        ShowMessage message = show(number, std::move(isovalues));
+        message.refined = true;
+        return message;
+    }
+    static std::uint64_t triangles(double isovalue, const RefineOptions& refine) {
+        const Grid curved = grid();
+        ContourOptions options;
+        options.refine = refine;
+        Contour contour =
+            Contour::create({curved, PointField{"sphere", curved.point_fields[0].values, false, {}}, {}, {}}, options)
+                .value();
+        return contour.extract(isovalue).value().surfaces.front().surface.triangle_count();
+    }
+    std::vector<std::string> known_;
+    Json frame(GridView& view, const ShowMessage& message) {
+        auto made = view.frame(message, 0, known_, {});
+        if (!made) throw std::runtime_error(made.error().message);
+        return head_of(made->bytes);
+    }
+};
+
+TEST_F(CurvedGridView, IsRefinedWhenAskedAndStaysSo) {
+    RefineOptions refine;
+    refine.relative_tolerance = 1e-4;
+    const auto view = view_with(refine);
+    ASSERT_TRUE(view->refines());
+    const Json coarse = frame(*view, show(1, {0.7}));
+    EXPECT_FALSE(coarse.contains("field_bound"));
+    const Json fine = frame(*view, refined(2, {0.7}));
+    EXPECT_EQ(fine["surfaces"][0]["triangles"], triangles(0.7, refine));
+    EXPECT_GT(fine["surfaces"][0]["triangles"], coarse["surfaces"][0]["triangles"]);
+    EXPECT_GT(fine["field_bound"], 0.0);
+    EXPECT_LT(fine["field_bound"], 1e-3);
+    const Json again = frame(*view, show(3, {0.7}, true));
+    EXPECT_EQ(again["surfaces"][0]["key"], fine["surfaces"][0]["key"]);
+    EXPECT_FALSE(again["surfaces"][0].contains("mesh")) << "the page has it";
+    EXPECT_EQ(again["field_bound"], fine["field_bound"]);
+    const Json pinned = frame(*view, show(4, {0.6, 0.7}));
+    EXPECT_FALSE(pinned.contains("field_bound")) << "one of two is not refined";
+    EXPECT_EQ(pinned["surfaces"][1]["key"], fine["surfaces"][0]["key"]);
+    EXPECT_TRUE(frame(*view, refined(5, {0.6, 0.7})).contains("field_bound"));
+}
+
+TEST_F(CurvedGridView, AndPolyhedraHaveAChartOfTheirSurfaces) {
+    for (const char* shape : {"curved", "kelvin"})
+        for (const bool packed : {false, true}) {
+            SCOPED_TRACE(std::string(shape) + (packed ? ", packed" : ""));
+            MakeOptions options;
+            options.shape = shape;
+            options.side = 5;
+            options.fields = {"sphere", "gyroid"};
+            auto view = GridView::create(make_grid(options).value()).value();
+            if (packed) { ASSERT_TRUE(view->pack("gyroid", {})); }
+            const Result<Chart> chart = view->chart("sphere", {});
+            ASSERT_TRUE(chart) << chart.error().message;
+            const Json head = frame(*view, show(1, {0.7}));
+            const auto bin =
+                static_cast<std::size_t>((0.7 - chart->lower) / (chart->upper - chart->lower) * Chart::bins);
+            const double expected = chart->triangles[bin], there = head["surfaces"][0]["triangles"];
+            EXPECT_LT(std::abs(expected - there), 0.3 * there) << expected << " of " << there;
+            known_.clear();
+        }
+}
+
+TEST_F(CurvedGridView, IsNotRefinedWithoutATolerance) {
+    const auto view = view_with(std::nullopt);
+    EXPECT_FALSE(view->refines());
+    EXPECT_FALSE(frame(*view, refined(1, {0.7})).contains("field_bound"));
+}
+
+TEST_F(CurvedGridView, StaysAsItIsWhereRefiningFails) {
+    RefineOptions refine;
+    refine.max_tets = 10;
+    const auto view = view_with(refine);
+    const Json head = frame(*view, refined(1, {0.7}));
+    EXPECT_FALSE(head.contains("field_bound"));
+    EXPECT_GT(head["surfaces"][0]["triangles"], 10);
+    ASSERT_EQ(head["notes"].size(), 2U);
+    EXPECT_NE(head["notes"][0].get<std::string>().find("not refined: "), std::string::npos);
+}
+
+TEST_F(GridViewTest, OfLinearCellsHasNothingToRefine) {
+    EXPECT_FALSE(view_->refines());
+    ShowMessage message = show(1, {0.7});
+    message.refined = true;
+    EXPECT_FALSE(frame(message).contains("field_bound"));
+}
+
 TEST_F(GridViewTest, WrongWishesAreErrorsAndLeaveWhatThePageHas) {
     frame(show(1, {0.7}));
     const std::vector<std::string> before = known_;

@@ -17,6 +17,8 @@ TEST(ParsePageMessage, TakesEveryKind) {
     EXPECT_EQ(std::get<HelloMessage>(*parse_page_message(R"({"do":"hello","token":"abc"})")).token, "abc");
     const auto show = std::get<ShowMessage>(*parse_page_message(
         R"({"do":"show","number":7,"moving":true,"most":900,"state":{"field":"p","isovalues":[0.5]}})"));
+    EXPECT_FALSE(show.refined);
+    EXPECT_TRUE(std::get<ShowMessage>(*parse_page_message(R"({"do":"refine","number":8,"state":{}})")).refined);
     EXPECT_EQ(show.number, 7U);
     EXPECT_TRUE(show.moving);
     EXPECT_EQ(show.most, 900U);
@@ -34,7 +36,7 @@ TEST(ParsePageMessage, RefusesEverythingElse) {
          {"", "x", "[]", "null", "3", "{}", R"({"do":3})", R"({"do":"write"})", R"({"do":"hello"})",
           R"({"do":"hello","token":3})", R"({"do":"show"})", R"({"do":"show","number":-1,"state":{}})",
           R"({"do":"show","number":1.5,"state":{}})", R"({"do":"show","number":1})",
-          R"({"do":"show","number":1,"state":[]})", R"({"do":"shown","number":"1"})", R"({"do":"chart"})",
+          R"({"do":"show","number":1,"state":[]})", R"({"do":"refine","number":1})", R"({"do":"shown","number":"1"})", R"({"do":"chart"})",
           R"({"do":"paste","text":null})", "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
         const auto message = parse_page_message(text);
         ASSERT_FALSE(message) << text;

@@ -226,6 +226,33 @@ def test_area_and_volume(browser, viewer):
     browser.wait('document.body.dataset.spectrum === "gyroid"')
 
 
+def test_curved_cells_are_refined_at_rest(browser, viewer):
+    """What moves is split at its nodes; at rest the surface is that of the command line, within the tolerance."""
+    with Viewer('make:curved:4:sphere', '--tolerance', '0.01%') as curved, tempfile.TemporaryDirectory() as folder:
+        start(browser, curved)
+        browser.wait('document.body.dataset.bound !== ""')
+        x, y, w, h = browser.box('#slider')
+        browser.value('window.seen = []; new MutationObserver(() => seen.push(document.body.dataset.bound))'
+                      '.observe(document.body, {attributes: true, attributeFilter: ["data-bound"]})')
+        browser.drag((x + 0.3 * w, y + h / 2), (x + 0.6 * w, y + h / 2), steps=12)
+        at_rest(browser)
+        browser.wait('document.body.dataset.bound !== ""')
+        check('' in browser.value('seen'), 'while the hand moves, nothing is refined')
+        type_value(browser, '0.7')
+        browser.wait('document.body.dataset.shown === "0.7" && document.body.dataset.bound !== ""')
+        check(0 < float(browser.value('document.body.dataset.bound')) < 1e-3, 'the bound is told')
+        check('refined: within' in browser.value('document.getElementById("facts").textContent'), 'in words, too')
+        browser.picture(pictures and f'{pictures}/curved.png')
+        browser.click('#copy-extract')
+        browser.wait('document.getElementById("copied").textContent.includes("isotet extract")')
+        words = shlex.split(browser.value('document.getElementById("copied").textContent'))
+        told = subprocess.run([os.environ['ISOTET_PROGRAM'], *words[1:-1], f'{folder}/s.vtp', '--json', '-', '-q'],
+                              check=True, capture_output=True, text=True)
+        check(json.loads(told.stdout)['surfaces'][0]['triangles'] == int(browser.value('document.body.dataset.triangles')),
+              'it is that of isotet extract')
+        browser.call('Page.navigate', url='about:blank')
+
+
 def test_pins_undo_and_address(browser, viewer):
     start(browser, viewer)
     first = shown(browser)

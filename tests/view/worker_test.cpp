@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <thread>
 
 #include "view/worker.hpp"
 
@@ -59,6 +60,10 @@ public:
     }
     void set_free() {
         set([&] { free_ = true; });
+    }
+    bool has_begun(std::size_t count) {
+        const std::lock_guard lock(mutex_);
+        return begun_.size() >= count;
     }
     /// Waits until so many wishes were begun.
     std::vector<std::uint64_t> begun(std::size_t count) {
@@ -259,6 +264,39 @@ TEST_F(WorkerTest, ASpectrumWaitsForThePauseAfterAFrame) {
     }
     EXPECT_EQ(engine_->spectra(), 0);
     engine_->spectra(1, now_);
+}
+
+TEST_F(WorkerTest, ARefinedFrameIsMadeWhenNothingElseIs) {
+    worker_.add_page(1);
+    worker_.start(engine_);
+    worker_.start_background();
+    const auto ask = [&](std::uint64_t number) {
+        ShowMessage message;
+        message.number = number;
+        message.refined = true;
+        worker_.ask_refined(1, message);
+    };
+    const auto until_begun = [&](std::size_t count) {
+        for (now_ = now_ + 1; !engine_->has_begun(count); now_ = now_ + 1)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    ask(1);
+    until_begun(1);
+    worker_.ask_chart(1, "p"); // not what the frame is of: it is begun again
+    EXPECT_EQ(sent_.to(1, 1).back(), "chart of p");
+    until_begun(2);
+    engine_->let_go();
+    EXPECT_EQ(sent_.to(1, 2).back(), "frame 1");
+    ask(2);
+    until_begun(3);
+    wish(1, 3); // the page moved on: the refined frame is forgotten
+    engine_->begun(4);
+    engine_->set_free();
+    EXPECT_EQ(sent_.to(1, 3).back(), "frame 3");
+    now_ = now_ + 10;
+    worker_.ask_spectrum(1, "p");
+    engine_->spectra(1, now_);
+    EXPECT_EQ(engine_->begun(4), (std::vector<std::uint64_t>{1, 1, 2, 3}));
 }
 
 } // namespace

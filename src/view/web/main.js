@@ -110,6 +110,7 @@ function draw() {
     time.shown(frame.step);
     measureServer(frame);
     askSpectrum();
+    refineSoon();
   }
   document.body.dataset.camera = camera.text();
 }
@@ -148,11 +149,13 @@ function tellFacts() {
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
   parts.push(`extract ${format.duration(frame.extract_ms)}`, `${picture ? 'draw and code' : 'code'} ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
     `${picture ? 'show' : 'draw'} ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
-  if (frame.method === 'direct' && !picture) parts.push('direct, while the grid is packed');
+  if (frame.field_bound != null) parts.push(`curved cells refined: within ${format.short(frame.field_bound)} of the field`);
+  else if (grid.refines && !picture) parts.push('curved cells split at their nodes');
+  if (frame.method === 'direct' && !picture && frame.field_bound == null) parts.push('direct, while the grid is packed');
   id('facts').textContent = parts.join(' · ');
   id('facts').title = parts.join('\n');
   Object.assign(document.body.dataset, {shown: first?.isovalue ?? '', triangles, drawn, preview: frame.preview, method: frame.method,
-    frame: frame.number, field: frame.field, step_shown: frame.step,
+    bound: frame.field_bound ?? '', frame: frame.number, field: frame.field, step_shown: frame.step,
     picture: frame.picture?.type ?? '', kinds: frame.surfaces.map(({kind}) => kind).join(' ')});
   id('scene').setAttribute('aria-label', `Isosurface of ${state.field} at ${first ? format.short(first.isovalue) : 'no value'}, ` +
     `${format.grouped(triangles)} triangles. Arrow keys turn, with Shift they move, plus and minus zoom.`);
@@ -273,6 +276,15 @@ function wishSoon() {
 function restSoon() {
   clearTimeout(restTimer);
   restTimer = setTimeout(() => wish(false), 150);
+}
+
+/** Curved cells are refined where nothing moves: the surface that is shown is made anew, and takes its time. */
+function refineSoon() {
+  if (!grid.refines || frame.picture || frame.preview || frame.field_bound != null) return;
+  if (frame.number !== number || sent !== wanted() + '|rest') return;
+  const message = {do: 'refine', number: number + 1, state: toMessage(state), most: lastMost};
+  delete message.state.camera;
+  if (link.send(message)) sentAt.set(++number, performance.now());
 }
 
 // --- undo: the address holds the state ------------------------------------------------------------------------------
