@@ -32,12 +32,26 @@ TEST(ParsePageMessage, TakesEveryKind) {
 }
 
 TEST(ParsePageMessage, RefusesEverythingElse) {
-    for (const char* text :
-         {"", "x", "[]", "null", "3", "{}", R"({"do":3})", R"({"do":"write"})", R"({"do":"hello"})",
-          R"({"do":"hello","token":3})", R"({"do":"show"})", R"({"do":"show","number":-1,"state":{}})",
-          R"({"do":"show","number":1.5,"state":{}})", R"({"do":"show","number":1})",
-          R"({"do":"show","number":1,"state":[]})", R"({"do":"refine","number":1})", R"({"do":"shown","number":"1"})", R"({"do":"chart"})",
-          R"({"do":"paste","text":null})", "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
+    for (const char* text : {"",
+                             "x",
+                             "[]",
+                             "null",
+                             "3",
+                             "{}",
+                             R"({"do":3})",
+                             R"({"do":"write"})",
+                             R"({"do":"hello"})",
+                             R"({"do":"hello","token":3})",
+                             R"({"do":"show"})",
+                             R"({"do":"show","number":-1,"state":{}})",
+                             R"({"do":"show","number":1.5,"state":{}})",
+                             R"({"do":"show","number":1})",
+                             R"({"do":"show","number":1,"state":[]})",
+                             R"({"do":"refine","number":1})",
+                             R"({"do":"shown","number":"1"})",
+                             R"({"do":"chart"})",
+                             R"({"do":"paste","text":null})",
+                             "{\"do\":\"hello\",\"token\":\"\xff\"}"}) {
         const auto message = parse_page_message(text);
         ASSERT_FALSE(message) << text;
         EXPECT_EQ(message.error().code, ErrorCode::invalid_argument) << text;
