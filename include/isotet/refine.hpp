@@ -22,7 +22,8 @@ struct RefineOptions {
     /// Largest distance of the tets from the curved cells, in the points' unit; 0: edges leave the curve by at most a
     /// hundredth of their length.
     double geometry_tolerance = 0;
-    /// Only what these can meet is kept: the grid is good for them alone. Empty: all is kept.
+    /// Only what these can meet is kept: the grid is good for them alone. Where they meet nothing, some tets stay, so that the
+    /// grid can be contoured. Empty: all is kept.
     std::vector<double> isovalues = {};
     /// More tets than this are an error; 0: as many as free memory holds.
     std::uint64_t max_tets = 0;

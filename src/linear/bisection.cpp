@@ -250,6 +250,12 @@ double Bisector::distance_in(const Part& part) const {
     return error_per_deviation * bump / slope(along, rise);
 }
 
+/// All points inside have just that value then (weighted_sum()), so no isosurface is there: also not the one of the value.
+bool Bisector::is_constant(const Part& part) {
+    return std::ranges::all_of(part.corners, [&](const Corner& c) { return c.value == part.corners[0].value; }) &&
+           std::ranges::all_of(part.edges, [](const Edge& edge) { return edge.bump == 0; });
+}
+
 /// The whole of a quadratic tet.
 Bisector::Part Bisector::part_of(std::uint32_t index) {
     const QuadraticTet& tet = grid_.tets[index];
@@ -278,7 +284,7 @@ Bisector::Part Bisector::part_of(std::uint32_t index) {
     return part;
 }
 
-void Bisector::bisect(std::uint32_t index) {
+std::size_t Bisector::bisect(std::uint32_t index) {
     index_ = index;
     const std::size_t before = tets_.size(), first_point = places_.size();
     const Part part = part_of(index);
@@ -286,12 +292,13 @@ void Bisector::bisect(std::uint32_t index) {
     const bool finite = std::ranges::all_of(part.corners, is_finite, &Corner::value) &&
                         std::ranges::all_of(part.edges, is_finite, &Edge::bump);
     told_.not_finite += !finite;
-    if (finite) {
+    if (finite && !(is_constant(part) && !rule_.isovalues.empty())) {
         divide(part);
         forget_numbers();
         order_points(first_point, before);
     }
     children_.push_back(static_cast<std::uint32_t>(tets_.size() - before));
+    return tets_.size() - before;
 }
 
 Bisected Bisector::take() {

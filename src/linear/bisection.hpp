@@ -56,9 +56,12 @@ public:
              const BisectionRule& rule, BisectionLimits& limits, const Progress& progress);
 
     /// Adds the tets that quadratic tet `index` becomes.
-    void bisect(std::uint32_t index);
+    /// Returns how many tets it made.
+    std::size_t bisect(std::uint32_t index);
 
     /// What has been added since the last call.
+    /// As a quadratic tet of which nothing is kept.
+    void pass_over() { children_.push_back(0); }
     Bisected take();
 
 private:
@@ -85,6 +88,7 @@ private:
     double distance_in(const Part& part) const;
     bool can_be_met(double lower, double upper) const;
     bool is_met(const Part& part) const;
+    static bool is_constant(const Part& part);
     void judge(Edge& edge, const Corner& a, const Corner& b);
     std::size_t first_marked(const Part& part);
     void divide(const Part& part);

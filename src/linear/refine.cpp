@@ -78,6 +78,23 @@ RefinementReport reported(const std::vector<Bisected>& blocks, const QuadraticTe
     return report;
 }
 
+/// Where isovalues meet nothing, what the first quadratic tet becomes stays: what contours takes no grid without cells.
+void keep_one(std::vector<Bisected>& blocks, std::size_t count, std::size_t per_block, Bisector& bisector) {
+    if (!std::ranges::all_of(blocks, [](const Bisected& block) { return block.tets.empty(); })) return;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        bool kept = false;
+        for (std::size_t i = b * per_block; i < std::min(count, (b + 1) * per_block); ++i) {
+            if (kept) bisector.pass_over();
+            else kept = bisector.bisect(static_cast<std::uint32_t>(i)) > 0;
+        }
+        Bisected block = bisector.take();
+        if (!kept) continue; // none of its nodes is finite
+        block.not_finite = blocks[b].not_finite;
+        blocks[b] = std::move(block);
+        return;
+    }
+}
+
 } // namespace
 
 Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOptions& options,
@@ -141,6 +158,12 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
                         "fewer",
                         tolerance, limits.max_tets,
                         options.max_tets == limits.max_tets ? "the options" : format_bytes(free) + " of memory")};
+    if (!isovalues.empty()) {
+        BisectionRule all = rule;
+        all.isovalues = {};
+        Bisector bisector(*tets, points, field ? &values : nullptr, all, limits, progress);
+        keep_one(blocks, count, per_block, bisector);
+    }
     progress("refine", 0.6);
     RefinementReport report = reported(blocks, *tets);
     auto made = welded(blocks, *tets, before.grid.points.tuples(), progress);

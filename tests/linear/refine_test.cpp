@@ -199,6 +199,38 @@ TEST(Refine, GivesTheSameSurfacePrunedAndUnpruned) {
     }
 }
 
+TEST(Refine, LeavesOutCellsWhereTheFieldIsJustTheIsovalue) {
+    const auto plateau = [](At p) { return std::max(0.0, p[0] - 0.1) + 0.3; };
+    const CurvedGrid made = curved_grid({.side = 4, .seed = 2, .shuffle = true, .warp = bulge, .field = plateau});
+    const LinearGrid all = refine(made.grid, made.field, {.tolerance = 0.01}).value();
+    const double isovalue = made.field.values.at(0) < 0.3001 ? made.field.values.at(0) : 0.3;
+    const LinearGrid some = refine(made.grid, made.field, {.tolerance = 0.01, .isovalues = {isovalue}}).value();
+    EXPECT_LT(some.refinement.tets, all.refinement.tets / 2) << "half of the grid has that value alone";
+    EXPECT_EQ(triangles_of(surface_of(all, made.field, isovalue)),
+              triangles_of(surface_of(some, made.field, isovalue)));
+
+    const CurvedGrid flat = curved_grid({.side = 2, .warp = bulge, .field = [](At) { return 0.1; }});
+    const LinearGrid none = refine(flat.grid, flat.field, {.isovalues = {flat.field.values.at(0)}}).value();
+    EXPECT_EQ(surface_of(none, flat.field, flat.field.values.at(0)).triangle_count(), 0u);
+    EXPECT_EQ(none.refinement.tets, none.grid.cells.count());
+    EXPECT_LT(none.refinement.tets, refine(flat.grid, flat.field).value().refinement.tets / 8) << "one of 48";
+}
+
+TEST(Refine, OfWhatNoIsovalueMeetsIsAGridWithoutASurface) {
+    const CurvedGrid made = curved_grid({.side = 3, .shuffle = true, .warp = bulge, .field = wave});
+    for (const double isovalue : {-99.0, 99.0}) {
+        const LinearGrid linear = refine(made.grid, made.field, {.isovalues = {isovalue}}).value();
+        EXPECT_GT(linear.grid.cells.count(), 0u);
+        EXPECT_EQ(surface_of(linear, made.field, isovalue).triangle_count(), 0u);
+        ContourOptions options;
+        options.refine = RefineOptions{};
+        Contour contour = Contour::create({made.grid, made.field, {}, {}}, options).value();
+        const ContourResult result = contour.extract(isovalue).value();
+        EXPECT_EQ(result.surfaces.at(0).surface.triangle_count(), 0u);
+        EXPECT_GT(contour.extract(0.1).value().surfaces.at(0).surface.triangle_count(), 0u);
+    }
+}
+
 TEST(Refine, GivesTheSameBytesForAnyThreadCount) {
     const CurvedGrid made = curved_grid({.side = 4, .seed = 5, .shuffle = true, .warp = bulge, .field = wave});
     const auto bytes = [](const Array& array) {
