@@ -1,7 +1,7 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """isotet in PyVista, found by entry points: no import of this is needed.
 
-``grid.isotet.contour(...)`` for UnstructuredGrid and MultiBlock, ``plotter.isotet.add_isovalue(...)``.
+``grid.isotet.contour(...)`` for UnstructuredGrid, the structured ones and MultiBlock, ``plotter.isotet.add_isovalue(...)``.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 import pyvista
 
+from ._arrays import tolerances_in
 from .vtk import IsotetContour, _arrays_of, _finish, _levels, _Session
 
+_STRUCTURED = (pyvista.StructuredGrid, pyvista.ExplicitStructuredGrid, pyvista.RectilinearGrid, pyvista.ImageData)
 _MANY = 1 << 20  # surfaces that a slider may ask for
 
 
@@ -56,6 +58,11 @@ class GridAccessor:
         self._grid = grid
         self._session = _Session()
         self._expected = 0
+        self._blank = 0  # cells that are hidden
+
+    def _unstructured(self) -> pyvista.UnstructuredGrid:
+        """Its cells and points; arrays are taken from `_grid`."""
+        return self._grid
 
     def _scalars(self, scalars, preference: str):
         grid = self._grid
@@ -69,7 +76,8 @@ class GridAccessor:
 
     def contour(self, isosurfaces: int | Sequence[float] = 10, scalars=None, compute_normals: bool = False,
                 compute_gradients: bool = False, compute_scalars: bool = True, rng=None, preference: str = "point",
-                method: str = "contour", progress_bar: bool = False) -> pyvista.PolyData:  # fmt: skip
+                method: str = "contour", progress_bar: bool = False, *, tolerance: float | str | None = None,
+                geometry_tolerance: float = 0.0, distance: float = 0.0) -> pyvista.PolyData:  # fmt: skip
         """Isosurfaces, as of `pyvista.UnstructuredGrid.contour`, whose parameters and array names these are.
 
         isosurfaces
@@ -86,6 +94,9 @@ class GridAccessor:
             "point" or "cell" where both have an array of that name; cells cannot be contoured.
         compute_gradients, progress_bar
             Accepted, without effect. `method` is, too, with a warning.
+        tolerance, geometry_tolerance, distance
+            Curved cells are refined for the isovalues, as by `isotet.Grid.contour`: 0.1 or "0.1%"; without it they are
+            split at their nodes.
 
         The grid is packed when this pays; what was packed is kept, and used while cells and points are the same. After
         cells were changed in place through NumPy, call ``grid.Modified()`` of their arrays, as for VTK's filters.
@@ -101,9 +112,10 @@ class GridAccessor:
             return out
         cell_fields = _arrays_of(grid.GetCellData())
         surface = self._session.contour(
-            grid, array, values, normals=compute_normals, surfaces=self._expected,
-            fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields)  # fmt: skip
-        left_out = surface._how["cells_left_out"]
+            self._unstructured(), array, values, normals=compute_normals, surfaces=self._expected,
+            fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields,
+            tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
+        left_out = surface._how["cells_left_out"] - self._blank
         if left_out:
             warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours three-dimensional cells of degree "
                           "1 and 2, and polyhedra", stacklevel=2)  # fmt: skip
@@ -116,12 +128,48 @@ class GridAccessor:
         self._expected = _MANY
         array = self._scalars(scalars, "point")
         cell_fields = _arrays_of(self._grid.GetCellData())
-        self._session.set(self._grid, array, normals=compute_normals, surfaces=_MANY, fields=[], cell_fields=cell_fields)
+        self._session.set(self._unstructured(), array, normals=compute_normals, surfaces=_MANY, fields=[], cell_fields=cell_fields)
         self._session.prepare()
 
     def clear(self) -> None:
         """Frees what was packed."""
         self._session, self._expected = _Session(), 0
+
+
+class StructuredAccessor(GridAccessor):
+    """``grid.isotet`` of a pyvista.StructuredGrid, ExplicitStructuredGrid, RectilinearGrid or ImageData: hexahedra."""
+
+    def __init__(self, grid: pyvista.DataSet):
+        super().__init__(grid)
+        self._cells: pyvista.UnstructuredGrid | None = None
+        self._shape: tuple = ()
+
+    def _unstructured(self) -> pyvista.UnstructuredGrid:
+        """Made again where the shape has changed. Points of a StructuredGrid are shared, and compared by the session."""
+        grid = self._grid
+        hidden = [data.GetArray("vtkGhostType") for data in (grid.GetPointData(), grid.GetCellData())]
+        shape = (grid.dimensions, [None if array is None else array.GetMTime() for array in hidden])
+        if isinstance(grid, pyvista.ImageData):
+            shape += (grid.origin, grid.spacing, grid.extent, grid.direction_matrix.tobytes())
+        elif isinstance(grid, pyvista.RectilinearGrid):
+            shape += (grid.x.tobytes(), grid.y.tobytes(), grid.z.tobytes())
+        elif isinstance(grid, pyvista.ExplicitStructuredGrid):
+            shape += (grid.GetCells().GetMTime(),)
+        if self._cells is None or shape != self._shape:
+            bare = grid.copy(deep=False)
+            bare.clear_data()
+            for data, array in zip((bare.GetPointData(), bare.GetCellData()), hidden, strict=True):
+                if array is not None:
+                    data.AddArray(array)
+            self._cells, self._shape = bare.cast_to_unstructured_grid(), shape
+            self._blank = np.count_nonzero(self._cells.celltypes == pyvista.CellType.EMPTY_CELL)
+        if grid.IsA("vtkPointSet"):
+            self._cells.SetPoints(grid.GetPoints())
+        return self._cells
+
+    def clear(self) -> None:
+        super().clear()
+        self._cells = None
 
 
 class BlocksAccessor:
@@ -136,7 +184,7 @@ class BlocksAccessor:
         """Isosurfaces of every block, in a MultiBlock of the same structure: the same isovalues for all of them.
 
         The parameters are those of `GridAccessor.contour`; `scalars` is a name. Blocks that are None, or do not have the
-        scalars as point data, give an empty pyvista.PolyData; blocks of other types than UnstructuredGrid are converted.
+        scalars as point data, give an empty pyvista.PolyData; blocks of other types than grids are converted.
         """
         _check_method(method)
         blocks = [block for block in self._leaves(self._blocks) if block is not None]
@@ -170,7 +218,8 @@ class BlocksAccessor:
             elif block is None or scalars not in block.point_data:
                 surface = pyvista.PolyData()
             else:
-                grid = block if isinstance(block, pyvista.UnstructuredGrid) else block.cast_to_unstructured_grid()
+                ours = isinstance(block, (pyvista.UnstructuredGrid, *_STRUCTURED))
+                grid = block if ours else block.cast_to_unstructured_grid()
                 surface = grid.isotet.contour(values, scalars, compute_normals=compute_normals, compute_scalars=compute_scalars)
             out.append(surface, name)
         return out
@@ -182,7 +231,7 @@ class PlotterComponent:
     def __init__(self, plotter: pyvista.Plotter):
         self._plotter = plotter
 
-    def add_isovalue(self, grid: pyvista.UnstructuredGrid, scalars: str | None = None, compute_normals: bool = False,
+    def add_isovalue(self, grid: pyvista.DataSet, scalars: str | None = None, compute_normals: bool = False,
                      compute_scalars: bool = True, value: float | None = None, rng=None, color_by: str | None = None,
                      title: str | None = None, pointa=(0.4, 0.9), pointb=(0.9, 0.9), widget_color=None,
                      **kwargs):  # fmt: skip
@@ -191,7 +240,7 @@ class PlotterComponent:
         As `pyvista.Plotter.add_mesh_isovalue`; the grid is packed before the plot opens.
 
         grid
-            A pyvista.UnstructuredGrid.
+            A pyvista.UnstructuredGrid; others are converted once.
         scalars
             A name of point data; else the active scalars.
         value
@@ -205,11 +254,13 @@ class PlotterComponent:
 
         Returns the actor of the surface. Raises TypeError for other meshes and for cell data.
         """
-        if not isinstance(grid, pyvista.UnstructuredGrid):
-            raise TypeError(f"the mesh is a {type(grid).__name__}, but must be an UnstructuredGrid: cast_to_unstructured_grid()")
+        if not isinstance(grid, (pyvista.UnstructuredGrid, *_STRUCTURED)):
+            raise TypeError(f"the mesh is a {type(grid).__name__}, but must be a grid of cells, such as UnstructuredGrid")
         name = _scalars_name(grid, scalars)
         if grid.get_array_association(name, preference="point") != pyvista.FieldAssociation.POINT:
             raise TypeError(f"Contour filter only works on Point data. Array ({name}) is in the Cell data.")
+        if not isinstance(grid, pyvista.UnstructuredGrid):
+            grid = grid.cast_to_unstructured_grid()
         lower, upper = grid.get_data_range(name, preference="point") if rng is None else rng
         contour = IsotetContour()
         contour.SetExpectedSurfaces(_MANY)
@@ -235,5 +286,7 @@ class PlotterComponent:
 
 
 pyvista.register_dataset_accessor("isotet", pyvista.UnstructuredGrid)(GridAccessor)
+for _kind in _STRUCTURED:
+    pyvista.register_dataset_accessor("isotet", _kind)(StructuredAccessor)
 pyvista.register_dataset_accessor("isotet", pyvista.MultiBlock)(BlocksAccessor)
 pyvista.register_plotter_component("isotet")(PlotterComponent)

@@ -188,11 +188,11 @@ class _Session:
 
     def set(self, grid, scalars, *, normals: bool, surfaces: int, fields: list[tuple[str, np.ndarray]],
             cell_fields: list[tuple[str, np.ndarray]], precision: str = "float32", numbers: np.ndarray | None = None,
-            frame: _isotet.Frame | None = None, tolerance: float = 0.0) -> None:  # fmt: skip
+            frame: _isotet.Frame | None = None,
+            tolerances: tuple[float | None, float | None, float, float] = (None, None, 0.0, 0.0)) -> None:  # fmt: skip
         mine, field = self._input(grid, scalars, numbers)
         kind = "gradient" if normals else "none"
-        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces, False, frame,
-                                         relative_tolerance=tolerance or None)
+        options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces, False, frame, *tolerances)
         call = call_options(0, None)
         if self._session is None:
             self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call)
@@ -481,7 +481,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
         surface = self._session_of(block.grid).contour(
             block.grid, block.scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
             fields=block.fields(), cell_fields=cell_fields, precision=precision, numbers=numbers, frame=frame,
-            tolerance=0.0 if framed else self._tolerance)  # fmt: skip
+            tolerances=(None, None if framed else self._tolerance or None, 0.0, 0.0))  # fmt: skip
         own = any(name == "isovalue" for name, _ in cell_fields)
         _finish(surface, self._values, block.scalars, self._compute_scalars, own, block.out)
 

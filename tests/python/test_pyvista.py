@@ -209,6 +209,66 @@ def test_missing_values_are_left_out(grid):
     assert np.isfinite(surface.points).all()
 
 
+def structured(kind: str):
+    image = pv.ImageData(dimensions=(12, 11, 10), spacing=(1, 0.5, 2), origin=(3, 0, 0))
+    grid = {"image": lambda: image, "rectilinear": image.cast_to_rectilinear_grid,
+            "structured": image.cast_to_structured_grid, "hidden": image.cast_to_structured_grid,
+            "explicit": lambda: image.cast_to_structured_grid().cast_to_explicit_structured_grid()}[kind]()  # fmt: skip
+    if kind == "hidden":
+        grid.hide_cells(np.arange(100), inplace=True)
+    grid["wave"] = np.sin(grid.points[:, 0]) + grid.points[:, 1] + 0.2 * grid.points[:, 2]
+    grid.cell_data["number"] = np.arange(grid.n_cells)
+    return grid
+
+
+@pytest.mark.parametrize("kind", ["image", "rectilinear", "structured", "hidden", "explicit"])
+@pytest.mark.filterwarnings("error")
+def test_structured_grids(kind):
+    grid = structured(kind)
+
+    def same():
+        ours, theirs = both(grid, [2.1, 3.3], "wave")
+        assert ours.n_cells == theirs.n_cells > 300
+        assert ours.area == pytest.approx(theirs.area, rel=1e-3)
+        used = theirs.points[np.unique(theirs.faces.reshape(-1, 4)[:, 1:])]  # VTK leaves points of hidden cells there
+        assert np.allclose(ours.points.min(axis=0), used.min(axis=0), atol=1e-5)
+        assert np.allclose(ours.points.max(axis=0), used.max(axis=0), atol=1e-5)
+        assert set(ours.point_data) == set(theirs.point_data)
+        assert set(ours.cell_data) == set(theirs.cell_data)
+        return ours
+
+    same()
+    grid.isotet.pack("wave")
+    grid["wave"] *= 1.1
+    same()
+    if kind == "image":
+        grid.spacing = (1, 1, 1)
+    elif kind == "rectilinear":
+        grid.x = grid.x * 2
+    else:
+        grid.points[:, 2] *= 1.5
+    if kind == "hidden":
+        grid.hide_cells(np.arange(200, 300), inplace=True)
+    assert same().n_cells > 0
+    grid.isotet.clear()
+    same()
+    with pytest.raises(TypeError, match="only works on point data"):
+        grid.isotet.contour([1], "number")
+
+
+def test_curved_cells_are_refined():
+    made = isotet.make("tet10", 3, ["sphere"])
+    grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: np.reshape(made.cells, (-1, 10))}, made.points)
+    grid["r"] = (np.linalg.norm(grid.points, axis=1) ** 2).astype(np.float32)
+    plain, coarse, fine = (grid.isotet.contour([0.5], "r", tolerance=t) for t in (None, "1%", 1e-3))
+    assert 0 < plain.n_cells < coarse.n_cells < fine.n_cells
+    same = made.contour(0.5, grid["r"], tolerance=1e-3)
+    assert np.array_equal(fine.points, same.points)
+    assert grid.isotet.contour([0.5], "r").n_cells == plain.n_cells
+    with pytest.raises(ValueError, match="tolerance is 'fine'"):
+        grid.isotet.contour([0.5], "r", tolerance="fine")
+
+
 def test_blocks():
     left, right = cubes(), cubes(5)
     right["r"] += 10
@@ -252,7 +312,12 @@ def test_a_slider_is_followed():
     assert area() == pytest.approx(grid.contour([3.0], "r").area)
     assert actor.mapper.scalar_range == (0, 11)
     plotter.close()
-    with pytest.raises(TypeError, match="must be an UnstructuredGrid"):
+    plotter = pv.Plotter(off_screen=True)
+    image = structured("image")
+    actor = plotter.isotet.add_isovalue(image, "wave", value=2.1)
+    assert area() == pytest.approx(image.contour([2.1], "wave").area, rel=1e-3)
+    plotter.close()
+    with pytest.raises(TypeError, match="must be a grid of cells"):
         pv.Plotter(off_screen=True).isotet.add_isovalue(pv.Sphere())
     with pytest.raises(TypeError, match="Cell data"):
         pv.Plotter(off_screen=True).isotet.add_isovalue(grid, "number")
