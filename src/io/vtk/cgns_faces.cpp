@@ -2,6 +2,7 @@
 #include "io/vtk/cgns_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
@@ -249,13 +250,75 @@ Result<Cells> ZoneReader::cells_of_parents() const {
     return cells;
 }
 
-/// VTK's reader leaves memory as it was where values cannot be read.
+/// Points and cells of a zone; 0 where it does not say.
+struct ZoneSize {
+    std::uint64_t points = 0, cells = 0;
+};
+
+/// Its values are the counts of points along each axis, then those of cells, then those of boundary points.
+ZoneSize size_of_zone(const CgnsTree& tree, const CgnsNode& zone) {
+    constexpr double most = 0x1p48;
+    const auto counts = tree.integers(zone);
+    if (!counts || counts->empty() || counts->size() % 3 != 0) return {};
+    const std::size_t directions = counts->size() / 3;
+    double points = 1, cells = 1;
+    for (std::size_t k = 0; k < directions; ++k) {
+        points *= counts->at(k);
+        cells *= counts->at(directions + k);
+    }
+    const auto plausible = [&](double count) {
+        return count > 0 && count < most ? static_cast<std::uint64_t>(count) : 0;
+    };
+    return {plausible(points), plausible(cells)};
+}
+
+/// How many values arrays of a group have at least; 0 where it is not of all points or cells.
+std::uint64_t least_values(const CgnsTree& tree, const CgnsNode& group, const ZoneSize& size) {
+    std::uint64_t least = size.points;
+    for (const CgnsNode& node : tree.children(group)) {
+        if (node.name == "PointList" || node.name == "PointRange") return 0;
+        if (node.label != "GridLocation_t") continue;
+        const std::string location = tree.text(node);
+        if (location != "Vertex") least = location == "CellCenter" ? size.cells : 0;
+    }
+    return least;
+}
+
+/// By ElementType_t; 0 where elements differ, or are none of those.
+constexpr std::array<std::uint8_t, 40> nodes_by_type{0,  0,  1,  2,  3,  3,  6,  4,  8,  9,  4,  10, 5,  14,
+                                                     6,  15, 18, 8,  20, 27, 0,  13, 0,  0,  4,  9,  10, 12,
+                                                     16, 16, 20, 21, 29, 30, 24, 38, 40, 32, 56, 64};
+
+/// Elements of one type have the nodes that their range needs.
+Result<void> check_elements(const CgnsTree& tree, const CgnsNode& section) {
+    const auto type = tree.integers(section);
+    if (!type || type->empty() || type->at(0) < 0 || type->at(0) >= double{nodes_by_type.size()}) return {};
+    const std::uint64_t nodes = nodes_by_type[static_cast<std::size_t>(type->at(0))];
+    if (nodes == 0) return {};
+    const std::vector<CgnsNode> parts = tree.children(section);
+    const auto range = std::ranges::find(parts, "ElementRange", &CgnsNode::name),
+               connectivity = std::ranges::find(parts, "ElementConnectivity", &CgnsNode::name);
+    if (range == parts.end() || connectivity == parts.end()) return {};
+    if (auto sound = tree.check_values(*range, 2); !sound) return sound;
+    const auto ends = tree.integers(*range);
+    if (!ends) return ends.error();
+    const double count = ends->at(1) - ends->at(0) + 1;
+    constexpr double most = 0x1p48;
+    if (!(count >= 0 && count < most)) return {};
+    return tree.check_values(*connectivity, nodes * static_cast<std::uint64_t>(count));
+}
+
+/// VTK's reader leaves memory as it was where values cannot be read, and takes what lies behind arrays that are too short.
 Result<void> check_arrays(const CgnsTree& tree, const CgnsNode& zone) {
+    const ZoneSize size = size_of_zone(tree, zone);
     for (const CgnsNode& group : tree.children(zone)) {
+        if (group.label == "Elements_t")
+            if (auto sound = check_elements(tree, group); !sound) return sound;
         if (group.label != "FlowSolution_t" && group.label != "GridCoordinates_t") continue;
+        const std::uint64_t least = least_values(tree, group, size);
         for (const CgnsNode& node : tree.children(group))
             if (node.label == "DataArray_t")
-                if (auto sound = tree.check_values(node); !sound) return sound;
+                if (auto sound = tree.check_values(node, least); !sound) return sound;
     }
     return {};
 }

@@ -19,7 +19,7 @@ struct CgnsFaceZone {
 /// Looks at all zones with faces: VTK's reader goes by what they say as it is, and makes polygons where no cell tells its faces.
 ///
 /// Errors   invalid_data, with the zone: sections that overlap, offsets that fall or leave the list, a cell with a face, or a
-///          face with a point or cell, that is not there; in any zone coordinates or a field that cannot be read
+///          face with a point or cell, that is not there; in any zone coordinates, a field or elements that cannot be read, or are fewer than the zone needs
 /// Cost     reads the sections of faces, of other zones a few nodes
 Result<std::vector<CgnsFaceZone>> check_cgns_faces(const std::string& path);
 

@@ -99,12 +99,13 @@ Result<Array> CgnsTree::reals(const CgnsNode& node) const {
     return wrong(node, fmt::format("is of type \"{}\", not R4 or R8", escaped(found->type)));
 }
 
-Result<void> CgnsTree::check_values(const CgnsNode& node) const {
+Result<void> CgnsTree::check_values(const CgnsNode& node, std::uint64_t least) const {
     constexpr std::array<std::string_view, 10> types = {"R4", "R8", "I4", "I8", "U4", "U8", "B1", "C1", "X4", "X8"};
     const auto found = shape(node);
     if (!found) return found.error();
     if (std::ranges::find(types, found->type) == types.end())
         return wrong(node, fmt::format("is of type \"{}\", which is none of CGNS", escaped(found->type)));
+    if (found->count < least) return wrong(node, fmt::format("has {} values, but {} are needed", found->count, least));
     std::array<std::byte, 64> value{};
     if (found->count > 0 &&
         cgio_read_block_data_type(number_, node.id, 1, 1, found->type.c_str(), value.data()) != CGIO_ERR_NONE)

@@ -35,8 +35,8 @@ public:
     Result<Array> integers(const CgnsNode& node) const;
     /// The same of float32 or float64.
     Result<Array> reals(const CgnsNode& node) const;
-    /// That a node has values of a type, the first of which can be read.
-    Result<void> check_values(const CgnsNode& node) const;
+    /// That a node has at least so many values of a type, the first of which can be read.
+    Result<void> check_values(const CgnsNode& node, std::uint64_t least) const;
     /// Empty where it is no text.
     std::string text(const CgnsNode& node) const;
 
