@@ -18,7 +18,8 @@ namespace {
 
 class CellsOfLegacy {
 public:
-    CellsOfLegacy(LegacyValues& values, bool geometry) : values_(values), geometry_(geometry) {}
+    CellsOfLegacy(LegacyValues& values, LegacyList wanted)
+        : values_(values), geometry_(wanted != LegacyList::skipped), leaves_(wanted == LegacyList::without_corners) {}
 
     Result<void> read(LegacyCells& cells, std::string_view keyword) {
         if (cells.count > 0) return values_.before_here(fmt::format("{} occurs twice", keyword));
@@ -32,6 +33,15 @@ public:
         values_.scanner().seek(before);
         if (*first == 0 && *second == 0) return {};
         return read_interleaved(cells, keyword, *first, *second);
+    }
+
+    /// What read() has left in the file.
+    Result<void> read_left(LegacyCells& cells, const CornersInFile& stored) {
+        if (stored.interleaved) return read_interleaved(cells, "CELLS", cells.count, stored.count);
+        auto corners = read_indices(stored.type, stored.count, "CELLS");
+        if (!corners) return corners.error();
+        cells.connectivity = *std::move(corners);
+        return {};
     }
 
     Result<void> read_types(LegacyFile& file) {
@@ -59,6 +69,10 @@ private:
     /// Until version 4.2: count, corner, corner, ..., count, ...
     Result<void> read_interleaved(LegacyCells& cells, std::string_view keyword, std::uint64_t count,
                                   std::uint64_t size) {
+        if (leaves_ && values_.binary() && leave_interleaved(cells, count, size)) {
+            const auto skipped = values_.read_values(legacy_integers, size, 1, keyword, false);
+            return skipped ? Result<void>() : skipped.error();
+        }
         const auto values = values_.read_values(legacy_integers, size, 1, keyword, geometry_);
         if (!values) return values.error();
         if (!geometry_) return {};
@@ -89,6 +103,16 @@ private:
         cells.connectivity = std::move(corners).to_array();
         cells.offsets = std::move(offsets).to_array();
         return {};
+    }
+
+    /// Counts of numbers tell that all cells may have as many corners; each_of_corners() sees whether they have.
+    bool leave_interleaved(LegacyCells& cells, std::uint64_t count, std::uint64_t size) {
+        if (count == 0 || size % count != 0 || size / count < 2) return false;
+        cells.count = count;
+        cells.interleaved = true;
+        cells.corners = size / count - 1;
+        cells.in_file = {values_.scanner().position(), legacy_integers, size, cells.corners, true};
+        return true;
     }
 
     /// Cells that all have as many corners as the first.
@@ -134,17 +158,15 @@ private:
                 cells.corners = *corners;
                 if (*corners > 0) continue;
             }
-            if (values_.binary() && geometry_ && NarrowIndices::narrows(type->type)) {
-                auto narrow = values_.read_narrow(*type, needed, keyword);
-                if (!narrow) return narrow.error();
-                if (*narrow) {
-                    *numbers = **std::move(narrow);
-                    continue;
-                }
+            if (!first && leaves_ && cells.corners > 0 && type->type != ScalarType::uint64) {
+                cells.in_file = {values_.scanner().position(), *type, needed, cells.corners, false};
+                const auto skipped = values_.read_values(*type, needed, 1, keyword, false);
+                if (!skipped) return skipped.error();
+                continue;
             }
-            auto values = values_.read_values(*type, needed, 1, keyword, geometry_);
+            auto values = read_indices(*type, needed, keyword);
             if (!values) return values.error();
-            *numbers = std::move(*values);
+            *numbers = *std::move(values);
         }
         if (!geometry_) return {};
         cells.count = count == 0 ? 0 : count - 1;
@@ -164,6 +186,16 @@ private:
             });
         });
         return failed.result();
+    }
+
+    /// Narrow ones where they fit.
+    Result<Array> read_indices(const LegacyType& type, std::uint64_t count, std::string_view keyword) {
+        if (values_.binary() && geometry_ && NarrowIndices::narrows(type.type)) {
+            auto narrow = values_.read_narrow(type, count, keyword);
+            if (!narrow) return narrow.error();
+            if (*narrow) return **std::move(narrow);
+        }
+        return values_.read_values(type, count, 1, keyword, geometry_);
     }
 
     /// How many corners each cell has; 0, and the place as before, where not all have as many, one after another.
@@ -201,7 +233,7 @@ private:
     }
 
     LegacyValues& values_;
-    bool geometry_;
+    bool geometry_, leaves_ = false;
 };
 
 } // namespace
@@ -225,12 +257,46 @@ void LegacyCells::each(const std::function<void(std::span<const std::uint64_t>)>
     });
 }
 
-Result<void> read_legacy_cells(LegacyValues& values, std::string_view keyword, bool geometry, LegacyCells& cells) {
-    return CellsOfLegacy(values, geometry).read(cells, keyword);
+Result<void> read_legacy_cells(LegacyValues& values, std::string_view keyword, LegacyList wanted, LegacyCells& cells) {
+    return CellsOfLegacy(values, wanted).read(cells, keyword);
+}
+
+Result<bool> each_of_corners(LegacyValues& values, const CornersInFile& stored,
+                             const std::function<bool(std::uint64_t first, const Array& corners)>& take) {
+    values.scanner().seek(stored.position);
+    const auto look = [&]<class Number>(std::size_t first, std::span<const Number> numbers) {
+        return take(first, Array(stored.type.type, numbers.data(), numbers.size(), 1, nullptr));
+    };
+    if (!stored.interleaved)
+        return size_of(stored.type.type) == 8
+                   ? values.read_while<std::int64_t>(stored.type, stored.count, "CELLS", look)
+                   : values.read_while<std::int32_t>(stored.type, stored.count, "CELLS", look);
+    const std::size_t each = static_cast<std::size_t>(stored.corners) + 1; // numbers of a cell
+    return values.read_while<std::int32_t>(
+        stored.type, stored.count, "CELLS", [&](std::size_t first, std::span<const std::int32_t> numbers) {
+            thread_local std::vector<std::int32_t> corners;
+            corners.clear();
+            for (std::size_t i = 0; i < numbers.size();) {
+                const std::size_t in_cell = (first + i) % each;
+                if (in_cell == 0 && static_cast<std::uint64_t>(numbers[i]) != stored.corners) return false;
+                const std::size_t from = i + (in_cell == 0 ? 1 : 0), to = std::min(numbers.size(), i + each - in_cell);
+                corners.insert(corners.end(), numbers.begin() + static_cast<std::ptrdiff_t>(from),
+                               numbers.begin() + static_cast<std::ptrdiff_t>(to));
+                i = to;
+            }
+            const std::size_t counts_before = (first + each - 1) / each;
+            return take(first - counts_before, Array(ScalarType::int32, corners.data(), corners.size(), 1, nullptr));
+        });
+}
+
+Result<void> read_corners(LegacyValues& values, LegacyCells& cells) {
+    const CornersInFile stored = *std::exchange(cells.in_file, std::nullopt);
+    values.scanner().seek(stored.position);
+    return CellsOfLegacy(values, LegacyList::whole).read_left(cells, stored);
 }
 
 Result<void> read_legacy_cell_types(LegacyValues& values, bool geometry, LegacyFile& file) {
-    return CellsOfLegacy(values, geometry).read_types(file);
+    return CellsOfLegacy(values, geometry ? LegacyList::whole : LegacyList::skipped).read_types(file);
 }
 
 } // namespace isotet::io

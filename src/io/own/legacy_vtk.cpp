@@ -86,11 +86,14 @@ private:
         if (keyword == "metadata") return skip_metadata();
         if (file_.dataset.empty()) return invalid_data(fmt::format("{} before DATASET", in_quotes(keyword)));
         if (keyword == "points") return read_points();
-        if (keyword == "vertices") return read_legacy_cells(values_, keyword, wants_.geometry, file_.vertices);
-        if (keyword == "lines") return read_legacy_cells(values_, keyword, wants_.geometry, file_.lines);
-        if (keyword == "polygons") return read_legacy_cells(values_, keyword, wants_.geometry, file_.polygons);
-        if (keyword == "triangle_strips") return read_legacy_cells(values_, keyword, wants_.geometry, file_.strips);
-        if (keyword == "cells") return read_legacy_cells(values_, keyword, wants_.geometry, file_.cells);
+        if (keyword == "vertices") return read_legacy_cells(values_, keyword, list(), file_.vertices);
+        if (keyword == "lines") return read_legacy_cells(values_, keyword, list(), file_.lines);
+        if (keyword == "polygons") return read_legacy_cells(values_, keyword, list(), file_.polygons);
+        if (keyword == "triangle_strips") return read_legacy_cells(values_, keyword, list(), file_.strips);
+        if (keyword == "cells")
+            return read_legacy_cells(values_, keyword,
+                                     wants_.geometry && wants_.leave_corners ? LegacyList::without_corners : list(),
+                                     file_.cells);
         if (keyword == "cell_types") return read_legacy_cell_types(values_, wants_.geometry, file_);
         if (keyword == "dimensions") return read_dimensions();
         if (keyword == "origin") return read_three(file_.origin, keyword);
@@ -101,6 +104,8 @@ private:
         if (keyword == "point_data") return start_data(Data::points);
         return read_attribute(keyword);
     }
+
+    LegacyList list() const { return wants_.geometry ? LegacyList::whole : LegacyList::skipped; }
 
     Result<void> read_dataset() {
         const auto kind = lower(scanner_.word());

@@ -15,9 +15,18 @@
 #include <isotet/read.hpp>
 
 #include "io/own/byte_source.hpp"
+#include "io/own/legacy_values.hpp"
 #include "io/own/surface_parts.hpp"
 
 namespace isotet::io {
+
+/// Corners that were left in a binary file, of cells that all have as many.
+struct CornersInFile {
+    std::size_t position = 0;             ///< of the scanner before them
+    LegacyType type = legacy_integers;    ///< of 4 bytes, or of 8 with a sign
+    std::uint64_t count = 0, corners = 0; ///< numbers there; corners of each cell
+    bool interleaved = false;             ///< before the corners of each cell stands how many there are
+};
 
 /// A list of cells (CELLS, POLYGONS and so on).
 struct LegacyCells {
@@ -25,7 +34,8 @@ struct LegacyCells {
     Array offsets;             ///< where the corners of each cell begin, and those of the last one end; or empty:
     std::uint64_t corners = 0; ///< so many of each cell
     std::uint64_t count = 0;
-    bool interleaved = false; ///< as before version 5.1
+    bool interleaved = false;                  ///< as before version 5.1
+    std::optional<CornersInFile> in_file = {}; ///< instead of `connectivity`, as LegacyWants::leave_corners allows
 
     /// Calls visit(corners) for each cell; offsets have been checked.
     void each(const std::function<void(std::span<const std::uint64_t>)>& visit) const;
@@ -50,7 +60,8 @@ struct LegacyFile {
 struct LegacyWants {
     std::function<bool(std::string_view dataset)> dataset; ///< others are an error, before anything is read
     std::function<bool(Association association, std::string_view name)> field;
-    bool geometry = true; ///< points and cells
+    bool geometry = true;       ///< points and cells
+    bool leave_corners = false; ///< corners of CELLS may stay in the file
 };
 
 /// Reads a whole file. Arrays that are not wanted are skipped; integers of type vtkIdType become int64, as in VTK.

@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <fmt/core.h>
 
 #include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "io/own/active_filter.hpp"
 #include "io/own/join.hpp"
+#include "io/own/legacy_cells.hpp"
 #include "io/own/legacy_vtk.hpp"
 #include "io/own/old_hexahedra.hpp"
 #include "io/own/text_scanner.hpp"
@@ -105,6 +108,46 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
     return {};
 }
 
+/// Only the active cells, of corners that are still in the file; nothing where all are needed.
+Result<std::optional<Cells>> active_cells(LegacyValues& values, const LegacyFile& file, const Grid& grid,
+                                          const ReadOptions& options) {
+    std::optional<Cells> cells;
+    if (!says_nothing(file) || file.cell_type_count != file.cells.count || !file.cell_data.empty()) return cells;
+    auto filter = active_filter(grid, static_cast<CellType>(*file.one_type), options);
+    if (!filter) return cells;
+    const auto all = each_of_corners(values, *file.cells.in_file, [&](std::uint64_t first, const Array& corners) {
+        filter->add(first, corners);
+        return true;
+    });
+    if (!all) return all.error();
+    if (!*all) return cells;
+    auto kept = filter->finish();
+    if (kept) cells = *std::move(kept);
+    else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
+    return cells; // what is broken is told when all cells are there
+}
+
+/// `piece`   has points and point fields
+Result<void> take_cells(const ByteSource& source, LegacyFile& file, const ReadOptions& options,
+                        const Progress& progress, Piece& piece) {
+    if (file.cells.in_file) {
+        LegacyValues values(source, progress);
+        values.set_binary(true);
+        auto active = active_cells(values, file, piece.grid, options);
+        if (!active) return active.error();
+        if (*active) {
+            piece.grid.cells = **std::move(active);
+            piece.cells_in_file = file.cells.count;
+            return {};
+        }
+        if (auto read = read_corners(values, file.cells); !read) return read;
+    }
+    auto cells = cells_of(file);
+    if (!cells) return cells.error();
+    piece.grid.cells = *std::move(cells);
+    return {};
+}
+
 bool is_grid(std::string_view dataset) { return dataset.ends_with("_grid") || dataset == "structured_points"; }
 
 } // namespace
@@ -114,6 +157,7 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     std::string kind;
     LegacyWants wants;
     wants.geometry = depth == Depth::arrays;
+    wants.leave_corners = options.active_cells.has_value();
     wants.dataset = [&](std::string_view name) { return is_grid(kind = name); };
     wants.field = [&](Association association, std::string_view name) {
         return wants.geometry && ((association == Association::cell && vtk_xml::is_ghost_array(name)) ||
@@ -135,13 +179,12 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     if (structured) {
         if (auto taken = take_structured(*file, piece, loaded.notes); !taken) return taken.error();
     } else {
-        auto cells = cells_of(*file);
-        if (!cells) return cells.error();
         piece.grid.points = std::move(file->points);
-        piece.grid.cells = std::move(*cells);
     }
     if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     for (Attribute& field : file->point_data) piece.grid.point_fields.push_back({field.name, std::move(field.values)});
+    if (!structured)
+        if (auto taken = take_cells(source, *file, options, progress, piece); !taken) return taken.error();
     const bool flat = structured && piece.grid.cells.count() == 0; // its cells are not volumes
     for (Attribute& field : file->cell_data) {
         if (flat) continue;
