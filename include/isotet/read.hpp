@@ -84,9 +84,9 @@ struct ReadOptions {
     std::chrono::seconds time_limit{3600};
     std::vector<std::string> blocks; ///< names or numbers of FileInfo::blocks to read; empty: all, of CGNS those of the
                                      ///< first base. A name also stands for the blocks in it ("Base" for "Base/Zone")
-    std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU of one piece whose
-                                                      ///< cells are of one linear type, no cell fields, points that do
-                                                      ///< not coincide); else all are read
+    std::optional<ReadActiveCells> active_cells = {}; ///< where that can be done while reading (VTU and VTKHDF of one
+                                                      ///< piece, binary legacy VTK; cells of one linear type, no cell
+                                                      ///< fields, points that do not coincide); else all are read
 };
 
 struct ReadResult {

@@ -137,6 +137,50 @@ TEST(ReadVtkhdf, ReadsMoreIndicesThanAreReadAtOnce) {
     }
 }
 
+TEST(ReadVtkhdf, KeepsOnlyActiveCellsWhereAsked) {
+    constexpr std::size_t tets = 300'000;
+    Strip strip(tets);
+    for (std::size_t i = 0; i < tets + 3; ++i) // no end of a range is that of many points
+        for (std::size_t axis = 1; axis < 3; ++axis) strip.points[3 * i + axis] += static_cast<double>(i) / 2;
+    const TemporaryFolder folder;
+    const auto write = [&](const Storage& way, bool cell_field) {
+        Hdf5Writer file(folder.file("a.vtkhdf"));
+        write_groups(file, 1);
+        write_counts(file, {tets + 3}, {tets});
+        file.data<double>("/VTKHDF/Points", strip.points, {tets + 3, 3});
+        file.stored("/VTKHDF/Connectivity", strip.connectivity, {4 * tets}, way);
+        file.data<std::int64_t>("/VTKHDF/Offsets", strip.offsets, {tets + 1});
+        file.data<std::uint8_t>("/VTKHDF/Types", strip.types, {tets});
+        file.data<double>("/VTKHDF/PointData/p", strip.values, {tets + 3});
+        if (cell_field) file.data<float>("/VTKHDF/CellData/c", std::vector<float>(tets, 1), {tets});
+    };
+    ReadOptions active;
+    active.active_cells = ReadActiveCells{"p", {70'000.1}, {}};
+    constexpr std::int64_t first_cut = 210'000 - 2, last_cut = 210'000; // 70'000 is the value of point 210'000
+    for (const Storage& way :
+         {Storage{}, {.chunk = {70'001}, .deflated = true}, {.chunk = {999}, .big_endian = true}}) {
+        write(way, false);
+        const auto result = read(folder.file("a.vtkhdf"), active);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->cells_in_file, tets);
+        EXPECT_LT(result->grid.cells.count(), 20u);
+        EXPECT_EQ(result->grid.points.tuples(), tets + 3);
+        std::vector<double> cut; // first corners of the cells that are kept
+        for (std::size_t i = 0; i < result->grid.cells.count(); ++i)
+            cut.push_back(result->grid.cells.connectivity.at(4 * i));
+        EXPECT_TRUE(std::ranges::is_sorted(cut));
+        for (std::int64_t cell = first_cut; cell <= last_cut; ++cell)
+            EXPECT_NE(std::ranges::find(cut, static_cast<double>(cell)), cut.end()) << cell;
+    }
+    write({}, true);
+    EXPECT_FALSE(read(folder.file("a.vtkhdf"), active).value().cells_in_file) << "a cell field needs all cells";
+    strip.connectivity[4 * 777 + 1] = -5;
+    write({}, false);
+    const auto some = read(folder.file("a.vtkhdf"), active), all = read(folder.file("a.vtkhdf"));
+    ASSERT_FALSE(some);
+    EXPECT_EQ(some.error().message, all.error().message);
+}
+
 TEST(ReadVtkhdf, FillsInWhatWasNotWritten) {
     const Strip strip(17);
     const TemporaryFolder folder;

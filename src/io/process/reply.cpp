@@ -105,6 +105,8 @@ public:
     void describe(ReadResult& result) {
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
+        out_.number<std::uint8_t>(result.cells_in_file.has_value());
+        out_.number<std::uint64_t>(result.cells_in_file.value_or(0));
         out_.list(result.notes, [&](const std::string& note) { out_.text(note); });
         Grid& grid = result.grid;
         array(grid.points);
@@ -180,6 +182,9 @@ public:
         ReadResult result;
         result.info = info();
         result.step = in_.number<std::uint64_t>();
+        const bool only_active = in_.number<std::uint8_t>() != 0;
+        const auto cells_in_file = in_.number<std::uint64_t>();
+        if (only_active) result.cells_in_file = cells_in_file;
         in_.list([&] { result.notes.push_back(in_.text()); });
         Grid& grid = result.grid;
         grid.points = array();

@@ -6,7 +6,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint32_t request_version = 0x69730003;
+constexpr std::uint32_t request_version = 0x69730004;
 
 using Names = std::optional<std::vector<std::string>>;
 
@@ -20,6 +20,29 @@ Names decode_names(Decoder& in) {
     std::vector<std::string> names;
     in.list([&] { names.push_back(in.text()); });
     return names;
+}
+
+/// Of the options of extraction those that tell which cells are active.
+void encode_active(Encoder& out, const std::optional<ReadActiveCells>& active) {
+    const bool can_be_told = active && !active->options.extract.source_cells &&
+                             active->options.extract.cell_fields.empty() &&
+                             active->options.extract.normals != Normals::gradient && !active->options.frame;
+    out.number<std::uint8_t>(can_be_told);
+    if (!can_be_told) return;
+    out.text(active->field);
+    out.list(active->isovalues, [&](double isovalue) { out.number(isovalue); });
+    out.number<std::uint8_t>(active->options.extract.ties == Ties::keep);
+    out.number<std::uint8_t>(active->options.precision == Precision::float64);
+}
+
+std::optional<ReadActiveCells> decode_active(Decoder& in) {
+    if (in.number<std::uint8_t>() == 0) return std::nullopt;
+    ReadActiveCells active;
+    active.field = in.text();
+    in.list([&] { active.isovalues.push_back(in.number<double>()); });
+    if (in.number<std::uint8_t>() != 0) active.options.extract.ties = Ties::keep;
+    if (in.number<std::uint8_t>() != 0) active.options.precision = Precision::float64;
+    return active;
 }
 
 } // namespace
@@ -40,6 +63,7 @@ std::string encode(const Request& request) {
     out.text(options.displace);
     out.number(options.memory_limit);
     out.list(options.blocks, [&](const std::string& block) { out.text(block); });
+    encode_active(out, options.active_cells);
     out.list(request.readable, [&](const std::string& place) { out.text(place); });
     return out.bytes();
 }
@@ -62,6 +86,7 @@ Result<Request> decode_request(std::string_view bytes) {
     options.displace = in.text();
     options.memory_limit = in.number<std::uint64_t>();
     in.list([&] { options.blocks.push_back(in.text()); });
+    options.active_cells = decode_active(in);
     in.list([&] { request.readable.push_back(in.text()); });
     if (!known || !in.finished())
         return Error{ErrorCode::system, "the program isotet-reader that was found is of another version than isotet: "

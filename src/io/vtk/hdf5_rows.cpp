@@ -335,21 +335,31 @@ Result<Array> Hdf5Rows::read_indices(const std::string& name, std::uint64_t firs
         rows > found->rows - first)
         return read(name, first, rows);
     NarrowIndices narrow(rows);
-    const std::uint64_t chunks = std::max<std::uint64_t>(1, window_rows / found->chunk_rows);
-    for (std::uint64_t row = first; row < first + rows;) { // a window ends where chunks end
-        const std::uint64_t end = std::min((row / found->chunk_rows + chunks) * found->chunk_rows, first + rows);
-        const auto window = read(name, row, end - row);
-        if (!window) return window;
-        window->visit([&]<class T>(std::span<const T> values) {
+    const auto done = each_piece(name, first, rows, [&](std::uint64_t place, const Array& window) {
+        window.visit([&]<class T>(std::span<const T> values) {
             if constexpr (std::is_integral_v<T>)
                 core::parallel_ranges(values.size(), window_rows / 64, [&](std::size_t from, std::size_t to) {
-                    narrow.add(row - first + from, values.subspan(from, to - from));
+                    narrow.add(place + from, values.subspan(from, to - from));
                 });
         });
-        row = end;
-    }
+    });
+    if (!done) return done.error();
     auto array = std::move(narrow).to_array();
     return array ? *std::move(array) : read(name, first, rows);
+}
+
+Result<void> Hdf5Rows::each_piece(const std::string& name, std::uint64_t first, std::uint64_t rows,
+                                  const std::function<void(std::uint64_t first, const Array& values)>& take) const {
+    const auto found = shape(name);
+    const std::uint64_t chunk = found ? found->chunk_rows : 1, chunks = std::max<std::uint64_t>(1, window_rows / chunk);
+    for (std::uint64_t row = first; row < first + rows;) { // a piece ends where chunks end
+        const std::uint64_t end = std::min((row / chunk + chunks) * chunk, first + rows);
+        const auto piece = read(name, row, end - row);
+        if (!piece) return piece.error();
+        take(row - first, *piece);
+        row = end;
+    }
+    return {};
 }
 
 Result<Array> Hdf5Rows::read(const std::string& name) const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +47,14 @@ public:
     /// Errors   as read()
     /// Cost     as read(), and no more memory than the int32 and a few MB a thread
     Result<Array> read_indices(const std::string& name, std::uint64_t first, std::uint64_t rows) const;
+
+    /// Some values of a data set with one column, as they are in the file: take(first, values) for one piece after another,
+    /// `first` counted from the first of them.
+    ///
+    /// Errors   as read()
+    /// Cost     as read(), and a few MB
+    Result<void> each_piece(const std::string& name, std::uint64_t first, std::uint64_t rows,
+                            const std::function<void(std::uint64_t first, const Array& values)>& take) const;
 
     /// The whole data set.
     Result<Array> read(const std::string& name) const;

@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 
 #include "core/cell_faces.hpp"
+#include "core/parallel.hpp"
+#include "io/own/active_filter.hpp"
 #include "io/own/shared_faces.hpp"
 #include "io/own/vtk_xml/columns.hpp"
 #include "io/own/vtk_xml/uniform_cells.hpp"
@@ -18,6 +20,15 @@ namespace {
 
 const char* data_group_of(Association association) {
     return association == Association::point ? "PointData" : "CellData";
+}
+
+void add_side_by_side(ActiveCellFilter& filter, std::uint64_t first, const Array& corners) {
+    constexpr std::size_t at_once = std::size_t{1} << 15;
+    const auto* const bytes = static_cast<const std::byte*>(corners.data());
+    const std::size_t size = size_of(corners.type());
+    core::parallel_ranges(corners.size(), at_once, [&](std::size_t begin, std::size_t end) {
+        filter.add(first + begin, Array(corners.type(), bytes + begin * size, end - begin, 1, nullptr));
+    });
 }
 
 } // namespace
@@ -147,24 +158,58 @@ Result<void> HdfGrid::find_faces(const HdfStepPlace& place, std::size_t step, st
     return {};
 }
 
-Result<void> HdfGrid::load_cells(const HdfPartition& part, Grid& grid) const {
-    auto points = rows_.read(group_ + "Points", part.first_point, part.points);
-    if (!points) return points.error();
-    auto connectivity = rows_.read_indices(group_ + "Connectivity", part.first_corner, part.corners);
-    if (!connectivity) return connectivity.error();
+/// Neither types nor offsets, where they say nothing.
+Result<void> HdfGrid::load_types(const HdfPartition& part, Cells& cells) const {
     auto offsets = rows_.read_indices(group_ + "Offsets", part.first_offset, part.cells + 1);
     if (!offsets) return offsets.error();
     auto types = rows_.read(group_ + "Types", part.first_cell, part.cells);
     if (!types) return types.error();
     if (types->type() != ScalarType::uint8)
         return wrong(fmt::format("\"Types\" are {}, but must be uint8", name_of(types->type())));
-    grid.points = *std::move(points);
-    grid.cells.connectivity = *std::move(connectivity);
-    grid.cells.offsets = *std::move(offsets);
-    grid.cells.types = *std::move(types);
-    if (auto done = load_faces(part, grid.cells); !done) return done;
-    vtk_xml::simplify(grid.cells);
+    cells.offsets = *std::move(offsets);
+    cells.types = *std::move(types);
+    vtk_xml::simplify(cells);
     return {};
+}
+
+/// Nothing where all cells are needed.
+Result<std::optional<Cells>> HdfGrid::active_cells(const HdfPartition& part, const ReadOptions& options,
+                                                   const Piece& piece) const {
+    std::optional<Cells> cells;
+    const Cells& known = piece.grid.cells;
+    const std::string name = group_ + "Connectivity";
+    const auto shape = rows_.shape(name);
+    const auto corners = vtk_xml::corners_of_uniform(static_cast<std::uint8_t>(known.uniform_type));
+    if (!known.offsets.empty() || !known.types.empty() || !piece.left_out.empty() || !shape || shape->columns != 1 ||
+        is_floating(shape->type) || size_of(shape->type) < 4 || !corners || part.corners != part.cells * *corners)
+        return cells;
+    auto filter = active_filter(piece.grid, known.uniform_type, options);
+    if (!filter) return cells;
+    const auto done =
+        rows_.each_piece(name, part.first_corner, part.corners,
+                         [&](std::uint64_t first, const Array& values) { add_side_by_side(*filter, first, values); });
+    if (!done) return done.error();
+    auto kept = filter->finish();
+    if (kept) cells = *std::move(kept);
+    else if (kept.error().code != ErrorCode::invalid_data) return kept.error();
+    return cells; // what is broken is told when all cells are there
+}
+
+Result<void> HdfGrid::load_corners(const HdfPartition& part, const ReadOptions& options, bool alone,
+                                   Piece& piece) const {
+    if (alone && options.active_cells && part.cells > 0) {
+        auto active = active_cells(part, options, piece);
+        if (!active) return active.error();
+        if (*active) {
+            piece.grid.cells = **std::move(active);
+            piece.cells_in_file = part.cells;
+            return {};
+        }
+    }
+    auto connectivity = rows_.read_indices(group_ + "Connectivity", part.first_corner, part.corners);
+    if (!connectivity) return connectivity.error();
+    piece.grid.cells.connectivity = *std::move(connectivity);
+    return load_faces(part, piece.grid.cells);
 }
 
 Result<void> HdfGrid::load_faces(const HdfPartition& part, Cells& cells) const {
@@ -230,9 +275,13 @@ Result<std::vector<Piece>> HdfGrid::load(const ReadOptions& options, std::size_t
     for (const HdfPartition& part : *parts) {
         Piece& piece = pieces.emplace_back();
         piece.name = fmt::format("{}part {}", name, pieces.size());
-        if (auto done = load_cells(part, piece.grid); !done) return done.error();
+        auto points = rows_.read(group_ + "Points", part.first_point, part.points);
+        if (!points) return points.error();
+        piece.grid.points = *std::move(points);
+        if (auto done = load_types(part, piece.grid.cells); !done) return done.error();
         for (const auto association : {Association::point, Association::cell})
             if (auto done = load_fields(part, *place, step, association, options, piece); !done) return done.error();
+        if (auto done = load_corners(part, options, parts->size() == 1, piece); !done) return done.error();
     }
     return pieces;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,10 @@ private:
     Result<HdfStepPlace> find_step(std::size_t step) const;
     Result<std::vector<HdfPartition>> find_partitions(const HdfStepPlace& place) const;
     Result<void> find_faces(const HdfStepPlace& place, std::size_t step, std::vector<HdfPartition>& parts) const;
-    Result<void> load_cells(const HdfPartition& part, Grid& grid) const;
+    Result<void> load_types(const HdfPartition& part, Cells& cells) const;
+    Result<void> load_corners(const HdfPartition& part, const ReadOptions& options, bool alone, Piece& piece) const;
+    Result<std::optional<Cells>> active_cells(const HdfPartition& part, const ReadOptions& options,
+                                              const Piece& piece) const;
     Result<void> load_faces(const HdfPartition& part, Cells& cells) const;
     Result<void> load_fields(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
                              Association association, const ReadOptions& options, Piece& piece) const;
