@@ -8,8 +8,7 @@
 
 #include <fmt/core.h>
 
-#include <isotet/extract_direct.hpp>
-#include <isotet/linear_cells.hpp>
+#include <isotet/contour.hpp>
 
 #include "core/errors.hpp"
 
@@ -114,20 +113,18 @@ Array heights_over(const Array& points, const Plane& plane) {
 }
 
 Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField* field, const Run& run) {
-    const Result<LinearGrid> linear = linearize({grid.points, grid.cells, {}, {}}, {}, run);
-    if (!linear) return linear.error();
-    DirectOptions options;
-    if (field) {
-        const bool of_points = field->association == Association::point;
-        const Result<Array> values =
-            of_points ? linear->extend(field->values, run) : linear->of_cells(field->values, run);
-        if (!values) return values.error();
-        (of_points ? options.extract.point_fields : options.extract.cell_fields) = {{field->name, *values}};
-    }
-    const double offset = plane.offset;
-    Result<DirectExtraction> cut =
-        extract_direct(linear->grid, {"height", heights_over(linear->grid.points, plane), false, {}},
-                       std::span(&offset, 1), options, run);
+    ContourInput input{
+        {grid.points, grid.cells, {}, {}}, {"height", heights_over(grid.points, plane), false, {}}, {}, {}};
+    if (field)
+        (field->association == Association::point ? input.point_fields
+                                                  : input.cell_fields) = {{field->name, field->values}};
+    ContourOptions options;
+    options.method = Method::direct;
+    options.expected_isovalues = {plane.offset}; // of polyhedra only those that the plane meets are made linear
+    options.surfaces = 1;
+    Result<Contour> contour = Contour::create(std::move(input), options);
+    if (!contour) return contour.error();
+    Result<ContourResult> cut = contour->extract(plane.offset, run);
     if (!cut) return cut.error();
     return std::move(cut->surfaces.front().surface);
 }

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include <isotet/plan.hpp>
 
+#include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/guard.hpp"
+#include "linear/curved_kinds.hpp"
 
 namespace isotet {
 
@@ -23,10 +26,23 @@ constexpr std::array<double, core::cell_kind_count> triangles_per_active_cell{1.
 /// What packing and extraction take for a cell, in tets.
 constexpr std::array<double, core::cell_kind_count> tets_like_a_cell{1, 2, 2.5, 3};
 
+/// What polyhedra and cells of degree 2 become, roughly: by those of 14 faces, tetrahedra of 10 nodes, hexahedra of 27.
+double triangles_of_active(std::size_t nodes) { return std::max(1.3, 0.9 * static_cast<double>(nodes) - 3); }
+double tets_of(std::size_t nodes) { return std::max(1.0, 2 * static_cast<double>(nodes) - 8); }
+
+bool is_made_linear(const core::CellReader& cells, std::size_t cell) {
+    const std::uint8_t type = cells.type(cell);
+    if (core::is_contoured(type)) return false;
+    return type == core::polyhedron_type || linear::layout_of(type, cells.corners(cell)) ||
+           linear::high_degree_of(type, cells.corners(cell));
+}
+
 /// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does
 /// not replace: it keeps a look at a few cells within the arrays.
 bool is_within(const core::CellReader& cells, std::size_t cell) {
-    const auto corners = static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
+    const std::uint64_t corners = is_made_linear(cells, cell)
+                                      ? cells.corners(cell)
+                                      : static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
     const std::uint64_t first = cells.first(cell);
     if (corners == 0 || first > cells.connectivity_size() || cells.connectivity_size() - first < corners) return false;
     for (std::uint64_t i = 0; i < corners; ++i)
@@ -51,6 +67,7 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
         sample.lower_ = std::numeric_limits<double>::infinity();
         sample.upper_ = -sample.lower_;
         double tets = 0;
+        std::vector<std::uint64_t> nodes;
         for (std::uint64_t i = 0; i < looked_at; ++i) {
             // Regular grids repeat themselves from row to row: places between even steps are drawn (Weyl's sequence).
             const double place = (static_cast<double>(i) + std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0)) /
@@ -58,10 +75,10 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
             const auto drawn = static_cast<std::uint64_t>(place * static_cast<double>(count));
             const std::uint64_t cell = looked_at == count ? i : std::min(drawn, count - 1);
             if (!is_within(*cells, cell)) continue;
-            const auto look = [&](core::CellKind kind, std::span<const std::uint64_t> corners) {
-                tets += tets_like_a_cell[static_cast<std::size_t>(kind)];
+            const auto look_at = [&](std::span<const std::uint64_t> corners, double like_tets, double triangles) {
+                tets += like_tets;
                 const double first = field.values.at(corners[0]);
-                Range range{first, first, triangles_per_active_cell[static_cast<std::size_t>(kind)]};
+                Range range{first, first, triangles};
                 bool data = true;
                 for (const std::uint64_t point : corners) {
                     const double value = field.values.at(point);
@@ -74,7 +91,16 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
                 sample.upper_ = std::max(sample.upper_, range.upper);
                 if (range.lower < range.upper) sample.cells_seen_.push_back(range);
             };
-            if (split_cells || cells->only_tets()) {
+            const auto look = [&](core::CellKind kind, std::span<const std::uint64_t> corners) {
+                const auto which = static_cast<std::size_t>(kind);
+                look_at(corners, tets_like_a_cell[which], triangles_per_active_cell[which]);
+            };
+            if (is_made_linear(*cells, cell)) {
+                nodes.clear();
+                for (std::uint64_t k = 0; k < cells->corners(cell); ++k)
+                    nodes.push_back(cells->corner(cells->first(cell) + k));
+                look_at(nodes, tets_of(nodes.size()), triangles_of_active(nodes.size()));
+            } else if (split_cells || cells->only_tets()) {
                 for (const core::Tet& tet : cells->tets(cell)) look(core::CellKind::tetrahedron, tet);
             } else {
                 const core::WholeCell whole = cells->whole(cell);

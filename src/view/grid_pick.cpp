@@ -25,6 +25,8 @@ Result<Surface> GridView::surface_of_pick(const PickMessage& message, const Run&
     ContourOptions options;
     options.method = Method::direct;
     options.source_cells = true;
+    options.expected_isovalues = {isovalue};
+    options.surfaces = 1;
     Result<Contour> contour =
         Contour::create({grid_, std::move(field), grid_.point_fields, grid_.cell_fields}, options);
     if (!contour) return contour.error();

@@ -230,6 +230,7 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     const bool packed = is_packed_.load(std::memory_order_acquire);
     Source& source = packed ? packed_ : direct_;
     if (packed) direct_.contour.reset();
+    if (!source.isovalues.empty() && source.isovalues != state.isovalues) source.contour.reset();
     if (source.contour && source.field == state.field && source.color_by == state.color_by && source.step == step_)
         return &source;
     Result<ContourInput> input = input_of(state.field, state.color_by, run);
@@ -240,9 +241,14 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
     } else {
         ContourOptions options;
         options.method = Method::direct;
+        options.expected_isovalues = state.isovalues; // making all polyhedra linear takes longer than these surfaces
+        options.surfaces = state.isovalues.size();
         Result<Contour> contour = Contour::create(*std::move(input), options);
         if (!contour) return contour.error();
         source.contour = *std::move(contour);
+        source.isovalues.clear();
+        const auto linear = source.contour->linear_grid();
+        if (linear && linear->grid.cells.count() < grid_.cells.count()) source.isovalues = state.isovalues;
     }
     source.field = state.field;
     source.color_by = state.color_by;
@@ -253,10 +259,11 @@ Result<GridView::Source*> GridView::source_for(const ViewState& state, const Run
 Result<Chart> GridView::chart(const std::string& field, const Run& run) {
     const Result<PointField> found = field_of(field, run);
     if (!found) return found.error();
-    if (has_cells_to_linearize(grid_.cells)) { // a session knows the linear ones
+    if (is_packed_.load(std::memory_order_acquire) &&
+        has_cells_to_linearize(grid_.cells)) { // the linear ones are known
         ViewState state;
         state.field = field;
-        state.color_by = (is_packed_.load(std::memory_order_acquire) ? packed_ : direct_).color_by;
+        state.color_by = packed_.color_by;
         const Result<Source*> source = source_for(state, run);
         if (!source) return source.error();
         const auto expected = [&](double isovalue) {

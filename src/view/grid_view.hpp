@@ -110,6 +110,7 @@ private:
         std::optional<Contour> contour;
         std::string field, color_by;
         std::size_t step = 0;
+        std::vector<double> isovalues = {}; ///< that `contour` is for, where it has only polyhedra that these meet
     };
     /// What a frame gathers.
     struct Making {

@@ -209,6 +209,37 @@ TEST_F(CurvedGridView, AndPolyhedraHaveAChartOfTheirSurfaces) {
         }
 }
 
+TEST_F(CurvedGridView, PolyhedraGiveTheSameSurfacesBeforeAndAfterPacking) {
+    MakeOptions options;
+    options.shape = "kelvin";
+    options.side = 6;
+    options.fields = {"sphere", "gyroid"};
+    const auto view = GridView::create(make_grid(options).value()).value();
+    const std::vector<std::vector<double>> wishes{{0.5}, {0.7}, {0.7, 0.9}, {0.5}, {99}};
+    const auto triangles = [&] {
+        std::vector<std::uint64_t> counts;
+        for (std::size_t i = 0; i < wishes.size(); ++i) {
+            known_.clear();
+            ShowMessage message = show(i + 1, wishes[i]);
+            message.state.slices = {{{0, 0, 1}, 0.1}};
+            const Json head = frame(*view, message);
+            for (const Json& surface : head["surfaces"]) counts.push_back(surface["triangles"]);
+        }
+        return counts;
+    };
+    const auto before = triangles();
+    ASSERT_TRUE(view->pack("sphere", {}));
+    EXPECT_EQ(triangles(), before);
+    EXPECT_GT(before[0], 1000u);
+    EXPECT_GT(before[1], 1000u) << "the slice";
+    PickMessage pick;
+    pick.state = show(1, {0.7}).state;
+    pick.point = {0.7, 0, 0};
+    const auto picked = view->pick(pick, {});
+    ASSERT_TRUE(picked) << picked.error().message;
+    EXPECT_NEAR(picked->point[0], 0.7, 0.05);
+}
+
 TEST_F(CurvedGridView, IsNotRefinedWithoutATolerance) {
     const auto view = view_with(std::nullopt);
     EXPECT_FALSE(view->refines());
