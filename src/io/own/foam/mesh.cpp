@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "core/parallel.hpp"
 #include "io/own/loaded.hpp"
 #include "io/own/text_scanner.hpp"
 
@@ -23,31 +24,32 @@ Result<Scanner> scanner_of(const CaseFiles& files, const std::string& name) {
     return scanner;
 }
 
-Result<void> read_points(const CaseFiles& files, const std::string& folder, Mesh& mesh) {
-    auto scanner = scanner_of(files, folder + "/points");
-    if (!scanner) return scanner.error();
-    auto points = scanner->tuples(3, "the points", 0);
+/// Texts are opened one after another, and parsed side by side.
+Result<void> read_points_and_faces(const CaseFiles& files, const MeshPlace& place, Mesh& mesh) {
+    auto of_points = scanner_of(files, place.points + "/points");
+    if (!of_points) return of_points.error();
+    auto of_faces = scanner_of(files, place.faces + "/faces");
+    if (!of_faces) return of_faces.error();
+    Result<std::vector<double>> points = std::vector<double>();
+    Result<Faces> faces = Faces();
+    core::parallel_each(2, 1, [&](std::size_t which) {
+        if (which == 0) points = of_points->tuples(3, "the points", 0);
+        else faces = of_faces->faces();
+    });
     if (!points) return points.error();
     if (points->size() / 3 > std::numeric_limits<std::int32_t>::max())
-        return scanner->fail(fmt::format("has {} points, but below 2^31 are read", points->size() / 3));
+        return of_points->fail(fmt::format("has {} points, but below 2^31 are read", points->size() / 3));
     mesh.points = std::move(*points);
-    mesh.single = scanner->format().single;
-    return {};
-}
-
-Result<void> read_faces(const CaseFiles& files, const std::string& folder, Mesh& mesh) {
-    auto scanner = scanner_of(files, folder + "/faces");
-    if (!scanner) return scanner.error();
-    auto faces = scanner->faces();
+    mesh.single = of_points->format().single;
     if (!faces) return faces.error();
     if (faces->count() > std::numeric_limits<std::int32_t>::max())
-        return scanner->fail(fmt::format("has {} faces, but below 2^31 are read", faces->count()));
+        return of_faces->fail(fmt::format("has {} faces, but below 2^31 are read", faces->count()));
     const auto count = static_cast<std::int64_t>(mesh.point_count());
     for (std::size_t face = 0; face < faces->count(); ++face)
         for (std::uint64_t k = faces->begins[face]; k < faces->begins[face + 1]; ++k)
             if (faces->points[k] < 0 || faces->points[k] >= count)
-                return broken(scanner->file().path, fmt::format("face {} has point {}, but there are {} points", face,
-                                                                faces->points[k], count));
+                return broken(of_faces->file().path, fmt::format("face {} has point {}, but there are {} points", face,
+                                                                 faces->points[k], count));
     mesh.faces = std::move(*faces);
     return {};
 }
@@ -59,18 +61,25 @@ std::size_t end_of(const std::vector<std::int32_t>& labels) {
 
 Result<void> read_cells(const CaseFiles& files, const std::string& folder, Mesh& mesh) {
     const std::size_t faces = mesh.faces.count();
-    for (const char* name : {"/owner", "/neighbour"}) {
-        auto scanner = scanner_of(files, folder + name);
-        if (!scanner) return scanner.error();
-        auto labels = scanner->labels("the cells of faces", faces);
-        if (!labels) return labels.error();
-        const bool owner = name[1] == 'o';
-        if (owner ? labels->size() != faces : labels->size() > faces)
-            return broken(scanner->file().path, fmt::format("has {} cells for {} faces", labels->size(), faces));
-        if (owner && std::ranges::find(*labels, -1) != labels->end())
-            return broken(scanner->file().path, "a face has cell -1");
-        (owner ? mesh.owner : mesh.neighbour) = std::move(*labels);
-    }
+    auto of_owner = scanner_of(files, folder + "/owner");
+    if (!of_owner) return of_owner.error();
+    auto of_neighbour = scanner_of(files, folder + "/neighbour");
+    if (!of_neighbour) return of_neighbour.error();
+    Result<std::vector<std::int32_t>> owner = std::vector<std::int32_t>(), neighbour = std::vector<std::int32_t>();
+    core::parallel_each(2, 1, [&](std::size_t which) {
+        if (which == 0) owner = of_owner->labels("the cells of faces", faces);
+        else neighbour = of_neighbour->labels("the cells of faces", faces);
+    });
+    const auto wrong_count = [&](const Scanner& scanner, std::size_t cells) {
+        return broken(scanner.file().path, fmt::format("has {} cells for {} faces", cells, faces));
+    };
+    if (!owner) return owner.error();
+    if (owner->size() != faces) return wrong_count(*of_owner, owner->size());
+    if (std::ranges::find(*owner, -1) != owner->end()) return broken(of_owner->file().path, "a face has cell -1");
+    if (!neighbour) return neighbour.error();
+    if (neighbour->size() > faces) return wrong_count(*of_neighbour, neighbour->size());
+    mesh.owner = *std::move(owner);
+    mesh.neighbour = *std::move(neighbour);
     mesh.cells = std::max(end_of(mesh.owner), end_of(mesh.neighbour));
     // So memory for cells is bounded by the files.
     if (mesh.cells > mesh.owner.size() + mesh.neighbour.size())
@@ -136,8 +145,7 @@ Result<void> read_patches(const CaseFiles& files, const std::string& folder, Mes
 
 Result<Mesh> read_mesh(const CaseFiles& files, const MeshPlace& place) {
     Mesh mesh;
-    if (auto read = read_points(files, place.points, mesh); !read) return read.error();
-    if (auto read = read_faces(files, place.faces, mesh); !read) return read.error();
+    if (auto read = read_points_and_faces(files, place, mesh); !read) return read.error();
     if (auto read = read_cells(files, place.faces, mesh); !read) return read.error();
     if (auto read = read_patches(files, place.faces, mesh); !read) return read.error();
     return mesh;

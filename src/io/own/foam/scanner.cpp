@@ -2,6 +2,7 @@
 #include "io/own/foam/scanner.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstring>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "core/parallel.hpp"
 #include "io/own/loaded.hpp"
 #include "io/own/text_scanner.hpp"
 
@@ -38,6 +40,33 @@ Number from_bytes(const char* bytes) {
 std::optional<std::int32_t> label_of(std::int64_t value) {
     if (value < -1 || value > std::numeric_limits<std::int32_t>::max()) return std::nullopt;
     return static_cast<std::int32_t>(value);
+}
+
+template <class Number>
+std::vector<Number> joined(const std::vector<std::vector<Number>>& parts) {
+    std::size_t size = 0;
+    for (const auto& part : parts) size += part.size();
+    std::vector<Number> out;
+    out.reserve(size);
+    for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
+    return out;
+}
+
+Faces joined(const std::vector<Faces>& parts) {
+    std::size_t faces = 0, points = 0;
+    for (const Faces& part : parts) {
+        faces += part.count();
+        points += part.points.size();
+    }
+    Faces out;
+    out.begins.reserve(faces + 1);
+    out.points.reserve(points);
+    for (const Faces& part : parts) {
+        for (std::size_t face = 0; face < part.count(); ++face)
+            out.begins.push_back(out.points.size() + part.begins[face + 1]);
+        out.points.insert(out.points.end(), part.points.begin(), part.points.end());
+    }
+    return out;
 }
 
 } // namespace
@@ -73,6 +102,7 @@ Error Scanner::fail(std::string_view what) const {
 void Scanner::skip_space() {
     while (at_ < text_.size()) {
         if (is_space(text_[at_])) ++at_;
+        else if (text_[at_] != '/') return;
         else if (text_.substr(at_, 2) == "//") at_ = std::min(text_.find('\n', at_), text_.size());
         else if (text_.substr(at_, 2) == "/*") {
             const std::size_t end = text_.find("*/", at_ + 2);
@@ -236,8 +266,62 @@ std::string_view Scanner::bytes_begun() {
 }
 
 /// `read(bytes, count)`  count items as bytes; with null: one item as text, from the cursor on
-template <class Read>
-Result<void> Scanner::list(std::string_view what, std::size_t item_bytes, std::size_t repeated, const Read& read) {
+/// The items of a long list in text, parsed side by side: read_one(scanner, part) for each. Behind an `end_of_item` the next
+/// one may begin. Nothing, and the cursor as before, where the list must be read in order, which then tells what is wrong: when
+/// it is short or broken, or a comment was taken for items.
+template <class Part, class ReadOne>
+std::optional<std::vector<Part>> Scanner::parts_of_list(std::uint64_t items, char end_of_item,
+                                                        const ReadOne& read_one) {
+    constexpr std::size_t part_bytes = std::size_t{1} << 19;
+    const std::size_t parts = (text_.size() - at_) / part_bytes; // what stands behind the list, too
+    if (header_.binary || parts < 2 || items < 2) return std::nullopt;
+    std::vector<std::size_t> begins{at_};
+    for (std::size_t part = 1; part < parts; ++part) {
+        const std::size_t end = text_.find(end_of_item, std::max(at_ + part * part_bytes, begins.back()));
+        begins.push_back(end == std::string_view::npos ? text_.size() : end + 1);
+    }
+    begins.push_back(text_.size());
+    struct Outcome {
+        std::uint64_t items = 0;
+        bool sound = false;
+        std::size_t list_end = 0; ///< 0: not in this part
+    };
+    std::vector<Part> found(parts);
+    std::vector<Outcome> outcomes(parts);
+    std::atomic<std::size_t> last = parts; ///< the part with the end of the list
+    core::parallel_each(parts, 1, [&](std::size_t part) {
+        if (part > last.load(std::memory_order_relaxed)) return;
+        Scanner scanner = *this;
+        scanner.text_ = text_.substr(0, begins[part + 1]);
+        scanner.at_ = begins[part];
+        Outcome& outcome = outcomes[part];
+        while (!scanner.at_end() && scanner.peek() != ')') {
+            if (!read_one(scanner, found[part])) return;
+            ++outcome.items;
+        }
+        outcome.sound = true;
+        if (scanner.at_end()) return;
+        outcome.list_end = scanner.at_;
+        for (std::size_t known = last; part < known && !last.compare_exchange_weak(known, part);) {}
+    });
+    std::uint64_t count = 0;
+    for (std::size_t part = 0; part < parts; ++part) {
+        const Outcome& outcome = outcomes[part];
+        count += outcome.items;
+        if (!outcome.sound || count > items) return std::nullopt;
+        if (outcome.list_end == 0) continue;
+        if (count != items) return std::nullopt;
+        at_ = outcome.list_end + 1;
+        found.resize(part + 1);
+        return found;
+    }
+    return std::nullopt;
+}
+
+/// `read_parts(items)`   true where it has read them all, and the end of the list
+template <class Read, class ReadParts>
+Result<void> Scanner::list(std::string_view what, std::size_t item_bytes, std::size_t repeated, const Read& read,
+                           const ReadParts& read_parts) {
     std::uint64_t items = 0;
     const bool counted = peek() != '(';
     if (counted) {
@@ -273,6 +357,7 @@ Result<void> Scanner::list(std::string_view what, std::size_t item_bytes, std::s
         return {};
     }
     if (counted && items > (text_.size() - at_ + 1) / 2) return short_of((text_.size() - at_ + 1) / 2);
+    if (counted && read_parts(items)) return {};
     std::uint64_t done = 0;
     for (; counted ? done < items : peek() != ')'; ++done)
         if (!read(nullptr, 1)) return short_of(done);
@@ -281,7 +366,7 @@ Result<void> Scanner::list(std::string_view what, std::size_t item_bytes, std::s
 
 Result<std::vector<std::int32_t>> Scanner::labels(std::string_view what, std::size_t repeated) {
     std::vector<std::int32_t> out;
-    const auto done = list(what, header_.label_bytes, repeated, [&](const char* bytes, std::uint64_t items) {
+    const auto in_order = [&](const char* bytes, std::uint64_t items) {
         std::int64_t value = 0;
         if (!bytes) {
             const std::size_t before = at_;
@@ -299,7 +384,18 @@ Result<std::vector<std::int32_t>> Scanner::labels(std::string_view what, std::si
             out[i] = *label;
         }
         return true;
-    });
+    };
+    const auto in_parts = [&](std::uint64_t items) {
+        const auto parts = parts_of_list<std::vector<std::int32_t>>(items, '\n', [](Scanner& scanner, auto& part) {
+            std::int64_t value = 0;
+            const auto label = scanner.number(value) ? label_of(value) : std::nullopt;
+            if (label) part.push_back(*label);
+            return label.has_value();
+        });
+        if (parts) out = joined(*parts);
+        return parts.has_value();
+    };
+    const auto done = list(what, header_.label_bytes, repeated, in_order, in_parts);
     if (!done) return done.error();
     return out;
 }
@@ -340,7 +436,7 @@ Result<std::vector<double>> Scanner::tuple(std::size_t components, std::string_v
 Result<std::vector<double>> Scanner::tuples(std::size_t components, std::string_view what, std::size_t repeated) {
     std::vector<double> out;
     const std::size_t bytes_of_one = header_.scalar_bytes * components;
-    const auto done = list(what, bytes_of_one, repeated, [&](const char* bytes, std::uint64_t items) {
+    const auto in_order = [&](const char* bytes, std::uint64_t items) {
         if (!bytes) {
             if (!tuple_here(components, out)) return false;
             for (std::uint64_t i = 1; i < items; ++i)
@@ -354,7 +450,16 @@ Result<std::vector<double>> Scanner::tuples(std::size_t components, std::string_
         else
             for (std::size_t i = 0; i < out.size(); ++i) out[i] = from_bytes<float>(bytes + 4 * i);
         return true;
-    });
+    };
+    const auto in_parts = [&](std::uint64_t items) {
+        const auto parts =
+            parts_of_list<std::vector<double>>(items, components > 1 ? ')' : '\n', [&](Scanner& scanner, auto& part) {
+                return scanner.tuple_here(components, part);
+            });
+        if (parts) out = joined(*parts);
+        return parts.has_value();
+    };
+    const auto done = list(what, bytes_of_one, repeated, in_order, in_parts);
     if (!done) return done.error();
     return out;
 }
@@ -406,6 +511,9 @@ Result<Faces> Scanner::faces() {
     if (*stated == 0 && peek() != '(') return out;
     if (!take('(') || *stated > (text_.size() - at_) / 3)
         return fail(fmt::format("the faces: {} are stated, but there is no room for them", *stated));
+    if (auto parts = parts_of_list<Faces>(
+            *stated, ')', [](Scanner& scanner, Faces& part) { return static_cast<bool>(scanner.face_here(part)); }))
+        return joined(*parts);
     out.begins.reserve(static_cast<std::size_t>(*stated) + 1);
     for (std::uint64_t face = 0; face < *stated; ++face)
         if (auto read = face_here(out); !read) return read.error();

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,8 +82,11 @@ public:
     Error fail(std::string_view what) const;
 
 private:
-    template <class Read>
-    Result<void> list(std::string_view what, std::size_t item_bytes, std::size_t repeated, const Read& read);
+    template <class Read, class ReadParts>
+    Result<void> list(std::string_view what, std::size_t item_bytes, std::size_t repeated, const Read& read,
+                      const ReadParts& read_parts);
+    template <class Part, class ReadOne>
+    std::optional<std::vector<Part>> parts_of_list(std::uint64_t items, char end_of_item, const ReadOne& read_one);
     bool number(double& value);
     bool number(std::int64_t& value);
     bool tuple_here(std::size_t components, std::vector<double>& to);
