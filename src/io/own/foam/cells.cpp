@@ -49,8 +49,9 @@ struct ShortLoop {
         return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2]) | (a[3] ^ b[3])) == 0 && count == other.count;
     }
     bool has(std::int32_t point) const {
-        const bool is_fourth = count == 4 && point == points[3];
-        return (point == points[0]) | (point == points[1]) | (point == points[2]) | is_fourth;
+        unsigned same = count == 4 && point == points[3] ? 1 : 0;
+        for (std::size_t k = 0; k < 3; ++k) same += point == points[k] ? 1 : 0;
+        return same > 0;
     }
     void reverse() { std::reverse(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)); }
     /// The lowest point first.
