@@ -63,10 +63,14 @@ hsize_t length_in(hid_t file, const std::string& name) {
     return length;
 }
 
-void halve_array(hid_t file, const std::string& name) { shorten_array(file, name, length_in(file, name) / 2); }
-void drop_last_value(hid_t file, const std::string& name) { shorten_array(file, name, length_in(file, name) - 1); }
+/// How an array is changed.
+enum class Change { removed, halved, shortened };
 
-using Change = void (*)(hid_t file, const std::string& name);
+void change_array(hid_t file, const std::string& name, Change change) {
+    if (change == Change::removed) return remove_array(file, name);
+    const hsize_t length = length_in(file, name);
+    shorten_array(file, name, change == Change::halved ? length / 2 : length - 1);
+}
 
 class CgnsWithoutAnArray : public testing::TestWithParam<Change> {};
 
@@ -77,11 +81,13 @@ TEST_P(CgnsWithoutAnArray, IsAnErrorOrTheSameGrid) {
     const std::vector<std::string> expected = digest(sound->grid);
     const TemporaryFolder folder;
     std::vector<std::string> errors;
+    int files = 0;
     for (const std::string& name : arrays_in(whole)) {
-        const std::string path = folder.file("changed.cgns");
-        std::filesystem::copy_file(whole, path, std::filesystem::copy_options::overwrite_existing);
+        const std::string path =
+            folder.file("changed" + std::to_string(files++) + ".cgns"); // readers may hold the last one
+        std::filesystem::copy_file(whole, path);
         const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-        GetParam()(file, name);
+        change_array(file, name, GetParam());
         H5Fclose(file);
         const auto result = read(path);
         if (result) {
@@ -90,7 +96,7 @@ TEST_P(CgnsWithoutAnArray, IsAnErrorOrTheSameGrid) {
         }
         errors.push_back(name + ": " + result.error().message);
         EXPECT_EQ(errors.back().find("signal"), std::string::npos) << "the reader crashed: " << errors.back();
-        EXPECT_NE(errors.back().find("changed.cgns"), std::string::npos) << errors.back();
+        EXPECT_NE(errors.back().find(path), std::string::npos) << errors.back();
     }
     for (const char* needed : {"CoordinateX", "CoordinateY", "CoordinateZ", "ElementConnectivity"})
         EXPECT_TRUE(std::ranges::any_of(errors, [&](const std::string& error) {
@@ -99,7 +105,7 @@ TEST_P(CgnsWithoutAnArray, IsAnErrorOrTheSameGrid) {
     EXPECT_GE(errors.size(), 5u) << "and the fields";
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, CgnsWithoutAnArray, testing::Values(remove_array, halve_array, drop_last_value));
+INSTANTIATE_TEST_SUITE_P(Ways, CgnsWithoutAnArray, testing::Values(Change::removed, Change::halved, Change::shortened));
 
 } // namespace
 } // namespace isotet::test
