@@ -89,10 +89,8 @@ if ((${#left_over[@]} > 0)); then
     esac
 fi
 
-launcher=()
-if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 say "gpu_bench: configures"
-in_log "gpu_bench: configure" "$build.configure.log" cmake -G Ninja -S "$root" -B "$build" "${launcher[@]}" \
+in_log "gpu_bench: configure" "$build.configure.log" cmake -G Ninja -S "$root" -B "$build" \
     -DCMAKE_BUILD_TYPE=Release -DISOTET_IO=OFF -DISOTET_PROGRAM=OFF -DISOTET_TESTS=OFF -DISOTET_BENCH=ON || exit
 say "gpu_bench: builds"
 in_log "gpu_bench: build" "$build.build.log" cmake --build "$build" -j "$(jobs_that_fit)" --target isotet_gpu_bench || exit

@@ -42,7 +42,6 @@ source_archive() {
 raw_wheel() {
     local options=()
     if [[ -n ${ISOTET_INSTALLED:-} ]]; then options+=(--config-settings=cmake.define.ISOTET_INSTALLED="$ISOTET_INSTALLED"); fi
-    if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
     rm -rf "$folder/raw" "$folder/build"
     CMAKE_BUILD_PARALLEL_LEVEL=$(jobs_that_fit) "$folder/tools/bin/python" -m pip wheel --no-deps --no-build-isolation \
         --wheel-dir "$folder/raw" --config-settings=build-dir="$folder/build" \

@@ -74,14 +74,9 @@ in_log() {
 build() {
     local name=$1 folder=$2
     shift 2
-    local launcher=()
-    if command -v ccache >/dev/null; then
-        launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-        export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros} # without it, nothing with precompiled headers
-    fi
     say "$name: configures"
     measured "$name: configure" in_log "$name: configure" "$folder.configure.log" \
-        cmake -G Ninja -S "${build_source:-$root}" -B "$folder" "${launcher[@]}" "$@" || return
+        cmake -G Ninja -S "${build_source:-$root}" -B "$folder" "$@" || return
     say "$name: builds, $(jobs_that_fit) files at a time"
     measured "$name: build" in_log "$name: build" "$folder.build.log" \
         cmake --build "$folder" -j "$(jobs_that_fit)" --target "${build_target:-all}" || return
