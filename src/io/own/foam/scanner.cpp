@@ -265,7 +265,6 @@ std::string_view Scanner::bytes_begun() {
     return text_.substr(at_, static_cast<std::size_t>(size));
 }
 
-/// `read(bytes, count)`  count items as bytes; with null: one item as text, from the cursor on
 /// The items of a long list in text, parsed side by side: read_one(scanner, part) for each. Behind an `end_of_item` the next
 /// one may begin. Nothing, and the cursor as before, where the list must be read in order, which then tells what is wrong: when
 /// it is short or broken, or a comment was taken for items.
@@ -318,7 +317,8 @@ std::optional<std::vector<Part>> Scanner::parts_of_list(std::uint64_t items, cha
     return std::nullopt;
 }
 
-/// `read_parts(items)`   true where it has read them all, and the end of the list
+/// `read(bytes, count)`   count items as bytes; with null: one item as text, from the cursor on
+/// `read_parts(items)`    the same for all items of a text; true where it has read them and the end of the list
 template <class Read, class ReadParts>
 Result<void> Scanner::list(std::string_view what, std::size_t item_bytes, std::size_t repeated, const Read& read,
                            const ReadParts& read_parts) {
