@@ -22,7 +22,7 @@ Scanner scanner_of(const std::string& text) {
     return Scanner({"case/file", "file", std::move(owner), view});
 }
 
-/// As many items as make a few MB, with spaces, line ends and comments between them.
+/// 150,000 items or more make a few MB. With spaces, line ends and comments between them.
 struct LongList {
     std::vector<std::int32_t> labels;
     std::vector<double> scalars, vectors;
@@ -30,9 +30,9 @@ struct LongList {
     std::vector<std::uint64_t> begins{0};
     std::vector<std::int32_t> points;
 
-    explicit LongList(bool comments, const char* separator) {
+    LongList(int items, bool comments, const char* separator) {
         std::mt19937 random(3);
-        for (int i = 0; i < 300'000; ++i) {
+        for (int i = 0; i < items; ++i) {
             std::string between = separator;
             if (comments && random() % 1000 == 0) between += "// 7 (1 2 3) 4(0 1 2 3)\n";
             if (comments && random() % 1000 == 0) between += "/* 5\n(6 7 8) */ ";
@@ -62,7 +62,7 @@ TEST(FoamLists, ThatAreLongAreReadWhole) {
     for (const bool comments : {false, true})
         for (const char* separator : {"\n", "  ", "\t\r\n"}) {
             SCOPED_TRACE(fmt::format("{} comments, {:?}", comments ? "with" : "without", separator));
-            const LongList made(comments, separator);
+            const LongList made(150'000, comments, separator);
             const std::size_t count = made.labels.size();
             Scanner labels = scanner_of(LongList::list(count, made.text_of_labels));
             EXPECT_TRUE(labels.labels("labels", 0).value() == made.labels);
@@ -84,7 +84,7 @@ TEST(FoamLists, ThatAreLongAreReadWhole) {
 }
 
 TEST(FoamLists, ThatAreLongAndWrongAreErrorsWithTheirPlace) {
-    const LongList made(false, "\n");
+    const LongList made(300'000, false, "\n");
     const std::size_t count = made.labels.size();
     for (const std::size_t stated : {count - 1, count + 1}) {
         EXPECT_FALSE(scanner_of(LongList::list(stated, made.text_of_labels)).labels("labels", 0));
