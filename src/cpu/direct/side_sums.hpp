@@ -32,10 +32,11 @@ bool add_up_sides(const Sides& sides, const Index* corners, std::size_t cells, s
         // Two corners at once: half as many words to load, check and mask.
         const std::uint64_t both = mask * std::uint64_t{0x1'0000'0001};
         for (std::size_t i = 0; i < cells; ++i) {
-            std::array<std::uint64_t, n / 2> words;
-            std::memcpy(words.data(), corners + n * i, sizeof words);
             unsigned sum = 0;
-            for (const std::uint64_t word : words) {
+#pragma GCC unroll 4
+            for (std::size_t k = 0; k < n; k += 2) {
+                std::uint64_t word;
+                std::memcpy(&word, corners + n * i + k, sizeof word);
                 all |= word;
                 const std::uint64_t pair = word & both;
                 sum += sides[static_cast<std::uint32_t>(pair)];
