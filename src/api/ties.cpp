@@ -35,8 +35,11 @@ void for_points_with(const core::Packed& packed, Real stored, const F& f) {
     core::parallel_each(packed.clusters(), 1 << 10, [&](std::size_t c) {
         if (!(reals.ranges[c].lower <= stored && stored <= reals.ranges[c].upper)) return;
         const core::ClusterHeader& h = packed.headers[c];
-        for (std::uint64_t p = h.first_point; p < h.first_point + h.own_points; ++p)
-            if (reals.values[p] == stored) f(p);
+        const Real* const values = reals.values.data() + h.first_point;
+        unsigned any = 0; // mostly none: found without a branch a point
+        for (std::size_t k = 0; k < h.own_points; ++k) any |= values[k] == stored;
+        for (std::size_t k = 0; any && k < h.own_points; ++k)
+            if (values[k] == stored) f(h.first_point + k);
     });
 }
 
