@@ -27,7 +27,6 @@ namespace core {
 namespace {
 
 constexpr auto tetrahedron = static_cast<std::uint8_t>(CellType::tetrahedron);
-constexpr auto voxel = static_cast<std::uint8_t>(CellType::voxel);
 
 } // namespace
 
@@ -37,10 +36,7 @@ WholeCell CellReader::whole(std::size_t cell) const {
         corners += first(cell);
         for (std::size_t i = 0; i < corner_count(out.kind); ++i) out.corners[i] = widened(corners[i]);
     });
-    if (type(cell) == voxel) {
-        std::swap(out.corners[2], out.corners[3]);
-        std::swap(out.corners[6], out.corners[7]);
-    }
+    order_as_kind(type(cell), out.corners);
     return out;
 }
 

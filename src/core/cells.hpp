@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <isotet/export.hpp>
 #include <isotet/grid.hpp>
@@ -34,6 +35,14 @@ constexpr bool is_contoured(std::uint8_t vtk_type) { return kind_of(vtk_type).ha
 constexpr int corners_of(std::uint8_t vtk_type) {
     const auto kind = kind_of(vtk_type);
     return kind ? static_cast<int>(corner_count(*kind)) : 0;
+}
+
+/// From the corners of a cell in VTK's order to those of its kind: voxels become hexahedra.
+template <class Corners>
+void order_as_kind(std::uint8_t vtk_type, Corners& corners) {
+    if (vtk_type != static_cast<std::uint8_t>(CellType::voxel)) return;
+    std::swap(corners[2], corners[3]);
+    std::swap(corners[6], corners[7]);
 }
 
 /// A point number or offset as 64 bits; a negative one becomes a huge one.

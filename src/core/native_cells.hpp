@@ -8,15 +8,21 @@
 
 #include "core/orientation.hpp"
 #include "core/split.hpp"
+#include "core/splitter.hpp"
 
 namespace isotet::core {
 
-inline bool has_repeated_corner(const WholeCell& cell) {
+/// Whether some of the first n corners are equal.
+template <class Corner>
+bool has_repeated_corner(const std::array<Corner, 8>& corners, std::size_t n) {
     bool repeated = false;
-    const std::size_t n = corner_count(cell.kind);
     for (std::size_t a = 0; a < n; ++a)
-        for (std::size_t b = a + 1; b < n; ++b) repeated |= cell.corners[a] == cell.corners[b];
+        for (std::size_t b = a + 1; b < n; ++b) repeated |= corners[a] == corners[b];
     return repeated;
+}
+
+inline bool has_repeated_corner(const WholeCell& cell) {
+    return has_repeated_corner(cell.corners, corner_count(cell.kind));
 }
 
 /// What is stored of one cell of the user's grid.
@@ -66,17 +72,33 @@ TurnOfCell turn_of(const WholeCell& cell, const At& at) {
     return turn;
 }
 
-/// Whether turn_of() has more negative tets than upright ones; looks at as few as tell.
+/// Of the tets of a cell, how many more are upright than negative; exact once no further one can change the sign.
+/// `At`   places of corners; see turn_of()
 template <class At>
-bool is_mirrored(const WholeCell& cell, const At& at) {
-    const LocalTets tets = split_locally(cell);
-    int lead = 0, left = tets.count; // of upright tets
-    for (const auto& tet : tets) {
-        lead += orientation_sign(at(tet[0]), at(tet[1]), at(tet[2]), at(tet[3]));
-        --left;
-        if (lead >= left || -lead > left) break;
+class UprightLead {
+public:
+    explicit UprightLead(const At& at) : at_(at) {}
+
+    void expect(int tets) { left_ = tets; }
+    void add(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) {
+        if (lead_ >= left_ || -lead_ > left_) return;
+        lead_ += orientation_sign(at_(a), at_(b), at_(c), at_(d));
+        --left_;
     }
-    return lead < 0;
+    bool is_negative() const { return lead_ < 0; }
+
+private:
+    const At& at_;
+    int lead_ = 0, left_ = 0;
+};
+
+/// Whether turn_of() has more negative tets than upright ones; looks at as few as tell.
+/// `corners`   point numbers; tets with repeated ones are flat
+template <class Corner, class At>
+bool is_mirrored(CellKind kind, const std::array<Corner, 8>& corners, const At& at) {
+    UprightLead lead(at);
+    Splitter(corners.data(), lead).split(kind);
+    return lead.is_negative();
 }
 
 } // namespace isotet::core

@@ -37,7 +37,7 @@ struct TetsOfCell {
 using CellTets = TetsOfCell<std::uint64_t>; ///< by point number
 using LocalTets = TetsOfCell<std::uint8_t>; ///< by position among the corners of the cell
 
-/// Dompierre and others, 1999: every face is cut from its lowest corner. A tet stays as it is.
+/// By the rule of splitter.hpp.
 CellTets split_cell(const WholeCell& cell);
 
 /// The same tets, their corners as positions in `corners`, of which some may be equal.

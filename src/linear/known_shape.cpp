@@ -109,7 +109,7 @@ std::optional<WholeCell> known_shape(const Shell& shell, std::span<const std::ui
     }
     WholeCell cell = ordered(shell, *kind);
     if (!has_faces_of(cell, shell)) return std::nullopt;
-    if (core::is_mirrored(cell, [&](std::size_t corner) { return points[cell.corners[corner]]; }))
+    if (core::is_mirrored(cell.kind, cell.corners, [&](std::size_t corner) { return points[cell.corners[corner]]; }))
         cell.corners = core::mirrored(cell.kind, cell.corners);
     return cell;
 }

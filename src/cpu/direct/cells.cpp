@@ -49,7 +49,7 @@ public:
     /// Cells that are nothing but four numbers, `corners` those of the first.
     template <class Index>
     void pass_tets(const Index* corners, std::size_t count) {
-        pass_like_cells<4>(corners, count, [&](std::size_t place, unsigned sum) {
+        pass_like_cells<4>(corners, count, [&]<std::size_t>(std::size_t place, unsigned sum) {
             const Index* const v = corners + 4 * place;
             const std::array<Point, 4> tet{static_cast<Point>(v[0]), static_cast<Point>(v[1]), static_cast<Point>(v[2]),
                                            static_cast<Point>(v[3])};
@@ -65,10 +65,15 @@ public:
     void pass_cells(const Index* corners, std::size_t begin, std::size_t end) {
         for (std::size_t first = begin; first < end && !is_broken(); first += cells_at_once) {
             const std::size_t last = std::min(end, first + cells_at_once), count = corners_of_like_cells(first, last);
-            const auto pass = [&](std::size_t place, unsigned) {
-                return pass_cell(corners, first + place, static_cast<std::uint32_t>(first + place - begin));
-            };
             const Index* const part = corners + (count ? cells_.first(first) : 0);
+            const std::uint8_t type = cells_.type(first);
+            const bool whole = !context_.split_cells && count > 4;
+            const auto pass = [&]<std::size_t n>(std::size_t place, unsigned sum) {
+                const auto in_chunk = static_cast<std::uint32_t>(first + place - begin);
+                if (whole && sum < 16 && add_whole<n>(type, part + n * place, in_chunk)) [[likely]]
+                    return true;
+                return pass_cell(corners, first + place, in_chunk);
+            };
             if (count == 8) pass_like_cells<8>(part, last - first, pass);
             else if (count == 6) pass_like_cells<6>(part, last - first, pass);
             else if (count == 5) pass_like_cells<5>(part, last - first, pass);
@@ -93,9 +98,20 @@ private:
             std::fill(sums.begin() + static_cast<std::ptrdiff_t>(size), sums.end(), 0);
             const std::size_t found = find_worth_looking<n>(sums, places.data());
             for (std::size_t i = 0; i < found; ++i)
-                if (!pass(begin + places[i], sums[places[i]])) return broken();
+                if (!pass.template operator()<n>(begin + places[i], sums[places[i]])) return broken();
             if (is_broken()) return;
         }
+    }
+
+    /// A cut cell with nothing special about its corners. False when some are repeated: then it was not added.
+    template <std::size_t n, class Index>
+    bool add_whole(std::uint8_t type, const Index* corners, std::uint32_t place) {
+        NativeCell<Point> cell{*core::kind_of(type), {}};
+        for (std::size_t k = 0; k < n; ++k) cell.corners[k] = static_cast<Point>(corners[k]);
+        if (core::has_repeated_corner(cell.corners, n)) return false;
+        core::order_as_kind(type, cell.corners);
+        cutter_.add_cell(cell, place);
+        return true;
     }
 
     /// How many corners each of the cells [begin, end) has, if all have as many, lie one after another in the
@@ -203,19 +219,14 @@ private:
             for (const core::Tet& tet : cells_.tets(cell)) add_tet(tet);
             return true;
         }
-        const core::WholeCell whole = cells_.whole(cell);
-        if (both_sides && !watched && whole.kind != core::CellKind::tetrahedron && !core::has_repeated_corner(whole)) {
-            cutter_.add_cell(whole, place); // most of those that get here
-            return true;
-        }
-        for (const core::WholeCell& part : core::native_parts(whole)) {
+        for (const core::WholeCell& part : core::native_parts(cells_.whole(cell))) {
             if (part.kind == core::CellKind::tetrahedron) {
                 add_tet(part.corners);
                 continue;
             }
             if (watched)
                 for (std::size_t k = 0; k < core::corner_count(part.kind); ++k) context_.sides.saw(part.corners[k]);
-            if (both_sides) cutter_.add_cell(part, place);
+            if (both_sides) cutter_.add_cell(NativeCell<Point>(part), place);
         }
         return true;
     }

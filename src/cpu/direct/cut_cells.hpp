@@ -45,7 +45,7 @@ void Cutter<Point>::cut_cells() {
     std::array<CutCell, std::tuple_size_v<decltype(cell_batch_)>> cut;
     std::size_t cut_count = 0, polygon_count = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        core::WholeCell& cell = cell_batch_[i];
+        NativeCell<Point>& cell = cell_batch_[i];
         unsigned seen = 0, index = 0;
         for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) {
             const unsigned flags = context_.sides[cell.corners[k]];
@@ -55,7 +55,7 @@ void Cutter<Point>::cut_cells() {
         if (seen & side::no_data) continue;
         std::array<core::Point, 8> places;
         for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) places[k] = points_[cell.corners[k]];
-        if (core::is_mirrored(cell, [&](std::size_t k) -> const core::Point& { return places[k]; })) {
+        if (core::is_mirrored(cell.kind, cell.corners, [&](std::size_t k) -> const core::Point& { return places[k]; })) {
             index = mirrored_case(cell.kind, index);
             cell.corners = core::mirrored(cell.kind, cell.corners);
         }
@@ -80,13 +80,13 @@ void Cutter<Point>::cut_cells() {
         return number;
     };
     for (std::size_t i = 0; i < cut_count; ++i) {
-        const core::WholeCell& cell = cell_batch_[cut[i].in_batch];
+        const NativeCell<Point>& cell = cell_batch_[cut[i].in_batch];
         const std::uint32_t before = kept;
         for (const core::CellPolygon& polygon : core::polygons_of(cell.kind, cut[i].index)) {
             std::array<ActiveEdge<Point>, 4> edges;
             for (std::size_t k = 0; k < 4; ++k) {
-                const auto above = static_cast<Point>(cell.corners[polygon.edges[k].above]);
-                const auto below = static_cast<Point>(cell.corners[polygon.edges[k].below]);
+                const Point above = cell.corners[polygon.edges[k].above];
+                const Point below = cell.corners[polygon.edges[k].below];
                 const bool is_tied = cut[i].has_tied && (context_.sides[above] & side::tied);
                 edges[k] = is_tied ? ActiveEdge<Point>{above, above}
                                    : ActiveEdge<Point>{std::min(above, below), std::max(above, below)};
@@ -108,7 +108,7 @@ void Cutter<Point>::cut_cells() {
 }
 
 template <class Point>
-bool Cutter<Point>::is_coarse(const core::WholeCell& cell) const {
+bool Cutter<Point>::is_coarse(const NativeCell<Point>& cell) const {
     std::array<core::Point, 8> exact;
     double moved = 0, shortest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) {

@@ -29,6 +29,19 @@ struct ActiveEdge {
     }
 };
 
+/// A pyramid, wedge or hexahedron by the user's point numbers.
+template <class Point>
+struct NativeCell {
+    core::CellKind kind{};
+    std::array<Point, 8> corners{}; ///< as many as the kind has
+
+    NativeCell() = default;
+    NativeCell(core::CellKind of_kind, const std::array<Point, 8>& points) : kind(of_kind), corners(points) {}
+    explicit NativeCell(const core::WholeCell& cell) : kind(cell.kind) {
+        for (std::size_t k = 0; k < core::corner_count(kind); ++k) corners[k] = static_cast<Point>(cell.corners[k]);
+    }
+};
+
 /// What a batch of active tets leaves. Edges are numbered within the chunk; one that was found by another chunk, or too
 /// long ago to be remembered, is found again.
 template <class Point>
@@ -105,7 +118,7 @@ public:
     void end();
 
     /// A native cell with corners on both sides that is no tet.
-    void add_cell(const core::WholeCell& cell, std::uint32_t place) {
+    void add_cell(const NativeCell<Point>& cell, std::uint32_t place) {
         if (pending_) cut();
         for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) points_.prefetch(cell.corners[k]);
         cell_batch_[pending_cells_] = cell;
@@ -133,7 +146,7 @@ private:
     unsigned unusual_polygon(std::size_t tet, std::array<ActiveEdge<Point>, 4>& polygon);
     bool is_mirrored_flat(std::size_t tet);
     bool is_coarse(std::size_t tet) const;
-    bool is_coarse(const core::WholeCell& cell) const;
+    bool is_coarse(const NativeCell<Point>& cell) const;
 
     CutContext& context_;
     std::size_t number_;
@@ -157,7 +170,7 @@ private:
 
     // The batch of other cells; while there are any, there are no tets.
     std::size_t pending_cells_ = 0;
-    std::array<core::WholeCell, 64> cell_batch_;
+    std::array<NativeCell<Point>, 64> cell_batch_;
 };
 
 } // namespace isotet::cpu::direct
