@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Types and offsets go only where they say nothing, however late the cell comes that differs.
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include "io/own/byte_source.hpp"
 #include "io/own/read_legacy_vtk.hpp"
+#include "io/own/vtk_xml/codec.hpp"
 #include "io/own/vtk_xml/load.hpp"
 #include "readers/sample_bytes.hpp"
 
@@ -51,24 +53,44 @@ std::string bytes_of(const std::vector<T>& values, bool swapped) {
     return bytes.str();
 }
 
-std::string vtu_text(const LikeCells& cells) {
+enum class Form : std::uint8_t { vtu, vtu_zlib, legacy };
+
+/// With the sizes that stand in front of it in the file.
+std::string with_sizes(const std::string& bytes, Form form) {
+    if (form == Form::vtu) return bytes_of(std::vector{static_cast<std::uint32_t>(bytes.size())}, false) + bytes;
+    constexpr std::size_t size = 1 << 15;
+    const std::size_t blocks = (bytes.size() + size - 1) / size;
+    std::vector<std::uint32_t> header{static_cast<std::uint32_t>(blocks), size,
+                                      static_cast<std::uint32_t>(bytes.size() % size)};
+    std::string packed;
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const std::string one = bytes.substr(block * size, size);
+        const std::string deflated = io::vtk_xml::deflate(io::vtk_xml::Codec::zlib, std::as_bytes(std::span(one)));
+        header.push_back(static_cast<std::uint32_t>(deflated.size()));
+        packed += deflated;
+    }
+    return bytes_of(header, false) + packed;
+}
+
+std::string vtu_text(const LikeCells& cells, Form form) {
     std::string data, arrays;
     const auto append = [&](const auto& values, const char* type, const char* name, int components) {
-        const std::string bytes = bytes_of(values, false);
+        const std::string bytes = with_sizes(bytes_of(values, false), form);
         const auto element = fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" "
                                          "format=\"appended\" offset=\"{}\"/>",
                                          type, name, components, data.size());
-        data += bytes_of(std::vector{static_cast<std::uint32_t>(bytes.size())}, false) + bytes;
+        data += bytes;
         return element;
     };
     const std::string points = append(std::vector<float>(15, 0.5F), "Float32", "Points", 3);
     arrays += append(cells.connectivity(), "Int64", "connectivity", 1);
     arrays += append(cells.offsets(false), "Int64", "offsets", 1);
     arrays += append(cells.types<std::uint8_t>(), "UInt8", "types", 1);
-    return fmt::format("<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece "
+    return fmt::format("<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"{}><UnstructuredGrid><Piece "
                        "NumberOfPoints=\"5\" NumberOfCells=\"{}\"><Points>{}</Points><Cells>{}</Cells></Piece>"
                        "</UnstructuredGrid><AppendedData encoding=\"raw\">_{}</AppendedData></VTKFile>",
-                       many_cells, points, arrays, data);
+                       form == Form::vtu_zlib ? " compressor=\"vtkZLibDataCompressor\"" : "", many_cells, points,
+                       arrays, data);
 }
 
 std::string legacy_text(const LikeCells& cells) {
@@ -80,12 +102,16 @@ std::string legacy_text(const LikeCells& cells) {
            bytes_of(cells.types<std::int32_t>(), true) + "\n";
 }
 
-class CellsOfAFile : public testing::TestWithParam<bool> {
+Result<io::Loaded> load_vtu(const std::string& text) {
+    return io::vtk_xml::load(io::ByteSource(text), "UnstructuredGrid", {}, io::Depth::arrays, false, {});
+}
+
+class CellsOfAFile : public testing::TestWithParam<Form> {
 protected:
     static Cells read(const LikeCells& cells) {
-        const auto loaded = GetParam() ? io::load_legacy(io::ByteSource(legacy_text(cells)), {}, io::Depth::arrays, {})
-                                       : io::vtk_xml::load(io::ByteSource(vtu_text(cells)), "UnstructuredGrid", {},
-                                                           io::Depth::arrays, false, {});
+        const auto loaded = GetParam() == Form::legacy
+                                ? io::load_legacy(io::ByteSource(legacy_text(cells)), {}, io::Depth::arrays, {})
+                                : load_vtu(vtu_text(cells, GetParam()));
         EXPECT_TRUE(loaded) << loaded.error().message;
         Cells out = loaded ? loaded->pieces.at(0).grid.cells : Cells();
         const auto expected = cells.connectivity();
@@ -115,6 +141,28 @@ TEST_P(CellsOfAFile, KeepBothWhereTheLastCellIsLonger) { expect_kept({.last_type
 TEST_P(CellsOfAFile, KeepBothWhereOnlyTheLastOffsetDiffers) { expect_kept({.last_corners = 5}); }
 TEST_P(CellsOfAFile, KeepBothWhereTheOneTypeIsNotContoured) { expect_kept({.type = 9, .last_type = 9}); }
 
+/// The last block of types, one byte of it another.
+std::string with_changed_byte(std::size_t from_end) {
+    std::string text = vtu_text({}, Form::vtu_zlib);
+    const std::size_t at = text.find("</AppendedData>") - from_end;
+    text[at] = static_cast<char>(text[at] ^ 1);
+    return text;
+}
+
+TEST(CellsOfZlib, AreErrorsWhereAChecksumIsNotThatOfTheBlock) {
+    for (std::size_t from_end = 1; from_end <= io::vtk_xml::checksum_bytes; ++from_end) {
+        const auto loaded = load_vtu(with_changed_byte(from_end));
+        ASSERT_FALSE(loaded) << from_end;
+        EXPECT_NE(loaded.error().message.find("cannot be inflated"), std::string::npos) << loaded.error().message;
+    }
+}
+
+TEST(CellsOfZlib, AreKnownByChecksumsWhereABlockIsBrokenBeforeIts) {
+    const auto loaded = load_vtu(with_changed_byte(io::vtk_xml::checksum_bytes + 3));
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_EQ(loaded->pieces.at(0).grid.cells.count(), many_cells);
+}
+
 TEST(LegacyCells, WithoutTypesTakeNothingOfWhatFollows) {
     const std::string text = "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n" +
                              bytes_of(std::vector<float>(15, 0.5F), true) +
@@ -130,8 +178,12 @@ TEST(LegacyCells, WithoutTypesTakeNothingOfWhatFollows) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, CellsOfAFile, testing::Values(false, true),
-                         [](const auto& format) { return format.param ? "Legacy" : "Vtu"; });
+INSTANTIATE_TEST_SUITE_P(Formats, CellsOfAFile, testing::Values(Form::vtu, Form::vtu_zlib, Form::legacy),
+                         [](const auto& format) {
+                             return format.param == Form::vtu        ? "Vtu"
+                                    : format.param == Form::vtu_zlib ? "VtuZlib"
+                                                                     : "Legacy";
+                         });
 
 } // namespace
 } // namespace isotet::test

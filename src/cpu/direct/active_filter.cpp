@@ -73,7 +73,7 @@ private:
         std::vector<Run> runs;
 
         Point* room(std::size_t count) {
-            constexpr std::size_t block = std::size_t{1} << 18;
+            constexpr std::size_t block = (std::size_t{2} << 20) / sizeof(Point); // a huge page
             if (left < count) {
                 blocks.emplace_back(block);
                 left = block;

@@ -4,9 +4,9 @@
 #include "io/own/vtk_xml/cells_reader.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/core.h>
@@ -192,7 +192,7 @@ private:
         if (!offsets) return offsets.error();
         const auto corners = *type ? corners_of_uniform(**type) : std::nullopt;
         if (corners && offsets->has_blocks()) {
-            const auto regular = are_regular_blocks(*offsets, *corners);
+            const auto regular = are_regular_offsets(*offsets, *corners);
             if (!regular) return regular.error();
             if (*regular) {
                 cells.uniform_type = static_cast<CellType>(**type);
@@ -212,20 +212,12 @@ private:
     /// The type of all cells, looked at block by block; nothing where there are several, or no such blocks.
     static Result<std::optional<std::uint8_t>> one_type(const StoredArray& stored) {
         if (stored.array().type != ScalarType::uint8 || !stored.has_blocks()) return std::optional<std::uint8_t>();
-        constexpr int unknown = -1;
-        std::atomic<int> first = unknown;
-        std::atomic<bool> all = true;
-        auto done = stored.each_block([&](std::uint64_t, std::span<const std::byte> types) {
-            if (!all) return;
-            const auto own = std::to_integer<int>(types.front());
-            int expected = unknown;
-            if (!first.compare_exchange_strong(expected, own) && expected != own) all = false;
-            unsigned different = 0;
-            for (const std::byte type : types) different |= std::to_integer<unsigned>(type ^ types.front());
-            if (different != 0) all = false;
-        });
-        if (!done) return done.error();
-        return all ? std::optional(static_cast<std::uint8_t>(first.load())) : std::nullopt;
+        std::uint8_t first = 0;
+        if (auto read = stored.read_first(std::as_writable_bytes(std::span(&first, 1))); !read) return read.error();
+        const auto all = stored.holds(
+            [&](std::uint64_t, std::span<std::byte> types) { std::ranges::fill(types, std::byte{first}); });
+        if (!all) return all.error();
+        return *all ? std::optional(first) : std::nullopt;
     }
 
     static Result<void> read_types(const StoredArray& stored, Cells& cells) {
@@ -243,17 +235,19 @@ private:
         return {};
     }
 
-    Result<bool> are_regular_blocks(const StoredArray& stored, std::uint64_t corners) const {
-        std::atomic<bool> regular = true;
-        auto done = stored.each_block([&](std::uint64_t first, std::span<const std::byte> bytes) {
-            with_type(stored.array().type, [&](auto zero) {
-                using Scalar = decltype(zero);
-                const auto* const values = reinterpret_cast<const Scalar*>(bytes.data());
-                if (!are_regular(first, std::span(values, bytes.size() / sizeof(Scalar)), corners)) regular = false;
-            });
+    /// Whether offset i is (i + 1) * corners.
+    static Result<bool> are_regular_offsets(const StoredArray& stored, std::uint64_t corners) {
+        return with_type(stored.array().type, [&](auto zero) -> Result<bool> {
+            using Scalar = decltype(zero);
+            if constexpr (std::is_integral_v<Scalar>) {
+                if (!std::in_range<Scalar>(stored.scalars() * corners)) return false;
+                return stored.holds([&](std::uint64_t first, std::span<std::byte> bytes) {
+                    auto* const values = reinterpret_cast<Scalar*>(bytes.data());
+                    for (std::size_t i = 0; i < bytes.size() / sizeof(Scalar); ++i)
+                        values[i] = static_cast<Scalar>((first + i + 1) * corners);
+                });
+            } else return false; // find() takes no floating offsets
         });
-        if (!done) return done.error();
-        return regular.load();
     }
 
     /// As int32 where all values fit; nothing where that gains nothing, or where one does not fit.

@@ -91,6 +91,13 @@ std::string deflate(Codec codec, std::span<const std::byte> block) {
     return codec == Codec::lz4 ? deflate_lz4(block) : deflate_zlib(block);
 }
 
+std::string checksum_of(std::span<const std::byte> values) {
+    const std::uint32_t sum = libdeflate_adler32(1, values.data(), values.size());
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(sum >> shift));
+    return bytes;
+}
+
 bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to) {
     switch (codec) {
     case Codec::zlib: return inflate_zlib(packed, to);

@@ -24,7 +24,14 @@ std::string_view name_of(Codec codec);
 ISOTET_API bool is_plausible(Codec codec, std::uint64_t packed, std::uint64_t unpacked);
 
 /// Packs one block, by zlib or LZ4: fast rather than small.
-std::string deflate(Codec codec, std::span<const std::byte> block);
+ISOTET_API std::string deflate(Codec codec, std::span<const std::byte> block);
+
+/// Whether blocks end with a checksum of their values.
+constexpr bool has_checksum(Codec codec) { return codec == Codec::zlib; }
+constexpr std::size_t checksum_bytes = 4;
+
+/// As zlib stores it: Adler-32, the highest byte first.
+std::string checksum_of(std::span<const std::byte> values);
 
 /// Inflates one block, which must fill `to`.
 ISOTET_API bool inflate(Codec codec, std::string_view packed, std::span<std::byte> to);

@@ -2,6 +2,8 @@
 #include "io/own/vtk_xml/stored_array.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstring>
 #include <limits>
 
@@ -299,6 +301,44 @@ Result<void> StoredArray::each_block(const Work& work) const {
         values.trim();
         return {};
     });
+}
+
+/// Whether a block, all of which is needed, ends with the checksum of what is expected.
+Result<bool> StoredArray::is_told_by_checksum(std::size_t block, std::size_t size, const Expect& expect) const {
+    if (packed_.empty() || size != bytes_of_block(block)) return false;
+    const std::uint64_t packed = packed_[block + 1] - packed_[block];
+    if (!has_checksum(document_->codec) || packed < checksum_bytes) return false;
+    thread_local Scratch stored, expected;
+    const auto end =
+        stream_.view(data_ + static_cast<std::size_t>(packed_[block + 1]) - checksum_bytes, checksum_bytes, stored);
+    if (!end) return in_array(end.error());
+    const auto values = expected.take(size);
+    expect(std::uint64_t{block} * block_bytes_ / size_of(array_.type), values);
+    const bool same = checksum_of(values) == *end;
+    expected.trim();
+    return same;
+}
+
+Result<bool> StoredArray::holds(const Expect& expect) const {
+    std::atomic<bool> all = true;
+    auto done = for_blocks([&](std::size_t block, std::uint64_t at, std::size_t size) -> Result<void> {
+        if (!all.load(std::memory_order_relaxed)) return {};
+        const auto told = is_told_by_checksum(block, size, expect);
+        if (!told || *told) return told ? Result<void>() : told.error();
+        thread_local Scratch stored;
+        const auto bytes = stored.take(size);
+        if (auto read = read_block(block, bytes); !read) return read;
+        alignas(8) std::array<std::byte, 1 << 14> expected; // few enough to stay in the cache
+        for (std::size_t begin = 0; begin < size; begin += expected.size()) {
+            const auto piece = std::span(expected).first(std::min(expected.size(), size - begin));
+            expect((at + begin) / size_of(array_.type), piece);
+            if (!std::ranges::equal(piece, bytes.subspan(begin, piece.size()))) all = false;
+        }
+        stored.trim();
+        return {};
+    });
+    if (!done) return done.error();
+    return all.load();
 }
 
 Result<Array> filled_array(ScalarType type, std::size_t tuples, std::size_t components, const Fill& fill) {

@@ -59,6 +59,14 @@ public:
     using Work = std::function<void(std::uint64_t first, std::span<const std::byte> values)>;
     Result<void> each_block(const Work& work) const;
 
+    /// Reads the first values, as stored.
+    Result<void> read_first(std::span<std::byte> to) const { return read_block(0, to); }
+
+    /// Whether every block holds what `expect(position of its first value, bytes to write)` writes. A block of zlib is compared by
+    /// its checksum, without inflating it, and inflated only where that differs.
+    using Expect = std::function<void(std::uint64_t first, std::span<std::byte> values)>;
+    Result<bool> holds(const Expect& expect) const;
+
     const DataArray& array() const noexcept { return array_; }
     std::uint64_t scalars() const noexcept { return scalars_; }
 
@@ -76,6 +84,7 @@ private:
     std::size_t blocks() const;
     std::size_t bytes_of_block(std::size_t block) const;
     Result<void> read_block(std::size_t block, std::span<std::byte> to) const;
+    Result<bool> is_told_by_checksum(std::size_t block, std::size_t size, const Expect& expect) const;
 
     const Document* document_;
     DataArray array_;
