@@ -68,18 +68,8 @@ void Cutter<Point>::cut_cells() {
     auto* const triangles = arena_.template take<std::uint8_t>(polygon_count);
     auto* const places = context_.keep_cells ? arena_.template take<std::uint32_t>(polygon_count) : nullptr;
     auto* const found = arena_.template take<ActiveEdge<Point>>(4 * polygon_count + 1);
-    ActiveEdge<Point>* next = found;
+    EdgeNumbers<Point> edge_numbers(memory_, chunks_, edges_, found);
     std::uint32_t kept = 0;
-    const auto number_of = [&](ActiveEdge<Point> edge) {
-        Remembered& last = memory_[edge.mixed() >> (64 - memory_bits)];
-        const unsigned is_new = !(last.edge == edge) | (last.chunk != chunks_);
-        const std::uint32_t number = is_new ? edges_ : last.number;
-        last = {edge, number, chunks_};
-        *next = edge;
-        next += is_new;
-        edges_ += is_new;
-        return number;
-    };
     for (std::size_t i = 0; i < cut_count; ++i) {
         const NativeCell<Point>& cell = cell_batch_[cut[i].in_batch];
         const std::uint32_t before = kept;
@@ -94,7 +84,7 @@ void Cutter<Point>::cut_cells() {
             }
             const unsigned made = cut[i].has_tied ? drop_degenerate(edges, polygon.triangles) : polygon.triangles;
             if (made == 0) continue;
-            for (std::size_t k = 0; k < 4; ++k) polygons[kept][k] = number_of(edges[k]);
+            for (std::size_t k = 0; k < 4; ++k) polygons[kept][k] = edge_numbers.of(edges[k]);
             triangles[kept] = static_cast<std::uint8_t>(made);
             if (places) places[kept] = cells_[cut[i].in_batch];
             chunk_->triangles += made;
@@ -102,9 +92,7 @@ void Cutter<Point>::cut_cells() {
         }
         if (context_.rounds_coordinates && kept > before) counts_.coarse_tets += is_coarse(cell);
     }
-    for (const ActiveEdge<Point>* edge = found; edge < next; ++edge) ++in_range_[context_.ranges.of(edge->lower)];
-    const auto new_edges = static_cast<std::uint32_t>(next - found);
-    arena_.keep(found, new_edges);
+    const std::uint32_t new_edges = keep_found(edge_numbers);
     if (kept) chunk_->pieces.push_back({kept, new_edges, polygons, triangles, places, found});
 }
 

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "core/case_table.hpp"
+#include "cpu/at_level.hpp"
 #include "cpu/direct/cut_cells.hpp"
 #include "cpu/direct/orient.hpp"
-#include "cpu/level.hpp"
 
 namespace isotet::cpu::direct {
 
@@ -40,51 +40,6 @@ constexpr std::array<SortedPolygon, 32> sorted_polygons = [] {
     return table;
 }();
 
-/// Coordinates of a batch, [corner][axis][tet].
-template <class Coordinate, std::size_t batch>
-using Gathered = std::array<std::array<std::array<Coordinate, batch>, 3>, 4>;
-
-template <class Point, class Coordinate, std::size_t batch>
-inline void sort_and_sign(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
-                          std::size_t count, const Coordinate* coordinates) {
-    sort_corners(sorted, codes, count);
-    alignas(64) Gathered<Coordinate, batch> xyz;
-    for (std::size_t k = 0; k < 4; ++k)
-        for (std::size_t i = 0; i < count; ++i) {
-            const Coordinate* const p = coordinates + 3 * static_cast<std::size_t>(sorted[k][i] >> 1);
-            for (std::size_t axis = 0; axis < 3; ++axis) xyz[k][axis][i] = p[axis];
-        }
-    sign_volumes(xyz, codes, count);
-}
-
-#if defined(__x86_64__)
-// Everything is inlined into these, and so compiled for their instruction set.
-template <class Point, class Coordinate, std::size_t batch>
-[[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2"), gnu::flatten]] void
-sort_and_sign_avx512(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
-                     std::size_t count, const Coordinate* coordinates) {
-    sort_and_sign(sorted, codes, count, coordinates);
-}
-template <class Point, class Coordinate, std::size_t batch>
-[[gnu::target("avx2,bmi,bmi2"), gnu::flatten]] void
-sort_and_sign_avx2(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
-                   std::size_t count, const Coordinate* coordinates) {
-    sort_and_sign(sorted, codes, count, coordinates);
-}
-#endif
-
-template <class Point, class Coordinate, std::size_t batch>
-void sort_and_sign_best(std::array<std::array<Point, batch>, 4>& sorted, std::array<std::uint8_t, batch>& codes,
-                        std::size_t count, const Coordinate* coordinates) {
-    switch (level()) {
-#if defined(__x86_64__)
-    case Level::avx512: return sort_and_sign_avx512(sorted, codes, count, coordinates);
-    case Level::avx2: return sort_and_sign_avx2(sorted, codes, count, coordinates);
-#endif
-    default: return sort_and_sign(sorted, codes, count, coordinates);
-    }
-}
-
 } // namespace
 
 template <class Point>
@@ -94,7 +49,7 @@ Cutter<Point>::Cutter(CutContext& context, std::size_t number)
       points_(context.input.grid.points),
       arena_(context.budget),
       in_range_(context.ranges.count, 0),
-      memory_(std::size_t{1} << memory_bits, Remembered{{0, 0}, 0, 0}) {}
+      memory_(std::size_t{1} << edge_memory_bits, RememberedEdge<Point>{{0, 0}, 0, 0}) {}
 
 template <class Point>
 void Cutter<Point>::begin(Chunk<Point>& chunk, std::uint64_t first_cell) {
@@ -128,31 +83,23 @@ void Cutter<Point>::cut() {
         }
         codes_[i] = seen & (side::tied | side::no_data) ? tet_code::special : 0;
     }
+    const auto sort_and_sign = [&](const auto* coordinates) {
+        at_level([&] {
+            sort_corners(sorted_, codes_, count);
+            sign_tets(sorted_, codes_, count, coordinates);
+        });
+    };
     const Array& points = context_.input.grid.points;
-    if (points.type() == ScalarType::float32) sort_and_sign_best(sorted_, codes_, count, points.as<float>().data());
-    else sort_and_sign_best(sorted_, codes_, count, points.as<double>().data());
+    if (points.type() == ScalarType::float32) sort_and_sign(points.as<float>().data());
+    else sort_and_sign(points.as<double>().data());
 
     auto* const polygons = arena_.template take<std::array<std::uint32_t, 4>>(count);
     auto* const triangles = arena_.template take<std::uint8_t>(count);
     auto* const cells = context_.keep_cells ? arena_.template take<std::uint32_t>(count) : nullptr;
     auto* const found = arena_.template take<ActiveEdge<Point>>(4 * count + 1);
-    // Bytes are written below, which might be anything: what is needed again and again stands in variables of its own.
-    ActiveEdge<Point>* next = found;
-    std::uint32_t edges = edges_, tets = 0;
+    EdgeNumbers<Point> edge_numbers(memory_, chunks_, edges_, found);
+    std::uint32_t tets = 0;
     std::uint64_t made_triangles = 0;
-    Remembered* const memory = memory_.data();
-    const std::uint32_t chunk = chunks_;
-    const auto number_of = [&](ActiveEdge<Point> edge) {
-        Remembered& last = memory[edge.mixed() >> (64 - memory_bits)];
-        // Found lately or not is nearly a toss, so what happens to a new edge happens to all, and only new ones count.
-        const unsigned is_new = !(last.edge == edge) | (last.chunk != chunk);
-        const std::uint32_t number = is_new ? edges : last.number;
-        last = {edge, number, chunk};
-        *next = edge;
-        next += is_new;
-        edges += is_new;
-        return number;
-    };
     for (std::size_t i = 0; i < count; ++i) {
         unsigned made;
         std::array<std::uint32_t, 4>& numbers = polygons[tets];
@@ -160,12 +107,12 @@ void Cutter<Point>::cut() {
             std::array<ActiveEdge<Point>, 4> polygon;
             made = unusual_polygon(i, polygon);
             if (made == 0) continue;
-            for (std::size_t k = 0; k < 4; ++k) numbers[k] = number_of(polygon[k]);
+            for (std::size_t k = 0; k < 4; ++k) numbers[k] = edge_numbers.of(polygon[k]);
         } else {
             const SortedPolygon& p = sorted_polygons[codes_[i]];
             made = p.triangles;
             for (std::size_t k = 0; k < 4; ++k)
-                numbers[k] = number_of({sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1});
+                numbers[k] = edge_numbers.of({sorted_[p.lower[k]][i] >> 1, sorted_[p.higher[k]][i] >> 1});
         }
         triangles[tets] = static_cast<std::uint8_t>(made);
         if (cells) cells[tets] = cells_[i];
@@ -173,12 +120,20 @@ void Cutter<Point>::cut() {
         ++tets;
         if (context_.rounds_coordinates) counts_.coarse_tets += is_coarse(i);
     }
-    edges_ = edges;
-    for (const ActiveEdge<Point>* edge = found; edge < next; ++edge) ++in_range_[context_.ranges.of(edge->lower)];
     chunk_->triangles += made_triangles;
-    const auto new_edges = static_cast<std::uint32_t>(next - found);
-    arena_.keep(found, new_edges);
+    const std::uint32_t new_edges = keep_found(edge_numbers);
     if (tets) chunk_->pieces.push_back({tets, new_edges, polygons, triangles, cells, found});
+}
+
+/// Counts what was found by range, and keeps it. Returns how many.
+template <class Point>
+std::uint32_t Cutter<Point>::keep_found(const EdgeNumbers<Point>& numbers) {
+    for (const ActiveEdge<Point>* edge = numbers.found(); edge < numbers.end(); ++edge)
+        ++in_range_[context_.ranges.of(edge->lower)];
+    const auto count = static_cast<std::uint32_t>(numbers.end() - numbers.found());
+    arena_.keep(numbers.found(), count);
+    edges_ += count;
+    return count;
 }
 
 /// The polygon of a tet that the batch leaves open, with equal edges at a tied point; the fourth repeats the third when

@@ -96,6 +96,43 @@ struct CutCounts {
     std::uint64_t edges = 0, triangles = 0, coarse_tets = 0, left_out = 0;
 };
 
+/// Where an edge was last found. Several share a place in the memory of a cutter: the last one stays.
+template <class Point>
+struct RememberedEdge {
+    ActiveEdge<Point> edge;
+    std::uint32_t number, chunk;
+};
+constexpr unsigned edge_memory_bits = 11;
+
+/// Numbers the edges of a chunk as they are found, and lists the new ones.
+template <class Point>
+class EdgeNumbers {
+public:
+    /// `found`   room for the new ones and one more
+    EdgeNumbers(std::vector<RememberedEdge<Point>>& memory, std::uint32_t chunk, std::uint32_t next,
+                ActiveEdge<Point>* found)
+        : memory_(memory.data()), found_(found), end_(found), chunk_(chunk), next_(next) {}
+
+    std::uint32_t of(ActiveEdge<Point> edge) {
+        RememberedEdge<Point>& last = memory_[edge.mixed() >> (64 - edge_memory_bits)];
+        // Whether an edge is new cannot be predicted: every edge is written, and only new ones count.
+        const unsigned is_new = !(last.edge == edge) | (last.chunk != chunk_);
+        const std::uint32_t number = is_new ? next_ : last.number;
+        last = {edge, number, chunk_};
+        *end_ = edge;
+        end_ += is_new;
+        next_ += is_new;
+        return number;
+    }
+    ActiveEdge<Point>* found() const { return found_; }
+    const ActiveEdge<Point>* end() const { return end_; }
+
+private:
+    RememberedEdge<Point>* memory_;
+    ActiveEdge<Point>*found_, *end_;
+    std::uint32_t chunk_, next_;
+};
+
 /// Threads: one each.
 template <class Point>
 class Cutter {
@@ -133,16 +170,10 @@ public:
 
 private:
     static constexpr std::size_t batch = 256;
-    static constexpr unsigned memory_bits = 11;
-
-    /// Where an edge was last found. Several share a place: the last one stays.
-    struct Remembered {
-        ActiveEdge<Point> edge;
-        std::uint32_t number, chunk;
-    };
 
     void cut();
     void cut_cells();
+    std::uint32_t keep_found(const EdgeNumbers<Point>& numbers);
     unsigned unusual_polygon(std::size_t tet, std::array<ActiveEdge<Point>, 4>& polygon);
     bool is_mirrored_flat(std::size_t tet);
     bool is_coarse(std::size_t tet) const;
@@ -158,7 +189,7 @@ private:
     std::uint64_t first_cell_ = 0;
     std::uint32_t chunks_ = 0; ///< begun
     std::uint32_t edges_ = 0;  ///< of the chunk
-    std::vector<Remembered> memory_;
+    std::vector<RememberedEdge<Point>> memory_;
 
     // The batch: row k holds corner k of all tets.
     std::size_t pending_ = 0;

@@ -65,4 +65,18 @@ inline void sign_volumes(const Coordinates& xyz, Codes& codes, std::size_t count
     }
 }
 
+/// Adds the signs of the volumes of tets to their codes; sign_volumes().
+/// `corners`   rows of doubled points plus side
+template <class Point, std::size_t batch, class Coordinate>
+inline void sign_tets(const std::array<std::array<Point, batch>, 4>& corners, std::array<std::uint8_t, batch>& codes,
+                      std::size_t count, const Coordinate* coordinates) {
+    alignas(64) std::array<std::array<std::array<Coordinate, batch>, 3>, 4> xyz; // [corner][axis][tet]
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t i = 0; i < count; ++i) {
+            const Coordinate* const p = coordinates + 3 * static_cast<std::size_t>(corners[k][i] >> 1);
+            for (std::size_t axis = 0; axis < 3; ++axis) xyz[k][axis][i] = p[axis];
+        }
+    sign_volumes(xyz, codes, count);
+}
+
 } // namespace isotet::cpu::direct
