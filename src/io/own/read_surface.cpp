@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/rising_progress.hpp"
+#include "io/own/file_ending.hpp"
 #include "io/own/surface_parts.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/whole_file.hpp"
@@ -36,16 +37,6 @@ bool looks_like_obj(std::string_view head) {
     TextScanner scanner(head, '#');
     const auto word = scanner.word();
     return std::ranges::find(keywords, word) != keywords.end();
-}
-
-std::string lower_case_ending(const std::string& path) {
-    const auto name = path.substr(path.find_last_of('/') + 1);
-    const auto dot = name.rfind('.');
-    std::string ending = dot == std::string::npos ? std::string() : name.substr(dot + 1);
-    for (char& c : ending) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return ending;
 }
 
 Result<Surface> parse_as(std::string_view format, std::string_view content, const Progress& progress) {
@@ -101,7 +92,7 @@ Result<SurfaceFile> read_surface(const std::string& path, const ReadSurfaceOptio
     const Progress rises = core::rising(run.progress);
     const auto file = io::WholeFile::read(path, rises);
     if (!file) return file.error();
-    auto surface = io::parse_surface(file->text(), io::lower_case_ending(path), options.format, rises);
+    auto surface = io::parse_surface(file->text(), io::ending_of(path), options.format, rises);
     if (surface) {
         rises("read", 1.0);
         return surface;

@@ -12,6 +12,7 @@
 
 #include "core/parallel.hpp"
 #include "core/rising_progress.hpp"
+#include "io/own/file_ending.hpp"
 #include "io/own/write_formats.hpp"
 #include "io/own/write_names.hpp"
 
@@ -37,17 +38,6 @@ struct GridFormat {
     bool compresses = false;
 };
 constexpr std::array grid_formats{GridFormat{"vtu", write_vtu, true}, GridFormat{"vtk", write_legacy_grid}};
-
-/// What follows the last dot of the file's name, in lower case.
-std::string ending_of(const std::string& path) {
-    const auto name = path.substr(path.find_last_of('/') + 1);
-    const auto dot = name.rfind('.');
-    std::string ending = dot == std::string::npos ? std::string() : name.substr(dot + 1);
-    for (char& c : ending) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return ending;
-}
 
 template <class Format>
 Result<Format> choose(std::span<const Format> formats, const std::string& path, const WriteOptions& options,
