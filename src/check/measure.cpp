@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "core/exact.hpp"
 #include "core/parallel.hpp"
@@ -20,13 +22,25 @@ struct Minor {
     bool surely_not_zero() const { return std::abs(value) > bound && bound > 0x1p-900; }
 };
 
-/// Twice the area; `is_zero` tells whether it is exactly zero.
-double twice_area(const core::Point& a, const core::Point& b, const core::Point& c, bool& is_zero) {
+/// Twice the area of a triangle.
+struct TwiceArea {
+    double value;
+    bool may_be_zero; ///< exactly: rounding does not tell
+};
+TwiceArea twice_area(const core::Point& a, const core::Point& b, const core::Point& c) {
     const double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
     const double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
     const Minor x(uy, uz, vy, vz), y(uz, ux, vz, vx), z(ux, uy, vx, vy);
-    is_zero = !x.surely_not_zero() && !y.surely_not_zero() && !z.surely_not_zero() && core::is_collinear(a, b, c);
-    return std::sqrt(x.value * x.value + y.value * y.value + z.value * z.value);
+    return {std::sqrt(x.value * x.value + y.value * y.value + z.value * z.value),
+            !x.surely_not_zero() && !y.surely_not_zero() && !z.surely_not_zero()};
+}
+
+constexpr std::uint64_t block_size = 4096; ///< triangles that are summed up one after another
+std::size_t blocks_of(std::uint64_t triangles) {
+    return static_cast<std::size_t>((triangles + block_size - 1) / block_size);
+}
+std::pair<std::uint64_t, std::uint64_t> block_of(std::size_t block, std::uint64_t triangles) {
+    return {block * block_size, std::min(triangles, (block + 1) * block_size)};
 }
 
 double six_volumes(const core::Point& a, const core::Point& b, const core::Point& c) {
@@ -36,14 +50,13 @@ double six_volumes(const core::Point& a, const core::Point& b, const core::Point
 } // namespace
 
 Measures measure(const Mesh& mesh, std::size_t most) {
-    constexpr std::size_t block_size = 4096;
     if (mesh.triangles() == 0) return {};
     const core::Point base = mesh.position(mesh.corners(0)[0]);
-    std::vector<Measures> blocks((mesh.triangles() - 1) / block_size + 1);
+    std::vector<Measures> blocks(blocks_of(mesh.triangles()));
     core::parallel_each(blocks.size(), 1, [&](std::size_t i) {
         Measures& block = blocks[i];
-        const std::uint64_t end = std::min<std::uint64_t>(mesh.triangles(), (i + 1) * block_size);
-        for (std::uint64_t triangle = i * block_size; triangle < end; ++triangle) {
+        const auto [begin, end] = block_of(i, mesh.triangles());
+        for (std::uint64_t triangle = begin; triangle < end; ++triangle) {
             const Corners corners = mesh.corners(triangle);
             if (has_equal_corners(corners)) {
                 ++block.equal_corners;
@@ -55,11 +68,12 @@ Measures measure(const Mesh& mesh, std::size_t most) {
                 p[corner] = mesh.position(corners[corner]);
                 for (std::size_t axis = 0; axis < 3; ++axis) p[corner][axis] -= base[axis];
             }
-            bool is_zero = false;
-            block.area +=
-                twice_area(mesh.position(corners[0]), mesh.position(corners[1]), mesh.position(corners[2]), is_zero);
+            const core::Point a = mesh.position(corners[0]), b = mesh.position(corners[1]),
+                              c = mesh.position(corners[2]);
+            const TwiceArea twice = twice_area(a, b, c);
+            block.area += twice.value;
             block.volume += six_volumes(p[0], p[1], p[2]);
-            if (!is_zero) continue;
+            if (!twice.may_be_zero || !core::is_collinear(a, b, c)) continue;
             ++block.zero_area;
             if (block.zero_area_list.size() < most) block.zero_area_list.push_back(triangle);
         }
@@ -88,7 +102,27 @@ namespace isotet {
 
 double area(const Surface& surface) {
     const auto mesh = checking::Mesh::open(surface);
-    return mesh ? checking::measure(*mesh, 0).area : std::numeric_limits<double>::quiet_NaN();
+    if (!mesh) return std::numeric_limits<double>::quiet_NaN();
+    const std::uint64_t triangles = mesh->triangles();
+    std::vector<double> blocks(checking::blocks_of(triangles));
+    const auto measure = [&](const auto* positions, const auto* corners) {
+        const auto point = [&](std::uint64_t corner) {
+            const auto* const p = positions + 3 * static_cast<std::size_t>(corners[corner]);
+            return core::Point{p[0], p[1], p[2]};
+        };
+        core::parallel_each(blocks.size(), 1, [&](std::size_t block) {
+            double sum = 0;
+            const auto [begin, end] = checking::block_of(block, triangles);
+            for (std::uint64_t t = begin; t < end; ++t)
+                sum += checking::twice_area(point(3 * t), point(3 * t + 1), point(3 * t + 2)).value;
+            blocks[block] = sum;
+        });
+    };
+    core::IndexColumn(surface.triangles).visit([&](const auto* corners) {
+        if (surface.positions.type() == ScalarType::float32) measure(surface.positions.as<float>().data(), corners);
+        else measure(surface.positions.as<double>().data(), corners);
+    });
+    return std::accumulate(blocks.begin(), blocks.end(), 0.0) / 2;
 }
 
 } // namespace isotet

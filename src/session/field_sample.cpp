@@ -13,6 +13,7 @@
 #include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/guard.hpp"
+#include "core/prefetch.hpp"
 #include "linear/curved_kinds.hpp"
 
 namespace isotet {
@@ -37,17 +38,37 @@ bool is_made_linear(const core::CellReader& cells, std::size_t cell) {
            linear::high_degree_of(type, cells.corners(cell));
 }
 
+/// Of a cell as the file has it; 0 for one that is not contoured.
+std::uint64_t corners_of(const core::CellReader& cells, std::size_t cell) {
+    return is_made_linear(cells, cell) ? cells.corners(cell)
+                                       : static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
+}
+
 /// The arrays have the cell whole, and its points. Cells of a whole grid are checked by check_cells(), which this does
 /// not replace: it keeps a look at a few cells within the arrays.
 bool is_within(const core::CellReader& cells, std::size_t cell) {
-    const std::uint64_t corners = is_made_linear(cells, cell)
-                                      ? cells.corners(cell)
-                                      : static_cast<std::uint64_t>(core::corners_of(cells.type(cell)));
-    const std::uint64_t first = cells.first(cell);
+    const std::uint64_t corners = corners_of(cells, cell), first = cells.first(cell);
     if (corners == 0 || first > cells.connectivity_size() || cells.connectivity_size() - first < corners) return false;
     for (std::uint64_t i = 0; i < corners; ++i)
         if (cells.corner(first + i) >= cells.points()) return false;
     return true;
+}
+
+constexpr std::uint64_t cells_at_once = 256;
+
+/// Regular grids repeat themselves from row to row: places between even steps are drawn (Weyl's sequence).
+std::uint64_t drawn_cell(std::uint64_t i, std::uint64_t looked_at, std::uint64_t count) {
+    const double place = (static_cast<double>(i) + std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0)) /
+                         static_cast<double>(looked_at);
+    return std::min(static_cast<std::uint64_t>(place * static_cast<double>(count)), count - 1);
+}
+
+/// Of a cell that is within the arrays.
+void prefetch_values(const core::CellReader& cells, std::size_t cell, const Array& values) {
+    const auto* const bytes = static_cast<const std::byte*>(values.data());
+    const std::uint64_t first = cells.first(cell), corners = corners_of(cells, cell);
+    for (std::uint64_t k = 0; k < corners; ++k)
+        core::prefetch(bytes + size_of(values.type()) * cells.corner(first + k));
 }
 
 } // namespace
@@ -68,13 +89,7 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
         sample.upper_ = -sample.lower_;
         double tets = 0;
         std::vector<std::uint64_t> nodes;
-        for (std::uint64_t i = 0; i < looked_at; ++i) {
-            // Regular grids repeat themselves from row to row: places between even steps are drawn (Weyl's sequence).
-            const double place = (static_cast<double>(i) + std::fmod(static_cast<double>(i) * 0.618033988749895, 1.0)) /
-                                 static_cast<double>(looked_at);
-            const auto drawn = static_cast<std::uint64_t>(place * static_cast<double>(count));
-            const std::uint64_t cell = looked_at == count ? i : std::min(drawn, count - 1);
-            if (!is_within(*cells, cell)) continue;
+        const auto look_at_cell = [&](std::uint64_t cell) {
             const auto look_at = [&](std::span<const std::uint64_t> corners, double like_tets, double triangles) {
                 tets += like_tets;
                 const double first = field.values.at(corners[0]);
@@ -106,6 +121,18 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
                 const core::WholeCell whole = cells->whole(cell);
                 look(whole.kind, {whole.corners.data(), core::corner_count(whole.kind)});
             }
+        };
+        // Cells and values lie anywhere in memory: those of a batch are asked for before the first is looked at.
+        std::vector<std::uint64_t> batch;
+        for (std::uint64_t first = 0; first < looked_at; first += cells_at_once) {
+            batch.clear();
+            for (std::uint64_t i = first; i < std::min(looked_at, first + cells_at_once); ++i) {
+                batch.push_back(looked_at == count ? i : drawn_cell(i, looked_at, count));
+                if (cells->first(batch.back()) < cells->connectivity_size()) cells->prefetch(batch.back());
+            }
+            std::erase_if(batch, [&](std::uint64_t cell) { return !is_within(*cells, cell); });
+            for (const std::uint64_t cell : batch) prefetch_values(*cells, cell, field.values);
+            for (const std::uint64_t cell : batch) look_at_cell(cell);
         }
         sample.cells_each_ = looked_at == 0 ? 0 : static_cast<double>(count) / static_cast<double>(looked_at);
         sample.tets_ = static_cast<std::uint64_t>(sample.cells_each_ * tets);

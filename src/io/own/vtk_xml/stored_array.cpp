@@ -332,7 +332,7 @@ Result<bool> StoredArray::holds(const Expect& expect) const {
         for (std::size_t begin = 0; begin < size; begin += expected.size()) {
             const auto piece = std::span(expected).first(std::min(expected.size(), size - begin));
             expect((at + begin) / size_of(array_.type), piece);
-            if (!std::ranges::equal(piece, bytes.subspan(begin, piece.size()))) all = false;
+            if (std::memcmp(piece.data(), bytes.data() + begin, piece.size()) != 0) all = false;
         }
         stored.trim();
         return {};
