@@ -30,6 +30,7 @@ public:
         }
         if (before + bytes > free) throw Exceeded{};
     }
+    void give_back(std::uint64_t bytes) { taken_.fetch_sub(bytes, std::memory_order_relaxed); }
     std::uint64_t taken() const { return taken_.load(std::memory_order_relaxed); }
 
 private:
@@ -38,10 +39,18 @@ private:
     std::atomic<std::uint64_t> taken_{0}, free_{unknown};
 };
 
-/// One thread's memory, in blocks that grow; given back as a whole.
+/// One thread's memory, in blocks; given back as a whole.
 class BudgetedArena {
 public:
     explicit BudgetedArena(Budget& budget) : budget_(&budget) {}
+
+    /// Gives all memory back.
+    void clear() {
+        for (const core::Buffer<std::byte>& block : blocks_) budget_->give_back(block.size());
+        blocks_.clear();
+        next_ = nullptr;
+        left_ = 0;
+    }
 
     /// Uninitialized; stays where it is.
     template <class T>

@@ -67,7 +67,7 @@ void Cutter<Point>::cut_cells() {
     auto* const polygons = arena_.template take<std::array<std::uint32_t, 4>>(polygon_count);
     auto* const triangles = arena_.template take<std::uint8_t>(polygon_count);
     auto* const places = context_.keep_cells ? arena_.template take<std::uint32_t>(polygon_count) : nullptr;
-    auto* const found = arena_.template take<ActiveEdge<Point>>(4 * polygon_count + 1);
+    auto* const found = found_arena_.template take<ActiveEdge<Point>>(4 * polygon_count + 1);
     EdgeNumbers<Point> edge_numbers(memory_, chunks_, edges_, found);
     std::uint32_t kept = 0;
     for (std::size_t i = 0; i < cut_count; ++i) {

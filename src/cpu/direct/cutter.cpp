@@ -48,6 +48,7 @@ Cutter<Point>::Cutter(CutContext& context, std::size_t number)
       number_(number),
       points_(context.input.grid.points),
       arena_(context.budget),
+      found_arena_(context.budget),
       in_range_(context.ranges.count, 0),
       memory_(std::size_t{1} << edge_memory_bits, RememberedEdge<Point>{{0, 0}, 0, 0}) {}
 
@@ -96,7 +97,7 @@ void Cutter<Point>::cut() {
     auto* const polygons = arena_.template take<std::array<std::uint32_t, 4>>(count);
     auto* const triangles = arena_.template take<std::uint8_t>(count);
     auto* const cells = context_.keep_cells ? arena_.template take<std::uint32_t>(count) : nullptr;
-    auto* const found = arena_.template take<ActiveEdge<Point>>(4 * count + 1);
+    auto* const found = found_arena_.template take<ActiveEdge<Point>>(4 * count + 1);
     EdgeNumbers<Point> edge_numbers(memory_, chunks_, edges_, found);
     std::uint32_t tets = 0;
     std::uint64_t made_triangles = 0;
@@ -131,7 +132,7 @@ std::uint32_t Cutter<Point>::keep_found(const EdgeNumbers<Point>& numbers) {
     for (const ActiveEdge<Point>* edge = numbers.found(); edge < numbers.end(); ++edge)
         ++in_range_[context_.ranges.of(edge->lower)];
     const auto count = static_cast<std::uint32_t>(numbers.end() - numbers.found());
-    arena_.keep(numbers.found(), count);
+    found_arena_.keep(numbers.found(), count);
     edges_ += count;
     return count;
 }

@@ -145,6 +145,9 @@ public:
     /// Edges found in each range. Welding turns them into places.
     std::vector<Point>& in_range() { return in_range_; }
 
+    /// Gives back the edges of all pieces.
+    void drop_found() { found_arena_.clear(); }
+
     void begin(Chunk<Point>& chunk, std::uint64_t first_cell);
     /// A tet with corners on both sides, points as in the file; `cell` is counted from the chunk's first.
     void add(const std::array<Point, 4>& corners, std::uint32_t cell) {
@@ -182,7 +185,7 @@ private:
     CutContext& context_;
     std::size_t number_;
     core::PointReader points_;
-    BudgetedArena arena_;
+    BudgetedArena arena_, found_arena_; ///< polygons; edges, which are needed until they are welded
     CutCounts counts_;
     std::vector<Point> in_range_;
     Chunk<Point>* chunk_ = nullptr;

@@ -174,14 +174,16 @@ private:
             welding_memory<Point>(counts.edges) +
             emitting_memory<Real, Point>(counts.edges, counts.triangles, counts.edges, options);
         if (auto ok = require_if_much("the surface", needed); !ok) return ok.error();
+        const std::uint64_t welding = sides_.bytes() + context.budget.taken() + welding_memory<Point>(counts.edges);
         Welded<Point> welded = weld(cut, context.ranges);
         if (progress.cancelled()) return cancelled();
         progress("extract", 0.7);
         options.wide = welded.vertex_count() >= wide_from;
-        const std::uint64_t kept = sides_.bytes() + context.budget.taken();
-        result_.transient_bytes = std::max(result_.transient_bytes, kept + welding_memory<Point>(counts.edges) +
-                                                                        counts.edges * (options.wide ? 8 : 4));
-        result_.predicted_bytes = std::max(result_.predicted_bytes, kept + needed);
+        const std::uint64_t emitting = sides_.bytes() + context.budget.taken() + welding_memory<Point>(counts.edges) +
+                                       counts.edges * (options.wide ? 8 : 4);
+        result_.transient_bytes = std::max({result_.transient_bytes, welding, emitting});
+        result_.predicted_bytes =
+            std::max(result_.predicted_bytes, welding + needed - welding_memory<Point>(counts.edges));
 
         ops::DirectSurface out;
         auto surface = emit(source, cut, std::move(welded), options, progress);

@@ -35,7 +35,7 @@ std::vector<std::uint64_t> place_ranges(CutCells<Point>& cut, std::size_t count)
     return first;
 }
 
-/// Moves the edges that one cutter found into their ranges.
+/// Moves the edges that one cutter found into their ranges, and gives back its memory for them.
 template <class Point>
 void scatter(const CutCells<Point>& cut, std::size_t cutter, const Ranges& ranges, FoundEdge<Point>* out) {
     Point* const places = cut.cutters[cutter]->in_range().data();
@@ -48,6 +48,7 @@ void scatter(const CutCells<Point>& cut, std::size_t cutter, const Ranges& range
                 out[places[ranges.of(edge.lower)]++] = {edge, number++};
             }
     }
+    cut.cutters[cutter]->drop_found();
 }
 
 /// One thread's memory for sorting.
