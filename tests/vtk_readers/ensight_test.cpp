@@ -11,6 +11,7 @@
 
 #include "support/temporary_folder.hpp"
 #include "vtk_readers/gold_text.hpp"
+#include "vtk_readers/whole_or_error.hpp"
 
 namespace isotet::test {
 namespace {
@@ -112,12 +113,108 @@ TEST_P(EnsightFiles, CountsThatDoNotFitAreErrors) {
     }
 }
 
+TEST_P(EnsightFiles, AreErrorsWhereverAFileIsCut) {
+    expect_whole_or_error({{"grid.geo", geometry()},
+                           {"t.scl", of_nodes(1)},
+                           {"v.vec", of_nodes(3)},
+                           {"e.scl", of_elements()},
+                           {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
+                                      "scalar per node: t t.scl\nvector per node: v v.vec\n"
+                                      "scalar per element: e e.scl\n"}});
+}
+
+TEST_P(EnsightFiles, WithElementsThatHaveNoValuesAreErrors) {
+    GoldText file(GetParam());
+    file.line("of elements").line("part").integers({1}).line("tetra4").floats({7, 8});
+    EXPECT_TRUE(read_with("e.scl", file.text())) << "values of one part";
+    GoldText geometry(GetParam(), true);
+    geometry.line("a").line("b").line("node id off").line("element id off").line("part").integers({1}).line("c");
+    geometry.line("coordinates").integers({5});
+    for (const auto& axis : {std::vector<float>{0, 1, 1, 0, 0}, {0, 0, 1, 1, 0}, {0, 0, 0, 0, 1}})
+        geometry.floats(axis);
+    geometry.line("tetra4").integers({1}).integers({1, 2, 3, 5}, 4).line("pyramid5").integers({1});
+    folder_.write("grid.geo", geometry.integers({1, 2, 3, 4, 5}, 5).text());
+    folder_.write("e.scl", GoldText(GetParam()).line("e").line("part").integers({1}).line("tetra4").floats({7}).text());
+    const auto result = read(folder_.write("b.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
+                                                     "VARIABLE\nscalar per element: e e.scl\n"));
+    ASSERT_FALSE(result);
+    EXPECT_NE(result.error().message.find("1 elements \"pyramid5\", but there are no values"), std::string::npos)
+        << result.error().message;
+}
+
+TEST_P(EnsightFiles, BlocksAndComplexVariablesAreReadWhole) {
+    const auto numbered = [](int count) {
+        std::vector<float> values;
+        for (int i = 0; i < count; ++i) values.push_back(static_cast<float>(i));
+        return values;
+    };
+    for (const std::string kind : {"block uniform", "block rectilinear", "block", "block iblanked"}) {
+        GoldText geometry(GetParam(), true), nodes(GetParam()), cells(GetParam());
+        geometry.line("a").line("b").line("node id off").line("element id off").line("part").integers({1}).line("c");
+        geometry.line(kind).integers({4, 3, 3}, 3);
+        if (kind == "block uniform") {
+            geometry.floats({0, 0, 0}).floats({1, 1, 1});
+        } else if (kind == "block rectilinear") {
+            geometry.floats({0, 1, 2, 3}).floats({0, 1, 2}).floats({0, 1, 2});
+        } else {
+            std::vector<float> axes[3];
+            for (int i = 0; i < 36; ++i) {
+                axes[0].push_back(static_cast<float>(i % 4));
+                axes[1].push_back(static_cast<float>(i / 4 % 3));
+                axes[2].push_back(static_cast<float>(i / 12));
+            }
+            for (const auto& axis : axes) geometry.floats(axis);
+        }
+        if (kind == "block iblanked") geometry.integers(std::vector<std::int32_t>(36, 1));
+        nodes.line("n").line("part").integers({1}).line("block").floats(numbered(36));
+        cells.line("c").line("part").integers({1}).line("block").floats(numbered(12));
+        const EnsightFolder files{{"grid.geo", geometry.text()},
+                                  {"n", nodes.text()},
+                                  {"c", cells.text()},
+                                  {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
+                                             "scalar per node: n n\nscalar per element: c c\n"
+                                             "complex scalar per node: z n n 1.0\n"}};
+        expect_whole_or_error(files);
+        const auto result = read_ensight(folder_, files);
+        ASSERT_TRUE(result) << kind << ": " << result.error().message;
+        EXPECT_EQ(result->grid.cells.count(), 12u);
+        EXPECT_EQ(result->grid.points.at(35, 0), 3);
+        EXPECT_EQ(result->grid.point_fields.at(0).values.at(35), 35);
+        EXPECT_EQ(result->grid.point_fields.at(1).values.at(35, 1), 35);
+        EXPECT_EQ(result->grid.cell_fields.at(0).values.at(11), 11);
+    }
+}
+
+TEST_P(EnsightFiles, PartsWithoutNodesAreNoHindrance) {
+    for (const char* kind : {"", "coordinates"}) {
+        GoldText geometry(GetParam(), true), values(GetParam());
+        geometry.line("a").line("b").line("node id off").line("element id off");
+        values.line("values");
+        for (const int part : {1, 2}) {
+            geometry.line("part").integers({part}).line("c").line("coordinates").integers({part == 1 ? 4 : 0});
+            if (part == 1)
+                for (const auto& axis : {std::vector<float>{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}})
+                    geometry.floats(axis);
+            if (part == 1) geometry.line("tetra4").integers({1}).integers({1, 2, 3, 4}, 4);
+            values.line("part").integers({part});
+            if (part == 1) values.line("coordinates").floats({1, 2, 3, 4});
+            else if (*kind != '\0') values.line(kind);
+        }
+        folder_.write("grid.geo", geometry.text());
+        folder_.write("t.scl", values.text());
+        const auto result = read(folder_.write("b.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
+                                                         "VARIABLE\nscalar per node: t t.scl\n"));
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->grid.point_fields.at(0).values.at(3), 4);
+    }
+}
+
 TEST_P(EnsightFiles, VariablesOfOtherElementsOrPartsAreErrors) {
     GoldText other(GetParam());
     other.line("of elements").line("part").integers({1}).line("hexa8").floats({7, 8});
     const auto elements = read_with("e.scl", other.text());
     ASSERT_FALSE(elements);
-    EXPECT_NE(elements.error().message.find("part 1 has no elements \"hexa8\""), std::string::npos)
+    EXPECT_NE(elements.error().message.find("part 1 has no elements 'hexa8'"), std::string::npos)
         << elements.error().message;
     GoldText unknown(GetParam());
     unknown.line("of elements").line("part").integers({3}).line("tetra4").floats({7, 8});
@@ -134,6 +231,29 @@ std::string name_of_form(const testing::TestParamInfo<GoldForm>& form) {
 INSTANTIATE_TEST_SUITE_P(Forms, EnsightFiles,
                          testing::Values(GoldForm::ascii, GoldForm::c, GoldForm::c_swapped, GoldForm::fortran),
                          name_of_form);
+
+TEST(EnsightText, OfGoldMustHaveItsNumbersOnLinesOfTheirOwn) {
+    const TemporaryFolder folder;
+    const std::string geometry =
+        "a\n\nnode id off\nelement id off\npart\n1\nc\ncoordinates\n4\n0\n1\n0\n0\n0\n0\n1\n0\n"
+        "0\n0\n0\n1\ntetra4\n1\n1 2 3 4\n";
+    const auto error = [&](const std::string& grid, const std::string& values) {
+        folder.write("grid.geo", grid);
+        folder.write("t", values);
+        return message_of(
+            read(folder.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
+                                        "scalar per node: t t\n")));
+    };
+    const std::string head = "t\npart\n1\ncoordinates\n";
+    EXPECT_EQ(error(geometry, head + "1\n2\n3\n4\n"), "read");
+    EXPECT_EQ(error(geometry, head + "1\n# a comment\n\n2\n3\n 4.00000e+00"), "read");
+    EXPECT_EQ(error(geometry + "bar2\n1\n         1         2", head + "1\n2\n3\n4\n"), "read");
+    for (const char* values : {"1 2 3 4\n", "1\n2\n3\n4 5\n", "1\n2\n3\nx\n", "1\n2\n3\n1.0D+05\n", "1\n2\n3\n4"})
+        EXPECT_NE(error(geometry, head + values).find("/t: "), std::string::npos) << values;
+    std::string rows = geometry;
+    rows.replace(rows.find("1 2 3 4"), 7, "1 2\n3 4");
+    EXPECT_NE(error(rows, head + "1\n2\n3\n4\n").find("grid.geo: "), std::string::npos);
+}
 
 TEST(EnsightSteps, AreLookedAtInTheFilesOfTheStep) {
     const TemporaryFolder folder;

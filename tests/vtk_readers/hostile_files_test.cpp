@@ -71,8 +71,16 @@ TEST_F(HostileEnsight, APipeIsAnErrorAndNotWaitedFor) {
     EXPECT_NE(message_of(path), "read");
 }
 
+/// VTK's reader looks for the time step of measured points behind the end of their file.
 TEST_F(HostileEnsight, AnEndlessOneIsStoppedByItsProcessorTime) {
-    expect_error(ensight("VARIABEL\nscalar per node: t t.scl\n"), {"a.case"});
+    const std::string path = ensight("");
+    folder_.write("case/steps.geo",
+                  "BEGIN TIME STEP\n" + content_of(folder_.file("case/grid.geo")) + "END TIME STEP\n");
+    folder_.write("case/points", "measured\nparticle coordinates\n0\n");
+    folder_.write("case/a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 1 steps.geo\nmeasured: 1 1 points\n"
+                                 "TIME\ntime set: 1\nnumber of steps: 1\ntime values: 0\n"
+                                 "FILE\nfile set: 1\nnumber of steps: 1\n");
+    expect_error(path, {"a.case", "processor time"});
 }
 
 using HostileHdf5 = HostileFile;

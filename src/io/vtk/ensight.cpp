@@ -1,11 +1,12 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // EnSight Gold and 6, ascii and binary: a case file names the files of geometry and variables; parts are pieces.
+#include <vtkEnSight6BinaryReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkNew.h>
 
 #include "io/own/text_scanner.hpp"
 #include "io/own/index_file.hpp"
-#include "io/vtk/ensight_gold.hpp"
+#include "io/vtk/ensight_check.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/mapped_file.hpp"
 #include "io/vtk/vtk_load.hpp"
@@ -39,17 +40,27 @@ Result<void> check_names(const std::string& path, bool allow_outside) {
     return {};
 }
 
+Result<Loaded> load_by(vtkGenericEnSightReader& reader, const std::string& path, const ReadOptions& options,
+                       Depth depth) {
+    reader.SetCaseFileName(path.c_str());
+    reader.ReadAllVariablesOff();
+    return load_with(
+        reader, path, options, depth,
+        [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(reader, chosen, info); }, "part");
+}
+
 } // namespace
 
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto allowed = check_names(path, options.allow_outside); !allowed) return allowed.error();
-    if (auto complete = check_ensight_gold(path, options.step.value_or(0)); !complete) return complete.error();
-    vtkNew<vtkGenericEnSightReader> reader;
-    reader->SetCaseFileName(path.c_str());
-    reader->ReadAllVariablesOff();
-    return load_with(
-        *reader, path, options, depth,
-        [&](const ReadOptions& chosen, FileInfo& info) { choose_arrays_by_name(*reader, chosen, info); }, "part");
+    const std::size_t step = depth == Depth::description ? 0 : options.step.value_or(0);
+    const auto checked = check_ensight(path, step);
+    if (!checked) return checked.error();
+    if (!*checked) return load_by(*vtkNew<vtkGenericEnSightReader>(), path, options, depth);
+    vtkNew<vtkEnSight6BinaryReader> reader;
+    reader->SetByteOrder((*checked)->is_big_endian ? vtkGenericEnSightReader::FILE_BIG_ENDIAN
+                                                   : vtkGenericEnSightReader::FILE_LITTLE_ENDIAN);
+    return load_by(*reader, path, options, depth);
 }
 
 } // namespace isotet::io::vtk

@@ -3,75 +3,273 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "io/own/text_scanner.hpp"
+#include "io/vtk/ensight_file.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-std::vector<std::string_view> words_of(std::string_view line) {
-    std::vector<std::string_view> words;
-    TextScanner scanner(line);
-    for (auto word = scanner.quoted_of_line(); !word.empty(); word = scanner.quoted_of_line()) words.push_back(word);
-    return words;
+using Words = std::vector<std::string_view>;
+
+std::optional<std::int64_t> integer_at(const Words& words, std::size_t at) {
+    std::int32_t value = 0;
+    if (at >= words.size() || !parse_number(words[at], value)) return std::nullopt;
+    return value;
 }
 
-std::optional<GoldCase::Variable> variable_of(std::string_view key, const std::vector<std::string_view>& words) {
+/// "1 2 rest", "1 rest" or "rest": the sets of a file; returns where the rest begins.
+std::size_t read_sets(const Words& words, EnsightCase::File& file) {
+    const auto first = integer_at(words, 0);
+    if (!first || words.size() < 2) return 0;
+    file.time_set = *first;
+    const auto second = integer_at(words, 1);
+    if (!second || words.size() < 3) return 1;
+    file.file_set = *second;
+    return 2;
+}
+
+std::optional<EnsightCase::Variable> variable_of(std::string_view key, const Words& words) {
     struct Kind {
         std::string_view name;
         std::size_t components;
     };
-    constexpr std::array kinds{Kind{"scalar", 1}, Kind{"vector", 3}, Kind{"tensor symm", 6}, Kind{"tensor asym", 9}};
-    const auto per = key.find(" per ");
-    if (per == std::string_view::npos || words.size() < 2) return std::nullopt;
-    for (const Kind& kind : kinds)
-        if (key.substr(0, per) == kind.name)
-            return GoldCase::Variable{std::string(words.back()), kind.components, key.ends_with("node")};
+    constexpr std::array kinds{Kind{"scalar", 1},      Kind{"vector", 3},      Kind{"tensor", 6},
+                               Kind{"tensor symm", 6}, Kind{"tensor asym", 9}, Kind{"tensor asymm", 9}};
+    EnsightCase::Variable variable;
+    constexpr std::string_view between = " per ";
+    const auto per = key.find(between);
+    if (per == std::string_view::npos) return std::nullopt;
+    std::string_view kind = key.substr(0, per);
+    const std::string_view place = key.substr(per + between.size());
+    variable.is_complex = kind.starts_with("complex ");
+    if (variable.is_complex) kind.remove_prefix(8);
+    const auto* const found = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.name == kind; });
+    if (found == kinds.end()) return std::nullopt;
+    variable.components = found->components;
+    variable.is_measured = place == "measured node";
+    variable.of_nodes = place == "node" || variable.is_measured;
+    if (!variable.of_nodes && place != "element") return std::nullopt;
+    EnsightCase::File file;
+    const std::size_t at = read_sets(words, file);
+    for (std::size_t i = 0; i < (variable.is_complex ? 2 : 1) && at + 1 + i < words.size(); ++i) {
+        file.name = words[at + 1 + i];
+        variable.files.push_back(file);
+    }
+    if (variable.files.size() != (variable.is_complex ? 2 : 1)) return std::nullopt;
+    variable.description = words[at];
+    return variable;
+}
+
+/// The words before the colon with a space between them; empty where VTK's reader would not find them, since it parts
+/// words at spaces only.
+std::string key_of(std::string_view line, std::size_t colon) {
+    if (colon == std::string_view::npos || colon == 0 || is_space(line[colon - 1])) return {};
+    if (colon + 1 < line.size() && !is_space(line[colon + 1])) return {};
+    return fmt::format("{}", fmt::join(words_of(line.substr(0, colon)), " "));
+}
+
+class CaseParser {
+public:
+    EnsightCase parse(std::string_view text) {
+        while (!text.empty()) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            std::string_view line = text.substr(0, end);
+            text.remove_prefix(std::min(end + 1, text.size()));
+            while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+            if (!line.empty() && line[0] != '#') take(line);
+        }
+        for (auto& set : found_.time_sets) {
+            set.numbers.resize(std::min<std::size_t>(set.numbers.size(), set.steps));
+            set.values.resize(std::min<std::size_t>(set.values.size(), set.steps));
+        }
+        return std::move(found_);
+    }
+
+private:
+    enum class List : std::uint8_t { none, numbers, values };
+    enum class Section : std::uint8_t { none, format, geometry, variable, time, file };
+
+    /// True for the first line of a section.
+    bool begin_section(std::string_view line) {
+        struct Name {
+            std::string_view word;
+            Section section;
+        };
+        for (const Name& name :
+             {Name{"FORMAT", Section::format}, Name{"GEOMETRY", Section::geometry}, Name{"VARIABLE", Section::variable},
+              Name{"TIME", Section::time}, Name{"FILE", Section::file}})
+            if (line.starts_with(name.word)) {
+                section_ = name.section;
+                return true;
+            }
+        return false;
+    }
+
+    void refuse(std::string_view line, std::string_view expected) {
+        if (found_.error.empty())
+            found_.error = fmt::format("{} stands where {} was expected", in_quotes(line), expected);
+    }
+
+    void take(std::string_view line) {
+        if (begin_section(line)) {
+            list_ = List::none;
+            found_.has_time = found_.has_time || section_ == Section::time;
+            found_.has_file_sets = found_.has_file_sets || section_ == Section::file;
+            return;
+        }
+        const auto colon = line.find(':');
+        const std::string key = key_of(line, colon);
+        const Words words = words_of(line.substr(colon == std::string_view::npos ? 0 : colon + 1));
+        if (colon != std::string_view::npos) list_ = List::none;
+        switch (section_) {
+        case Section::none: return refuse(line, "FORMAT");
+        case Section::format:
+            if (found_.is_ensight) return refuse(line, "GEOMETRY");
+            found_.is_ensight = true;
+            found_.is_gold = words.size() > 1 && words[1] == "gold";
+            if (key != "type" || words.empty() || words[0] != "ensight" || (words.size() > 1 && !found_.is_gold))
+                refuse(line, "\"type: ensight\" or \"type: ensight gold\"");
+            return;
+        case Section::geometry:
+            if (key == "model") return take_model(words);
+            if (!line.starts_with('m') && key != "boundary" && key != "rigid_body") refuse(line, "model:");
+            return;
+        case Section::variable:
+            if (line.starts_with("constant")) return;
+            if (auto variable = variable_of(key, words)) found_.variables.push_back(*std::move(variable));
+            else refuse(line, "a variable");
+            return;
+        case Section::file: return take_file_set(key, words);
+        case Section::time: take_time_set(key, words);
+        }
+        if (list_ != List::none) take_list(words);
+    }
+
+    void take_model(const Words& words) {
+        const std::size_t at = read_sets(words, found_.model);
+        found_.model_names_sets = at > 0;
+        if (at < words.size()) found_.model.name = words[at]; // before "change_coords_only"
+    }
+
+    void take_time_set(std::string_view key, const Words& words) {
+        const auto number = integer_at(words, 0);
+        if (key == "time set") found_.time_sets.emplace_back().id = number.value_or(0);
+        if (found_.time_sets.empty()) return;
+        EnsightCase::TimeSet& set = found_.time_sets.back();
+        if (key == "number of steps")
+            set.steps = static_cast<std::uint64_t>(std::max<std::int64_t>(number.value_or(0), 0));
+        else if (key == "filename start number") set.first_number = number;
+        else if (key == "filename increment") set.increment = number.value_or(0);
+        else if (key == "filename numbers") list_ = List::numbers;
+        else if (key == "time values") list_ = List::values;
+    }
+
+    void take_list(const Words& words) {
+        EnsightCase::TimeSet& set = found_.time_sets.back();
+        for (const std::string_view word : words) {
+            std::int32_t number = 0;
+            double value = 0;
+            if (list_ == List::numbers && parse_number(word, number)) set.numbers.push_back(number);
+            if (list_ == List::values && parse_number(word, value)) set.values.push_back(static_cast<float>(value));
+        }
+    }
+
+    void take_file_set(std::string_view key, const Words& words) {
+        const auto number = integer_at(words, 0);
+        if (key == "file set") found_.file_sets.emplace_back().id = number.value_or(0);
+        if (found_.file_sets.empty()) return;
+        EnsightCase::FileSet& set = found_.file_sets.back();
+        if (key == "filename index") set.numbers.push_back(number.value_or(0));
+        if (key == "number of steps")
+            set.steps.push_back(static_cast<std::uint64_t>(std::max<std::int64_t>(number.value_or(0), 0)));
+    }
+
+    EnsightCase found_;
+    Section section_ = Section::none;
+    List list_ = List::none;
+};
+
+std::string with_number(std::string name, std::int64_t number) {
+    const auto first = name.find('*');
+    if (first == std::string::npos) return name;
+    const auto stars = std::min(name.find_first_not_of('*', first), name.size()) - first;
+    return name.replace(first, stars, fmt::format("{:0{}}", number, stars));
+}
+
+std::optional<std::int64_t> number_of_file(const EnsightCase::TimeSet& set, std::size_t step) {
+    if (set.first_number) return *set.first_number + static_cast<std::int64_t>(step - 1) * set.increment;
+    if (step <= set.numbers.size()) return set.numbers[step - 1];
     return std::nullopt;
+}
+
+template <class Sets>
+auto with_id(const Sets& sets, std::int64_t id) {
+    return std::find_if(sets.begin(), sets.end(), [&](const auto& set) { return set.id == id; });
 }
 
 } // namespace
 
-GoldCase parse_case(std::string_view text) {
-    GoldCase found;
-    TextScanner scanner(text, '#');
-    bool lists_numbers = false;
-    while (!scanner.at_end()) {
-        const std::string_view line = scanner.line();
-        const auto colon = line.find(':');
-        const auto words = words_of(line.substr(colon == std::string_view::npos ? 0 : colon + 1));
-        const auto number = [&] {
-            std::uint64_t value = 0;
-            if (!words.empty()) TextScanner(words.back()).number(value);
-            return value;
-        };
-        const std::string_view key = line.substr(0, std::min(colon, line.size()));
-        if (key == "type") found.is_gold = words.size() == 2 && words[0] == "ensight" && words[1] == "gold";
-        else if (key == "time set") ++found.time_sets;
-        else if (key == "filename start number") found.first_number = number();
-        else if (key == "filename increment") found.increment = number();
-        else if (key == "model")
-            for (const auto word : words) // after the numbers of sets, before "change_coords_only"
-                if (found.model.empty() && std::isdigit(static_cast<unsigned char>(word[0])) == 0) found.model = word;
-        if (auto variable = variable_of(key, words)) found.variables.push_back(*std::move(variable));
-        if (colon != std::string_view::npos) lists_numbers = key == "filename numbers";
-        std::uint64_t value = 0;
-        for (const auto word : words)
-            if (lists_numbers && TextScanner(word).number(value)) found.numbers.push_back(value);
+EnsightCase parse_case(std::string_view text) { return CaseParser().parse(text); }
+
+EnsightTime::EnsightTime(const EnsightCase& from, std::size_t step) : case_(from) {
+    std::vector<float> all;
+    for (const auto& set : case_.time_sets) all.insert(all.end(), set.values.begin(), set.values.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    if (!all.empty()) time_ = all[std::min(step, all.size() - 1)];
+    const auto set = with_id(case_.time_sets, case_.model.time_set);
+    if (set == case_.time_sets.end() || set->values.empty()) return;
+    model_time_ = set->values[0];
+    for (const float value : set->values) {
+        if (value > time_ || value <= model_time_) continue;
+        model_time_ = value;
+        ++model_step_;
     }
-    return found;
 }
 
-std::optional<std::string> name_of_step(const GoldCase& from, std::string name, std::size_t step) {
-    const auto first = name.find('*');
-    if (first == std::string::npos) return name;
-    const auto stars = std::min(name.find_first_not_of('*', first), name.size()) - first;
-    if (from.time_sets > 1 || (!from.numbers.empty() && step >= from.numbers.size())) return std::nullopt;
-    const std::uint64_t number = from.numbers.empty() ? from.first_number + step * from.increment : from.numbers[step];
-    return name.replace(first, stars, fmt::format("{:0{}}", number, stars));
+EnsightTime::Found EnsightTime::model() const {
+    const auto set = with_id(case_.time_sets, case_.model.time_set);
+    if (!case_.has_time || set == case_.time_sets.end()) return {EnsightPlace{case_.model.name, 1}, {}};
+    return place_of(case_.model, model_step_, *set);
+}
+
+EnsightTime::Found EnsightTime::file_of(const EnsightCase::File& file) const {
+    if (!case_.has_time) return {EnsightPlace{file.name, 1}, {}};
+    const auto set = with_id(case_.time_sets, file.time_set);
+    if (set == case_.time_sets.end()) return {{}, fmt::format("there is no time set {}", file.time_set)};
+    std::size_t step = 0;
+    bool valid = false;
+    for (const float value : set->values) {
+        if (value > time_) continue;
+        ++step;
+        valid = valid || value >= model_time_;
+    }
+    if (!valid) return {};
+    return place_of(file, step, *set);
+}
+
+EnsightTime::Found EnsightTime::place_of(const EnsightCase::File& file, std::size_t step,
+                                         const EnsightCase::TimeSet& times) const {
+    EnsightPlace place{file.name, 1};
+    if (!case_.has_file_sets) {
+        if (const auto number = number_of_file(times, step)) place.name = with_number(file.name, *number);
+        return {place, {}};
+    }
+    const auto set = with_id(case_.file_sets, file.file_set.value_or(1));
+    if (set == case_.file_sets.end()) return {{}, fmt::format("there is no file set {}", file.file_set.value_or(1))};
+    std::size_t index = 0;
+    place.step = step;
+    while (index + 1 < set->steps.size() && place.step > set->steps[index]) place.step -= set->steps[index++];
+    if (index >= set->steps.size() || place.step > set->steps[index])
+        return {{}, fmt::format("file set {} has no step {}", set->id, step)};
+    if (!set->numbers.empty()) {
+        if (index >= set->numbers.size()) return {{}, fmt::format("file set {} has no file {}", set->id, index + 1)};
+        place.name = with_number(file.name, set->numbers[index]);
+    }
+    return {place, {}};
 }
 
 } // namespace isotet::io::vtk

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// What an EnSight Gold case file says of its other files.
+// What an EnSight case file says of its other files.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +11,72 @@
 
 namespace isotet::io::vtk {
 
-/// In names stars stand for the digits of a step.
-struct GoldCase {
-    struct Variable {
-        std::string name; ///< of the file
-        std::size_t components = 1;
-        bool of_nodes = true;
+struct EnsightCase {
+    /// A file and the sets it follows. In its name stars stand for the digits of a step or file.
+    struct File {
+        std::string name;
+        std::int64_t time_set = 1;
+        std::optional<std::int64_t> file_set; ///< none: not said
     };
-    bool is_gold = false;
-    std::string model;
+    struct Variable {
+        std::string description;
+        std::vector<File> files; ///< two of complex variables
+        std::size_t components = 1;
+        bool of_nodes = true, is_measured = false, is_complex = false;
+    };
+    struct TimeSet {
+        std::int64_t id = 1;
+        std::uint64_t steps = 0;
+        std::optional<std::int64_t> first_number; ///< of files; the next ones are `increment` apart
+        std::int64_t increment = 1;
+        std::vector<std::int64_t> numbers;        ///< of files, instead
+        std::vector<float> values;
+    };
+    /// Files that have several steps each.
+    struct FileSet {
+        std::int64_t id = 1;
+        std::vector<std::int64_t> numbers;        ///< of files; empty: there is one, whose name has no stars
+        std::vector<std::uint64_t> steps;         ///< of each file
+    };
+    std::string error; ///< a line that VTK's reader would not get past; empty: none
+    bool is_ensight = false, is_gold = false, has_time = false, has_file_sets = false;
+    File model;
+    bool model_names_sets = false;
     std::vector<Variable> variables;
-    int time_sets = 0;
-    std::uint64_t first_number = 0, increment = 1;
-    std::vector<std::uint64_t> numbers; ///< of the files of each step; empty: from `first_number` on
+    std::vector<TimeSet> time_sets;
+    std::vector<FileSet> file_sets;
 };
 
-GoldCase parse_case(std::string_view text);
+/// Reads lines as VTK's reader does: empty ones and comments are left out, and a section begins at the first column.
+EnsightCase parse_case(std::string_view text);
 
-/// The name with the number of a step in place of its stars; nothing where the case does not say enough.
-std::optional<std::string> name_of_step(const GoldCase& from, std::string name, std::size_t step);
+/// Where the values of a step are.
+struct EnsightPlace {
+    std::string name;      ///< of a file
+    std::size_t step = 1;  ///< in the file, from 1; its steps lie between BEGIN TIME STEP and END TIME STEP
+};
+
+/// Finds files of one time as VTK's reader does. Borrows the case.
+class EnsightTime {
+public:
+    /// `step`   index into all times of the case, from 0
+    EnsightTime(const EnsightCase& from, std::size_t step);
+
+    /// A string is an error: what the case lacks.
+    struct Found {
+        std::optional<EnsightPlace> place; ///< nothing: there are no values at this time
+        std::string error;
+    };
+    Found model() const;
+    Found file_of(const EnsightCase::File& file) const;
+
+private:
+    Found place_of(const EnsightCase::File& file, std::size_t step, const EnsightCase::TimeSet& times) const;
+
+    const EnsightCase& case_;
+    float time_ = 0;
+    float model_time_ = -1;
+    std::size_t model_step_ = 1;
+};
 
 } // namespace isotet::io::vtk
