@@ -85,12 +85,7 @@ def write_xml(writer, grid, path, mode, compressor=None, encode=True):
 
 def write_ensight(folder):
     """Gold, C binary: one part of hexahedra."""
-    n = SIDE + 1
-    points = [(i, j, k) for k in range(n) for j in range(n) for i in range(n)]
-    number = lambda i, j, k: 1 + i + n * (j + n * k)
-    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-    cells = [[number(i + a, j + b, k + c) for a, b, c in corners]
-             for k in range(SIDE) for j in range(SIDE) for i in range(SIDE)]
+    points, cells = box()
     text = lambda words: words.encode().ljust(80)
     ints = lambda *numbers: struct.pack(f'<{len(numbers)}i', *numbers)
     floats = lambda numbers: struct.pack(f'<{len(numbers)}f', *numbers)
@@ -103,12 +98,86 @@ def write_ensight(folder):
                    text('hexa8') + ints(len(cells)) + b''.join(ints(*cell) for cell in cells),
         'box.p': text('p') + part + text('coordinates') + values(len(points)),
         'box.c': text('c') + part + text('hexa8') + values(len(cells)),
-        'box.case': b'FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: box.geo\n\nVARIABLE\nscalar per node: p box.p\n'
-                    b'scalar per element: c box.c\n',
+        'box.case': case_file('ensight gold', 'box'),
     }
+    write_files(folder, files)
+
+
+def box():
+    """Points, and corners of the hexahedra from 1 on."""
+    n = SIDE + 1
+    points = [(i, j, k) for k in range(n) for j in range(n) for i in range(n)]
+    number = lambda i, j, k: 1 + i + n * (j + n * k)
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    return points, [[number(i + a, j + b, k + c) for a, b, c in corners]
+                    for k in range(SIDE) for j in range(SIDE) for i in range(SIDE)]
+
+
+def write_files(folder, files):
     for name, content in files.items():
         with open(os.path.join(folder, name), 'wb') as file:
             file.write(content)
+
+
+def case_file(kind, stem, sets='', sections=''):
+    return (f'FORMAT\ntype: {kind}\n\nGEOMETRY\nmodel: {sets}{stem}.geo\n\nVARIABLE\nscalar per node: {sets}p {stem}.p\n'
+            f'scalar per element: {sets}c {stem}.c\n{sections}').encode()
+
+
+def write_ensight_6(folder):
+    """As text, and as C binary with the other byte order and numbers of nodes and elements."""
+    points, cells = box()
+    values = lambda count: [(i * 7 % 11) / 10 for i in range(count)]
+    row = lambda numbers: ''.join(f'{number:8}' for number in numbers) + '\n'
+    columns = lambda numbers: ''.join(''.join(f'{number:12.5e}' for number in numbers[i:i + 6]) + '\n'
+                                      for i in range(0, len(numbers), 6))
+    text = {
+        'six_text.geo': 'a box\nas text\nnode id assign\nelement id off\ncoordinates\n' + row([len(points)]) +
+                        ''.join(columns(point) for point in points) + 'part 1\nbox\nhexa8\n' + row([len(cells)]) +
+                        ''.join(row(cell) for cell in cells),
+        'six_text.p': 'p\n' + columns(values(len(points))),
+        'six_text.c': 'c\npart 1\nhexa8\n' + columns(values(len(cells))),
+    }
+    write_files(folder, {name: content.encode() for name, content in text.items()})
+    line = lambda words: words.encode().ljust(80, b'\0')
+    ints = lambda numbers: struct.pack(f'>{len(numbers)}i', *numbers)
+    floats = lambda numbers: struct.pack(f'>{len(numbers)}f', *numbers)
+    first = 1000
+    write_files(folder, {
+        'six.geo': b''.join(map(line, ['C Binary', 'a box', '', 'node id given', 'element id given', 'coordinates'])) +
+                   ints([len(points)]) + ints(range(first + 1, first + 1 + len(points))) +
+                   floats([x for point in points for x in point]) + line('part 1') + line('box') + line('hexa8') +
+                   ints([len(cells)]) + ints(range(1, 1 + len(cells))) +
+                   b''.join(ints([first + corner for corner in cell]) for cell in cells),
+        'six.p': line('p') + floats(values(len(points))),
+        'six.c': line('c') + line('part 1') + line('hexa8') + floats(values(len(cells))),
+        'six.case': case_file('ensight', 'six'),
+        'six_text.case': case_file('ensight', 'six_text'),
+    })
+
+
+def write_ensight_steps(folder):
+    """Gold, C binary: three time steps in each file, the last one with undefined values."""
+    points, cells = box()
+    line = lambda words: words.encode().ljust(80)
+    ints = lambda *numbers: struct.pack(f'<{len(numbers)}i', *numbers)
+    floats = lambda numbers: struct.pack(f'<{len(numbers)}f', *numbers)
+    values = lambda count, step: [(i * 7 % 11) / 10 + step for i in range(count)]
+    steps = lambda content: b''.join(line('BEGIN TIME STEP') + content(step) + line('END TIME STEP') for step in range(3))
+    part = line('part') + ints(1)
+    geometry = lambda step: (line('a box') + line('') + line('node id off') + line('element id off') + part + line('box') +
+                             line('coordinates') + ints(len(points)) +
+                             b''.join(floats([point[axis] + step for point in points]) for axis in range(3)) +
+                             line('hexa8') + ints(len(cells)) + b''.join(ints(*cell) for cell in cells))
+    kind = lambda step, name: line(name + ' undef') + floats([2.5]) if step == 2 else line(name)
+    write_files(folder, {
+        'steps.geo': line('C Binary') + steps(geometry),
+        'steps.p': steps(lambda step: line('p') + part + kind(step, 'coordinates') + floats(values(len(points), step))),
+        'steps.c': steps(lambda step: line('c') + part + kind(step, 'hexa8') + floats(values(len(cells), step))),
+        'steps.case': case_file('ensight gold', 'steps', '1 1 ',
+                                '\nTIME\ntime set: 1\nnumber of steps: 3\ntime values: 0 1 2\n\nFILE\nfile set: 1\n'
+                                'number of steps: 3\n'),
+    })
 
 
 HEX_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]  # corners by bits
@@ -251,6 +320,8 @@ def main():
     write_vtkhdf_polyhedra(at('polyhedra/partitions.vtkhdf'))
     os.makedirs(at('ensight'), exist_ok=True)
     write_ensight(at('ensight'))
+    write_ensight_6(at('ensight'))
+    write_ensight_steps(at('ensight'))
     write_openfoam(at('openfoam'))
     os.makedirs(at('corner_points'), exist_ok=True)
     write_corner_points(at('corner_points'))
