@@ -34,7 +34,8 @@ ISOTET_API std::string name_of_cell_type(std::uint8_t vtk_type);
 /// `faces`         empty, or as the connectivity: the faces of polyhedra (VTK's 42). A cell has its number of faces, then
 ///                 for each face its number of points and these points, in any winding
 /// `face_offsets`  empty, or as the offsets, one more than there are cells: where each cell's part of `faces` starts; cells
-///                 of other types have none. A polyhedron's own points stand in the connectivity, each once
+///                 of other types have none. A polyhedron's own points stand in the connectivity, each once. The faces
+///                 of pentagonal and hexagonal prisms (15, 16) follow from their type
 struct ISOTET_API Cells {
     Array connectivity;
     Array offsets;

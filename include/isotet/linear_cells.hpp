@@ -70,7 +70,7 @@ struct RefinementReport {
 
 /// What linearize() did, in cells of the user's grid.
 struct LinearizeReport {
-    std::uint64_t polyhedra = 0;    ///< cells that are polyhedra, with their faces
+    std::uint64_t polyhedra = 0;    ///< cells that are polyhedra, with their faces, or prisms of five or six sides
     std::uint64_t known_shapes = 0; ///< of these: tetrahedra, pyramids, wedges and hexahedra, which stay whole
     std::uint64_t centred = 0;      ///< of these: split around a derived point
     std::uint64_t moved_centres =
@@ -127,7 +127,8 @@ struct LinearizeOptions {
     std::vector<std::uint64_t> also = {}; ///< user's cells that stay though no isovalue meets them, ascending
 };
 
-/// True when some cells are polyhedra with faces or of a degree above 1: linearize() makes linear cells of them.
+/// True when some cells are polyhedra with faces, prisms of five or six sides, or of a degree above 1: linearize() makes
+/// linear cells of them.
 /// Cost   a parallel pass over the types
 ISOTET_API bool has_cells_to_linearize(const Cells& cells);
 
@@ -147,7 +148,7 @@ ISOTET_API bool has_curved_cells(const Cells& cells);
 ISOTET_API Result<std::vector<double>> relative_volumes(const Grid& grid, const Run& run = {});
 
 /// Makes every cell linear that can be. Linear cells stay as they are, in their order; each polyhedron is replaced by what
-/// it becomes:
+/// it becomes. Pentagonal and hexagonal prisms (VTK's 15 and 16) are polyhedra of known faces.
 ///
 ///   a known shape   a tetrahedron, pyramid, wedge or hexahedron given by its faces is that cell
 ///   any other       pyramids on its quadrilaterals and tets on its triangles, around a derived point: the mean of its

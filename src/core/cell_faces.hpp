@@ -15,6 +15,12 @@ namespace isotet::core {
 
 inline constexpr std::uint8_t polyhedron_type = 42; ///< VTK's number
 
+/// True for the types that are split by their faces. Those of polyhedra are listed, those of prisms follow from the
+/// type.
+constexpr bool is_polyhedral(std::uint8_t vtk_type) {
+    return vtk_type == polyhedron_type || prism_sides(vtk_type) > 0;
+}
+
 /// Reads the faces of polyhedra. Borrows the grid's arrays.
 class ISOTET_API FaceReader {
 public:
@@ -35,6 +41,12 @@ private:
     std::uint64_t size_ = 0;
     bool has_faces_ = false;
 };
+
+/// True for polyhedra that have their faces, and prisms.
+inline bool is_polyhedron(const CellReader& cells, const FaceReader& faces, std::size_t cell) {
+    const std::uint8_t type = cells.type(cell);
+    return type == polyhedron_type ? faces.begin(cell) < faces.end(cell) : prism_sides(type) > 0;
+}
 
 /// What is wrong with the part of `faces` that a cell has, in a grid of so many points; empty: nothing.
 ISOTET_API std::string fault_of_faces(const FaceReader& faces, std::size_t cell, std::uint64_t points);

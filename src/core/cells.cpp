@@ -150,14 +150,20 @@ bool all_corners_are_points(const CellReader& cells, std::size_t begin, std::siz
     });
 }
 
+/// 0: any number.
+std::uint64_t expected_corners(std::uint8_t type) {
+    const std::uint64_t sides = prism_sides(type);
+    return sides ? 2 * sides : static_cast<std::uint64_t>(corners_of(type));
+}
+
 Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
     const std::uint64_t begin = cells.first(cell);
     const std::uint64_t corners = cells.corners(cell);
     if (corners > cells.connectivity_size() || begin > cells.connectivity_size() - corners)
         return begin + corners < begin ? Fault::offset_falls : Fault::offset_end;
-    const int expected = corners_of(cells.type(cell));
+    const std::uint64_t expected = expected_corners(cells.type(cell));
     if (expected == 0) return Fault::none;
-    if (corners != static_cast<std::uint64_t>(expected)) return Fault::corner_count;
+    if (corners != expected) return Fault::corner_count;
     for (std::uint64_t k = 0; k < corners; ++k) {
         const std::uint64_t point = cells.corner(begin + k);
         if (point >= cells.points()) return Fault::point_range;
@@ -179,7 +185,7 @@ std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std
                            static_cast<std::int64_t>(begin), static_cast<std::int64_t>(begin + corners),
                            cells.connectivity_size());
     if (fault == Fault::corner_count)
-        return fmt::format("{} has {} corners, but must have {}", who, corners, corners_of(cells.type(cell)));
+        return fmt::format("{} has {} corners, but must have {}", who, corners, expected_corners(cells.type(cell)));
     for (std::uint64_t k = 0; k < corners; ++k) {
         const std::uint64_t point = cells.corner(begin + k);
         if (point >= cells.points()) {
@@ -236,7 +242,9 @@ Error nothing_to_contour(const Grid& grid, const CellReader& cells) {
                 "the grid with {} points has no cell that can be contoured ({}); tetrahedra, hexahedra, voxels, wedges "
                 "and pyramids can{}",
                 grid.points.tuples(), list.empty() ? "no cells at all" : list,
-                counts[42] && !grid.cells.faces.empty() ? ", and polyhedra after linearize()" : "")};
+                counts[15] || counts[16] || (counts[42] && !grid.cells.faces.empty())
+                    ? ", and polyhedra after linearize()"
+                    : "")};
 }
 
 } // namespace core

@@ -45,6 +45,10 @@ void order_as_kind(std::uint8_t vtk_type, Corners& corners) {
     std::swap(corners[6], corners[7]);
 }
 
+/// Of VTK's pentagonal (15) and hexagonal (16) prisms: how many sides. 0 for all others. Points: those of the bottom,
+/// then those of the top in the same order.
+constexpr std::uint64_t prism_sides(std::uint8_t vtk_type) { return vtk_type == 15 ? 5 : vtk_type == 16 ? 6 : 0; }
+
 /// A point number or offset as 64 bits; a negative one becomes a huge one.
 template <class T>
 std::uint64_t widened(T index) {

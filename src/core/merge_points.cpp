@@ -30,9 +30,7 @@ constexpr std::size_t grain = 1 << 14;
 Error cancelled() { return {ErrorCode::cancelled, "merging points was cancelled"}; }
 
 /// True for cells whose points are merged: all three-dimensional ones that are contoured in some way.
-bool is_merged(std::uint8_t type) {
-    return core::is_contoured(type) || is_curved(type) || type == core::polyhedron_type;
-}
+bool is_merged(std::uint8_t type) { return core::is_contoured(type) || is_curved(type) || core::is_polyhedral(type); }
 
 /// Checks what check_cells() leaves out: nodes of curved cells, corners and faces of polyhedra.
 Result<void> check_other_cells(const Grid& grid, const core::CellReader& cells, const Progress& progress) {

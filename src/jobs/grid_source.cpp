@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <isotet/contour.hpp>
 #include <isotet/grid_counts.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -197,11 +198,13 @@ Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t
 }
 
 std::string cells_left_out_note(const Grid& grid) {
-    constexpr std::uint8_t polyhedron = 42;
+    const auto is_split = [&](std::uint8_t type) {
+        constexpr std::uint8_t polyhedron = 42;
+        return is_curved(type) || (Contour::contours(type) && (type != polyhedron || !grid.cells.faces.empty()));
+    };
     std::string list;
     for (const auto& [type, count] : count_cells_by_type(grid.cells)) {
-        if (is_contoured(type) || (type == polyhedron && !grid.cells.faces.empty()) || is_curved(type))
-            continue; // said by the session
+        if (is_split(type)) continue; // the session tells about these
         list += fmt::format("{}{} {}", list.empty() ? "" : ", ", grouped(count), name_of_cell_type(type));
     }
     return list.empty() ? list : "cells left out, their types are not contoured: " + list;

@@ -138,8 +138,7 @@ Result<LinearGrid> split_in_order(const Grid& grid, const LinearizeOptions& opti
         for (std::size_t b = begin; b < end && !progress.cancelled(); ++b) {
             const std::size_t last = std::min(cells->count(), (b + 1) * cells_per_block);
             for (std::size_t cell = b * cells_per_block; cell < last; ++cell) {
-                const bool is_polyhedron =
-                    cells->type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell);
+                const bool is_polyhedron = core::is_polyhedron(*cells, *faces, cell);
                 if (is_polyhedron && !options.isovalues.empty() && !met.meets(cell, corner_values) &&
                     !std::ranges::binary_search(options.also, cell))
                     ++parts.report.unmet;
@@ -188,16 +187,30 @@ Result<LinearGrid> split_polyhedra(const Grid& user, const LinearizeOptions& opt
     return in_users_order(*std::move(linear), grid, sorted->original);
 }
 
-bool has_polyhedra(const Cells& cells) {
-    if (cells.faces.empty() || cells.types.type() != ScalarType::uint8) return false;
+namespace {
+
+/// True when a cell is of a type for which `wanted` is true.
+bool has_type(const Cells& cells, const auto& wanted) {
+    if (cells.types.empty() || cells.types.type() != ScalarType::uint8) return false;
     const auto types = cells.types.as<std::uint8_t>();
     std::atomic<bool> found{false};
     core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
-        const auto part = types.subspan(begin, end - begin);
-        if (std::ranges::find(part, core::polyhedron_type) != part.end()) found.store(true, std::memory_order_relaxed);
+        if (std::ranges::any_of(types.subspan(begin, end - begin), wanted))
+            found.store(true, std::memory_order_relaxed);
     });
     return found;
 }
+
+/// True for the types of polyhedra that the grid has faces of.
+auto is_split_by_faces(const Cells& cells) {
+    return [listed = !cells.faces.empty()](std::uint8_t type) {
+        return (listed && type == core::polyhedron_type) || core::prism_sides(type) > 0;
+    };
+}
+
+} // namespace
+
+bool has_polyhedra(const Cells& cells) { return has_type(cells, is_split_by_faces(cells)); }
 
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     auto split = split_polyhedra(grid, options, progress);
@@ -209,18 +222,13 @@ Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, 
 
 bool is_curved(std::uint8_t vtk_type) noexcept { return linear::is_curved(vtk_type); }
 
-bool has_curved_cells(const Cells& cells) {
-    if (cells.types.empty() || cells.types.type() != ScalarType::uint8) return false;
-    const auto types = cells.types.as<std::uint8_t>();
-    std::atomic<bool> found{false};
-    core::parallel_ranges(types.size(), 1 << 18, [&](std::size_t begin, std::size_t end) {
-        if (std::ranges::any_of(types.subspan(begin, end - begin), linear::is_curved))
-            found.store(true, std::memory_order_relaxed);
-    });
-    return found;
-}
+bool has_curved_cells(const Cells& cells) { return linear::has_type(cells, linear::is_curved); }
 
-bool has_cells_to_linearize(const Cells& cells) { return linear::has_polyhedra(cells) || has_curved_cells(cells); }
+bool has_cells_to_linearize(const Cells& cells) {
+    return linear::has_type(cells, [by_faces = linear::is_split_by_faces(cells)](std::uint8_t type) {
+        return by_faces(type) || linear::is_curved(type);
+    });
+}
 
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Run& run) {
     return core::carry_out("making linear cells", run,

@@ -32,7 +32,7 @@ std::optional<core::WholeCell> PolyhedronSplitter::find_known_shape(std::size_t 
 }
 
 double PolyhedronSplitter::six_volumes(std::size_t cell) {
-    if (!shell_.read(faces_, cell, points_)) return -1;
+    if (!shell_.read(cells_, faces_, cell, points_)) return -1;
     const auto known = find_known_shape(cell);
     if (!known) return shell_.six_volumes(points_);
     double sum = 0;
@@ -85,7 +85,7 @@ void PolyhedronSplitter::split_around_centre(std::size_t cell, Parts& out) {
 
 void PolyhedronSplitter::split(std::size_t cell, Parts& out) {
     ++out.report.polyhedra;
-    if (!shell_.read(faces_, cell, points_)) {
+    if (!shell_.read(cells_, faces_, cell, points_)) {
         ++out.report.open;
         out.add_cell(0, {}, cell);
     } else if (!options_.known_shapes || !keep_known_shape(cell, out)) {

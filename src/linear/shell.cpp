@@ -2,6 +2,7 @@
 #include "linear/shell.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <tuple>
 
@@ -19,27 +20,38 @@ void make_canonical(std::span<std::uint64_t> loop) {
 
 } // namespace
 
-bool Shell::read_loops(const core::FaceReader& faces, std::size_t cell) {
-    unsorted_.clear();
-    unsorted_ends_.clear();
+/// `point_at`   gives point 0, 1, ... `count` - 1 of a face
+void Shell::add_loop(std::uint64_t count, const auto& point_at) {
+    const std::size_t begin = unsorted_.size();
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t point = point_at(i);
+        if (unsorted_.size() == begin || unsorted_.back() != point) unsorted_.push_back(point);
+    }
+    while (unsorted_.size() > begin + 1 && unsorted_.back() == unsorted_[begin]) unsorted_.pop_back();
+    if (unsorted_.size() < begin + 3) return unsorted_.resize(begin);
+    make_canonical({unsorted_.data() + begin, unsorted_.size() - begin});
+    unsorted_ends_.push_back(unsorted_.size());
+}
+
+void Shell::read_listed(const core::FaceReader& faces, std::size_t cell) {
     std::uint64_t at = faces.begin(cell);
     const std::uint64_t count = at < faces.end(cell) ? faces.at(at++) : 0;
     for (std::uint64_t face = 0; face < count; ++face) {
-        const std::size_t begin = unsorted_.size();
         const std::uint64_t points = faces.at(at++);
-        for (std::uint64_t i = 0; i < points; ++i) {
-            const std::uint64_t point = faces.at(at++);
-            if (unsorted_.size() == begin || unsorted_.back() != point) unsorted_.push_back(point);
-        }
-        while (unsorted_.size() > begin + 1 && unsorted_.back() == unsorted_[begin]) unsorted_.pop_back();
-        if (unsorted_.size() < begin + 3) {
-            unsorted_.resize(begin);
-            continue;
-        }
-        make_canonical({unsorted_.data() + begin, unsorted_.size() - begin});
-        unsorted_ends_.push_back(unsorted_.size());
+        add_loop(points, [&](std::uint64_t i) { return faces.at(at + i); });
+        at += points;
     }
-    return unsorted_ends_.size() >= 4;
+}
+
+void Shell::read_prism(const core::CellReader& cells, std::size_t cell, std::uint64_t sides) {
+    const std::uint64_t bottom = cells.first(cell), top = bottom + sides;
+    for (const std::uint64_t end : {bottom, top})
+        add_loop(sides, [&](std::uint64_t i) { return cells.corner(end + i); });
+    for (std::uint64_t side = 0; side < sides; ++side) {
+        const std::uint64_t next = (side + 1) % sides;
+        const std::array<std::uint64_t, 4> corners{bottom + side, bottom + next, top + next, top + side};
+        add_loop(4, [&](std::uint64_t i) { return cells.corner(corners[i]); });
+    }
 }
 
 void Shell::sort_loops() {
@@ -135,8 +147,13 @@ double Shell::six_volumes(const core::PointReader& points) const {
     return sum;
 }
 
-bool Shell::read(const core::FaceReader& faces, std::size_t cell, const core::PointReader& points) {
-    if (!read_loops(faces, cell)) return false;
+bool Shell::read(const core::CellReader& cells, const core::FaceReader& faces, std::size_t cell,
+                 const core::PointReader& points) {
+    unsorted_.clear();
+    unsorted_ends_.clear();
+    if (const std::uint64_t sides = core::prism_sides(cells.type(cell))) read_prism(cells, cell, sides);
+    else read_listed(faces, cell);
+    if (unsorted_ends_.size() < 4) return false;
     sort_loops();
     if (!find_edges() || !wind()) return false;
     if (six_volumes(points) < 0)

@@ -17,12 +17,13 @@ namespace isotet::linear {
 /// shell are sorted. One shell serves many cells, one after another, to keep its memory.
 class Shell {
 public:
-    /// Reads the faces of a cell, which check_faces() has passed. Points that repeat the one before are dropped, and faces
-    /// of fewer than three points with them.
+    /// Reads the faces of a polyhedron or prism, which check_cells() and check_faces() have passed. Points that repeat the
+    /// one before are dropped, and faces of fewer than three points with them.
     ///
     /// Returns   false when the cell is open: an edge that is not in two faces, a face that meets itself, or faces that are
     ///           not connected or cannot all be turned outward
-    bool read(const core::FaceReader& faces, std::size_t cell, const core::PointReader& points);
+    bool read(const core::CellReader& cells, const core::FaceReader& faces, std::size_t cell,
+              const core::PointReader& points);
 
     std::size_t face_count() const { return ends_.size(); }
     std::span<const std::uint64_t> loop(std::size_t face) const {
@@ -44,7 +45,9 @@ public:
     double six_volumes(const core::PointReader& points) const;
 
 private:
-    bool read_loops(const core::FaceReader& faces, std::size_t cell);
+    void read_listed(const core::FaceReader& faces, std::size_t cell);
+    void read_prism(const core::CellReader& cells, std::size_t cell, std::uint64_t sides);
+    void add_loop(std::uint64_t count, const auto& point_at);
     void sort_loops();
     bool find_edges();
     bool wind();

@@ -28,9 +28,8 @@ Result<std::vector<double>> volumes_of_cells(const Grid& grid, const core::CellR
     core::parallel_pieces(cells.count(), cells_at_once, progress, [&](std::size_t begin, std::size_t end) {
         linear::PolyhedronSplitter splitter(grid, cells, *faces, options);
         for (std::size_t cell = begin; cell < end; ++cell) {
-            const bool is_polyhedron =
-                cells.type(cell) == core::polyhedron_type && faces->begin(cell) < faces->end(cell);
-            volumes[cell] = is_polyhedron ? splitter.six_volumes(cell) : core::six_volumes_of(cells, points, cell);
+            volumes[cell] = core::is_polyhedron(cells, *faces, cell) ? splitter.six_volumes(cell)
+                                                                     : core::six_volumes_of(cells, points, cell);
         }
     });
     if (progress.cancelled()) return cancelled_volumes();

@@ -34,7 +34,7 @@ double tets_of(std::size_t nodes) { return std::max(1.0, 2 * static_cast<double>
 bool is_made_linear(const core::CellReader& cells, std::size_t cell) {
     const std::uint8_t type = cells.type(cell);
     if (core::is_contoured(type)) return false;
-    return type == core::polyhedron_type || linear::layout_of(type, cells.corners(cell)) ||
+    return core::is_polyhedral(type) || linear::layout_of(type, cells.corners(cell)) ||
            linear::high_degree_of(type, cells.corners(cell));
 }
 

@@ -41,8 +41,7 @@ core::Buffer<std::uint8_t> used_points(const core::CellReader& cells, const core
     core::Buffer<std::uint8_t> used(cells.points());
     std::ranges::fill(used, std::uint8_t{0});
     core::parallel_each(cells.count(), 1 << 13, [&](std::size_t cell) {
-        const bool polyhedron = cells.type(cell) == core::polyhedron_type && faces.begin(cell) < faces.end(cell);
-        if (!polyhedron && !core::is_contoured(cells.type(cell))) return;
+        if (!core::is_polyhedron(cells, faces, cell) && !core::is_contoured(cells.type(cell))) return;
         for (std::uint64_t i = 0; i < cells.corners(cell); ++i)
             std::atomic_ref(used[cells.corner(cells.first(cell) + i)]).store(1, std::memory_order_relaxed);
     });
@@ -106,7 +105,7 @@ std::vector<std::uint64_t> cells_at(const core::CellReader& cells, const core::F
     std::vector<std::uint64_t> found;
     std::mutex mutex;
     core::parallel_each(cells.count(), 1 << 13, [&](std::size_t cell) {
-        if (cells.type(cell) != core::polyhedron_type || faces.begin(cell) == faces.end(cell)) return;
+        if (!core::is_polyhedron(cells, faces, cell)) return;
         for (std::uint64_t i = 0; i < cells.corners(cell); ++i) {
             if (used[cells.corner(cells.first(cell) + i)] != 2) continue;
             const std::lock_guard lock(mutex);
