@@ -188,6 +188,58 @@ TEST_F(ReadOpenfoamCase, UnderstandsPatternsGroupsAndMacros) {
         7);
 }
 
+TEST_F(ReadOpenfoamCase, SkipsTheTypesOfConstraintPatches) {
+    FoamFiles files = foam_case(box_, wave, {});
+    std::string& patches = files["constant/polyMesh/boundary"];
+    const std::string without = patches;
+    const auto wall = [&](const std::string& patch_type, const std::string& entries) {
+        patches = without;
+        patches.replace(patches.find("wall"), 4, patch_type);
+        files["0.5/T"] =
+            foam_file("volScalarField", "T", {}, "internalField uniform 3;\nboundaryField\n{\n" + entries + "\n}\n");
+        const TemporaryFolder folder;
+        write_case(folder, files);
+        const auto result = read(folder.file(""), last_step());
+        EXPECT_TRUE(result) << result.error().message;
+        if (!result) return std::pair<double, std::size_t>();
+        EXPECT_NE(result->notes.empty() ? 0 : result->notes[0].find("was not read"), std::string::npos);
+        return std::pair(field_of(result->grid.point_fields, "T").at(0), result->notes.size());
+    };
+    const std::string etc = "#includeEtc \"caseDicts/setConstraintTypes\"\n",
+                      all = "{ type fixedValue; value uniform 7; }";
+    using Read = std::pair<double, std::size_t>;
+    EXPECT_EQ(wall("wall", etc + "heated " + all), Read(7, 1));
+    EXPECT_EQ(wall("wall", "\"hea.*\" " + all + etc), Read(7, 1));
+    EXPECT_EQ(wall("symmetry", "\"hea.*\" " + all), Read(7, 0));
+    for (const char* type :
+         {"symmetry", "symmetryPlane", "empty", "wedge", "cyclicAMI", "processor", "nonConformalCyclic"})
+        EXPECT_EQ(wall(type, etc + "\"hea.*\" " + all), Read(3, 1)) << type << ": its own entry comes before patterns";
+    EXPECT_EQ(wall("symmetry", etc + "heated " + all), Read(7, 1));
+    EXPECT_EQ(wall("wall", "#sincludeEtc \"caseDicts/mine\"\nheated " + all), Read(7, 1));
+    EXPECT_EQ(wall("wall", "#include \"<etc>/caseDicts/setConstraintTypes\"\nheated " + all), Read(7, 1));
+    EXPECT_EQ(wall("wall", "#includeIfPresent \"<etc>/caseDicts/mine\"\nheated " + all), Read(7, 1));
+    EXPECT_EQ(wall("wall", "#includeIfPresent \"missing\"\nheated " + all), Read(7, 0));
+    EXPECT_EQ(wall("wall", "heated { #includeEtc \"caseDicts/wall\"\n type fixedValue; value uniform 7; }"),
+              Read(7, 1));
+    EXPECT_EQ(wall("wall", "heated { #includeEtc \"caseDicts/wall\"\n }"), Read(3, 1));
+    files["0.5/include/patches"] = etc + "heated " + all;
+    EXPECT_EQ(wall("wall", "#include \"include/patches\""), Read(7, 1));
+}
+
+TEST_F(ReadOpenfoamCase, TellsOnceWhatItsFieldsInclude) {
+    FoamFiles files = foam_case(box_, wave, {}, 2);
+    for (auto& [name, text] : files)
+        if (const std::size_t at = text.find("boundaryField"); at != std::string::npos)
+            text.insert(text.find('{', at) + 1, "\n#includeEtc \"caseDicts/setConstraintTypes\"\n");
+    write_case(folder_, files);
+    const auto result = read(folder_.file(""), last_step());
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_EQ(result->notes.size(), 2u) << "the first is of the folders";
+    EXPECT_EQ(result->notes[1],
+              "'caseDicts/setConstraintTypes' of an OpenFOAM installation, which T, U include, was not "
+              "read: a point on a patch without values has the mean of the cells around it");
+}
+
 TEST(FoamPatterns, FitWholeNames) {
     using io::foam::fits_pattern;
     for (const auto& [pattern, name] :
@@ -430,7 +482,11 @@ TEST_F(BrokenOpenfoam, NothingIsRunAndNothingOutsideIsRead) {
     };
     EXPECT_NE(field("#include \"" + secret + "\"" + rest).find("--allow-outside"), std::string::npos);
     EXPECT_NE(field("#include \"../../secret\"" + rest).find("--allow-outside"), std::string::npos);
-    EXPECT_NE(field("#includeEtc \"caseDicts/setConstraintTypes\"" + rest).find("--allow-outside"), std::string::npos);
+    for (const std::string word : {"#includeEtc \"", "#sincludeEtc \"", "#include \"<etc>/"})
+        EXPECT_NE(
+            field(word + "caseDicts/values\"" + rest).find("outside of boundaryField, where it may define values"),
+            std::string::npos);
+    EXPECT_NE(field("#includeIfPresent \"../../secret\"" + rest).find("--allow-outside"), std::string::npos);
     EXPECT_NE(field("internalField uniform #calc \"1+1\";").find("nothing in a file is run"), std::string::npos);
     EXPECT_NE(field("#codeStream { code #{ x #}; }" + rest).find("nothing in a file is run"), std::string::npos);
     EXPECT_NE(field("#include \"T\"" + rest).find("in one another"), std::string::npos);
@@ -438,6 +494,8 @@ TEST_F(BrokenOpenfoam, NothingIsRunAndNothingOutsideIsRead) {
     ReadOptions outside = last_step();
     outside.allow_outside = true;
     folder_.write("0.5/T", foam_file("volScalarField", "T", {}, "#include \"" + secret + "\"" + rest));
+    EXPECT_TRUE(read(folder_.file(""), outside));
+    folder_.write("0.5/T", foam_file("volScalarField", "T", {}, "#includeEtc \"caseDicts/values\"" + rest));
     EXPECT_TRUE(read(folder_.file(""), outside));
     write_case(folder_, files);
     std::filesystem::remove(folder_.file("constant/polyMesh/owner"));

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
@@ -161,6 +162,7 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
     if (layout.times.empty()) return {};
     const std::string folder = field_folder(layout, region, step);
     std::set<std::string> seen;
+    std::map<std::string, std::vector<std::string>> fields_including; // by the file that was not read
     auto fields = fields_in(files, layout.prefixes.front() + folder, seen);
     if (!fields) return fields.error();
     for (const AnnouncedField& field : *fields) {
@@ -172,11 +174,13 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
         if (!read) return read.error();
         if (points) piece.grid.point_fields.push_back({field.name, std::move(read->points)});
         if (cells) piece.grid.cell_fields.push_back({field.name, std::move(read->cells)});
-        if (read->has_unread)
-            notes.push_back(fmt::format("{} includes files of an OpenFOAM installation, which were not read: values on "
-                                        "patches may be missing",
-                                        escaped(field.name)));
+        for (const std::string& file : read->unread) fields_including[file].push_back(escaped(field.name));
     }
+    for (const auto& [file, names] : fields_including)
+        notes.push_back(fmt::format("{} of an OpenFOAM installation, which {} {}, was not read: a point on a patch "
+                                    "without values has the mean of the cells around it",
+                                    in_quotes(file), fmt::join(names, ", "),
+                                    names.size() > 1 ? "include" : "includes"));
     return {};
 }
 

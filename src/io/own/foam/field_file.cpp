@@ -16,6 +16,7 @@ namespace isotet::io::foam {
 namespace {
 
 constexpr int max_nesting = 8, max_includes = 64;
+constexpr std::string_view etc_folder = "<etc>/"; ///< in a name: of an OpenFOAM installation
 
 std::string without_quotes(std::string_view word) {
     if (word.size() >= 2 && word.front() == '"' && word.back() == '"') word = word.substr(1, word.size() - 2);
@@ -168,19 +169,27 @@ private:
             static_cast<void>(scanner.token());
             return {};
         }
-        if (word == "#includeEtc" || word == "#sincludeEtc") {
-            const std::string name = without_quotes(scanner.token());
-            if (!allow_outside_)
-                return scanner.fail(
-                    fmt::format("includes {} of an OpenFOAM installation: only files below the case's "
-                                "folder are read, unless --allow-outside (ReadOptions::allow_outside) is given",
-                                in_quotes(name)));
-            field_.has_unread = true;
-            return {};
-        }
+        if (word == "#includeEtc" || word == "#sincludeEtc")
+            return include_etc(scanner, without_quotes(scanner.token()), level);
         const bool if_present = word == "#includeIfPresent" || word == "#sinclude";
         if (word != "#include" && !if_present) return not_run(scanner, word);
-        return include(scanner, without_quotes(scanner.token()), if_present, level, patch);
+        const std::string name = without_quotes(scanner.token());
+        if (name.starts_with(etc_folder)) return include_etc(scanner, name.substr(etc_folder.size()), level);
+        return include(scanner, name, if_present, level, patch);
+    }
+
+    /// Files of an installation are not read. On patches they give types without values; elsewhere they may define
+    /// values.
+    Result<void> include_etc(const Scanner& scanner, const std::string& name, Level level) {
+        if (level == Level::top && !allow_outside_)
+            return scanner.fail(
+                fmt::format("includes {} of an OpenFOAM installation outside of boundaryField, where it "
+                            "may define values: it is not read, and skipped only with --allow-outside "
+                            "(ReadOptions::allow_outside)",
+                            in_quotes(name)));
+        field_.has_constraint_types |= level == Level::boundary && name.ends_with("setConstraintTypes");
+        if (field_.unread.size() < max_includes) field_.unread.insert(name);
+        return {};
     }
 
     Result<void> include(Scanner& scanner, const std::string& named, bool if_present, Level level, PatchEntry* patch) {
@@ -224,7 +233,14 @@ bool has_no_values(std::string_view type) {
            type.starts_with("cyclic");
 }
 
-/// By name, else by a group, else by the last pattern.
+/// Patches whose type decides what a field is on them, so that caseDicts/setConstraintTypes has an entry for each.
+bool is_constraint(std::string_view type) {
+    return type == "empty" || type == "wedge" || type == "internal" || type == "overset" ||
+           type.starts_with("symmetry") || type.starts_with("processor") || type.starts_with("cyclic") ||
+           type.starts_with("nonConformal") || type == "nonuniformTransformCyclic";
+}
+
+/// By name, else by a group, else by the last pattern. The entries of caseDicts/setConstraintTypes are of groups.
 const PatchEntry* entry_of(const FieldFile& field, const Patch& patch) {
     const PatchEntry *named = nullptr, *grouped = nullptr, *fitting = nullptr;
     for (const PatchEntry& entry : field.patches) {
@@ -232,7 +248,8 @@ const PatchEntry* entry_of(const FieldFile& field, const Patch& patch) {
         else if (std::ranges::find(patch.groups, entry.key) != patch.groups.end()) grouped = &entry;
         else if (entry.pattern && fits_pattern(entry.key, patch.name)) fitting = &entry;
     }
-    return named ? named : grouped ? grouped : fitting;
+    if (named || grouped) return named ? named : grouped;
+    return field.has_constraint_types && is_constraint(patch.type) ? nullptr : fitting;
 }
 
 } // namespace

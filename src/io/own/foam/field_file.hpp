@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct FieldFile {
     std::size_t components = 1;
     std::optional<Values> inside;
     std::vector<PatchEntry> patches;
-    bool has_unread = false; ///< it includes files of an OpenFOAM installation
+    std::set<std::string> unread;      ///< files of an OpenFOAM installation that it includes
+    bool has_constraint_types = false; ///< among these, entries without values for all constraint patches
 };
 
 /// `most`   as many tuples as a list may repeat one value for

@@ -72,7 +72,7 @@ public:
         for (const Part& part : whole_.parts)
             if (auto added = add(part); !added) return added.error();
         CaseField out;
-        out.has_unread = has_unread_;
+        out.unread = std::move(unread_);
         if (of_points_) {
             out.points = array_of(std::move(values_));
             return out;
@@ -97,7 +97,7 @@ private:
             return broken(file->path, fmt::format("is of class {}, but {} in the first part",
                                                   in_quotes(file->header.type), in_quotes(type_)));
         single_ = single_ && file->header.single;
-        has_unread_ = has_unread_ || file->has_unread;
+        unread_.merge(file->unread);
         if (auto placed = place(part, *file); !placed) return placed;
         if (!of_points_ && request_.points) return keep_patches(part, *file);
         return {};
@@ -205,7 +205,8 @@ private:
     const FieldRequest& request_;
     std::string type_;
     std::size_t components_ = 1;
-    bool of_points_ = false, single_ = true, has_unread_ = false;
+    bool of_points_ = false, single_ = true;
+    std::set<std::string> unread_;
     std::vector<double> values_;
     std::vector<std::pair<const Patch*, Values>> patches_;
 };

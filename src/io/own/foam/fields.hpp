@@ -2,6 +2,7 @@
 // Fields of a case on its cells, and at its points.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include <isotet/grid.hpp>
@@ -22,7 +23,7 @@ struct FieldRequest {
 /// What was read; an array is empty where it was not asked for.
 struct CaseField {
     Array cells, points;
-    bool has_unread = false;
+    std::set<std::string> unread; ///< files of an OpenFOAM installation that its files include
 };
 
 /// Reads a field of all parts. A point of a patch with known values has the mean of these over the faces around it,
