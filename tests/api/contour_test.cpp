@@ -66,7 +66,7 @@ TEST(Contour, ExtractsDirectlyForAFewSurfacesAndPacksForMany) {
 
 TEST(Contour, TellsWhichCellTypesItContours) {
     for (int type = 0; type < 256; ++type) {
-        const bool contoured = (type >= 10 && type <= 14) || type == 42;
+        const bool contoured = (type >= 10 && type <= 16) || type == 42;
         EXPECT_EQ(Contour::contours(static_cast<std::uint8_t>(type)), contoured) << type;
     }
 }
