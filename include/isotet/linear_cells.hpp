@@ -50,7 +50,7 @@ struct RefinedPoints {
 /// What became of quadratic cells.
 struct RefinementReport {
     std::uint64_t curved_cells = 0;     ///< cells of degree 2 and above that were handled
-    std::uint64_t unknown_cells = 0;    ///< pyramids of degree 3 and above, cells above degree 10: left out
+    std::uint64_t unknown_cells = 0;    ///< Bezier pyramids, cells above degree 10: left out
     std::uint64_t left_out = 0;         ///< all cells that were left out, those of two dimensions too
     std::uint64_t quadratic_tets = 0;   ///< what all cells are split into
     std::uint64_t not_finite = 0;       ///< of these: dropped, for a node without a finite value
@@ -157,7 +157,7 @@ ISOTET_API Result<std::vector<double>> relative_volumes(const Grid& grid, const 
 ///   open            left out: type 0 (empty), without corners
 ///
 /// Where some cells are quadratic, all cells become tets, each edge with a node bisected once, and cells that cannot be
-/// contoured are gone: VTK's types 24 to 27, 29, 31 to 33, 37, and 71 to 74 of order 1 and 2. Those of 71 to 73 up to degree
+/// contoured are gone: VTK's types 24 to 27, 29, 31 to 33, 37, and 71 to 74 of order 1 and 2. Those of 71 to 74 up to degree
 /// 10, and 78 to 80 (Bezier), are quadratic cells on their lattice first, with derived points. Others of degree 2 and above
 /// are left out.
 ///

@@ -10,8 +10,9 @@ from . import _isotet
 # VTK's numbers of meshio's cell types. Those that are not contoured are left out by isotet, which counts them.
 _VTK_TYPES = {
     "vertex": 1, "line": 3, "triangle": 5, "polygon": 7, "quad": 9, "tetra": 10, "hexahedron": 12, "wedge": 13,
-    "pyramid": 14, "line3": 21, "triangle6": 22, "quad8": 23, "tetra10": 24, "hexahedron20": 25, "wedge15": 26,
-    "pyramid13": 27, "quad9": 28, "hexahedron27": 29, "wedge18": 32, "hexahedron24": 33, "triangle7": 34, "line4": 35,
+    "pyramid": 14, "penta_prism": 15, "hexa_prism": 16, "line3": 21, "triangle6": 22, "quad8": 23, "tetra10": 24,
+    "hexahedron20": 25, "wedge15": 26, "pyramid13": 27, "quad9": 28, "hexahedron27": 29, "wedge18": 32, "hexahedron24": 33,
+    "triangle7": 34, "line4": 35,
 }  # fmt: skip
 _TYPE_OF_CORNERS = {4: 10, 8: 12, 6: 13, 5: 14}
 

@@ -31,6 +31,9 @@ constexpr std::array<SchemeEdge, 12> vtk_hexahedron_edges{
     {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6}, {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 constexpr std::array<SchemeFace, 6> vtk_hexahedron_faces{
     {{4, {0, 3, 7, 4}}, {4, {1, 2, 6, 5}}, {4, {0, 1, 5, 4}}, {4, {3, 2, 6, 7}}, {4, {0, 1, 2, 3}}, {4, {4, 5, 6, 7}}}};
+constexpr std::array<SchemeEdge, 8> vtk_pyramid_edges{{{0, 1}, {1, 2}, {3, 2}, {0, 3}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}};
+constexpr std::array<SchemeFace, 5> vtk_pyramid_faces{
+    {{4, {0, 1, 2, 3}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}}};
 constexpr std::array<SchemeEdge, 6> gmsh_tet_edges{{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
 constexpr std::array<SchemeFace, 4> gmsh_tet_faces{{{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {0, 3, 2}}, {3, {3, 1, 2}}}};
 constexpr std::array<SchemeEdge, 9> gmsh_wedge_edges{
@@ -41,6 +44,10 @@ constexpr std::array<SchemeEdge, 12> gmsh_hexahedron_edges{
     {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}}};
 constexpr std::array<SchemeFace, 6> gmsh_hexahedron_faces{
     {{4, {0, 3, 2, 1}}, {4, {0, 1, 5, 4}}, {4, {0, 4, 7, 3}}, {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {4, 5, 6, 7}}}};
+constexpr std::array<SchemeEdge, 8> gmsh_pyramid_edges{
+    {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}};
+constexpr std::array<SchemeFace, 5> gmsh_pyramid_faces{
+    {{3, {0, 1, 4}}, {3, {3, 0, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {4, {0, 3, 2, 1}}}};
 
 NodeScheme scheme_of(CellKind kind, NodeOrder order) {
     const bool gmsh = order == NodeOrder::gmsh;
@@ -52,6 +59,8 @@ NodeScheme scheme_of(CellKind kind, NodeOrder order) {
         if (gmsh) return {gmsh_wedge_edges, gmsh_wedge_faces, true, true};
         return {vtk_wedge_edges, vtk_wedge_faces, false, false};
     case CellKind::pyramid:
+        if (gmsh) return {gmsh_pyramid_edges, gmsh_pyramid_faces, true, true};
+        return {vtk_pyramid_edges, vtk_pyramid_faces, true, false};
     case CellKind::hexahedron: break;
     }
     if (gmsh) return {gmsh_hexahedron_edges, gmsh_hexahedron_faces, true, true};
@@ -60,11 +69,13 @@ NodeScheme scheme_of(CellKind kind, NodeOrder order) {
 
 std::span<const LatticePlace> unit_corners(CellKind kind) {
     static constexpr std::array<LatticePlace, 4> tet{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    static constexpr std::array<LatticePlace, 5> pyramid{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}};
     static constexpr std::array<LatticePlace, 6> wedge{
         {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
     static constexpr std::array<LatticePlace, 8> hexahedron{
         {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
     if (kind == CellKind::tetrahedron) return tet;
+    if (kind == CellKind::pyramid) return pyramid;
     if (kind == CellKind::wedge) return wedge;
     return hexahedron;
 }
@@ -129,7 +140,13 @@ void add_inside(CellKind kind, int degree, NodeOrder order, std::vector<LatticeP
                 for (int x = 1; x < degree; ++x) out.push_back(place_at(x, y, z));
         return;
     }
-    const int inside = degree - (kind == CellKind::tetrahedron ? 4 : 2);
+    if (kind == CellKind::pyramid && order == NodeOrder::vtk) {
+        for (int z = 1; z < degree; ++z)
+            for (int y = 1; y < degree - z; ++y)
+                for (int x = 1; x < degree - z; ++x) out.push_back(place_at(x, y, z));
+        return;
+    }
+    const int inside = degree - (kind == CellKind::tetrahedron ? 4 : kind == CellKind::pyramid ? 3 : 2);
     if (inside == 0) out.push_back({1, 1, 1});
     if (inside < 1) return;
     for (const LatticePlace& p : nodes_of_degree(kind, static_cast<unsigned>(inside), order))

@@ -13,17 +13,22 @@
 namespace isotet::core {
 
 /// A place on the lattice of a cell of degree p: three numbers from 0 to p. Corner 1 of every kind is at (p, 0, 0). The
-/// numbers of a tetrahedron have a sum of at most p, and so have the first two of a wedge.
+/// numbers of a tetrahedron have a sum of at most p, and so have the first two of a wedge; in a pyramid, whose apex is
+/// at (0, 0, p), each of the first two has such a sum with the third.
 using LatticePlace = std::array<std::uint16_t, 3>;
 
 enum class NodeOrder : std::uint8_t { vtk, gmsh };
 
 inline constexpr unsigned max_degree = 10;
 
-/// The nodes of a tetrahedron, wedge or hexahedron, in order. `degree` from 1 to max_degree.
+/// The nodes of a cell, in order. `degree` from 1 to max_degree.
+///
+/// VTK has no Lagrange pyramids. `vtk` follows its other cells: corners; edges 01, 12, 32, 03, 04, 14, 24, 34; the
+/// inside of the base row by row, as of a quadrilateral 0123; of the triangles 014, 124, 234, 304, as of Lagrange
+/// triangles; the inside layer by layer from the base, row by row.
 ISOTET_API std::vector<LatticePlace> nodes_of_degree(CellKind kind, unsigned degree, NodeOrder order);
 
-/// Their number. Pyramids, too: layers of squares.
+/// Their number.
 constexpr std::uint64_t node_count(CellKind kind, std::uint64_t degree) {
     const std::uint64_t n = degree + 1;
     switch (kind) {

@@ -107,15 +107,14 @@ struct HighDegree {
     auto operator<=>(const HighDegree&) const = default;
 };
 
-/// Lagrange cells of degree 3 to core::max_degree, Bezier cells from degree 1 on. Pyramids have no order of nodes that
-/// programs agree on.
+/// Lagrange cells of degree 3 to core::max_degree, Bezier cells from degree 1 on. No program defines Bezier pyramids.
 constexpr std::optional<HighDegree> high_degree_of(std::uint8_t type, std::uint64_t nodes) {
     constexpr std::uint8_t first_bezier = 78;
-    constexpr std::array<core::CellKind, 3> kinds{core::CellKind::tetrahedron, core::CellKind::hexahedron,
-                                                  core::CellKind::wedge};
+    constexpr std::array<core::CellKind, 4> kinds{core::CellKind::tetrahedron, core::CellKind::hexahedron,
+                                                  core::CellKind::wedge, core::CellKind::pyramid};
     const bool bezier = type >= first_bezier;
     const std::uint8_t first = bezier ? first_bezier : first_lagrange;
-    if (type < first || type - first > 2) return std::nullopt;
+    if (type < first || type - first > (bezier ? 2 : 3)) return std::nullopt;
     const core::CellKind kind = kinds[static_cast<std::size_t>(type - first)];
     const unsigned degree = core::degree_of(kind, nodes);
     if (degree < (bezier ? 1U : 3U)) return std::nullopt;

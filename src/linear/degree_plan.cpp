@@ -2,9 +2,11 @@
 #include <array>
 #include <cstdlib>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "linear/high_degree.hpp"
+#include "linear/pyramid_weights.hpp"
 
 namespace isotet::linear {
 
@@ -43,6 +45,26 @@ double line_weight(Whole node, Whole at, Whole p, Whole l, bool bezier) {
     return simplex_weight(std::array{p - node, node}, std::array{l - at, at}, p, l, bezier);
 }
 
+/// On a face of a pyramid: of the face alone, as in the cell beside it.
+double pyramid_face_weight(Whole p, const core::LatticePlace& n, const core::LatticePlace& x, Whole l) {
+    const auto triangle = [&](bool has_node, std::size_t axis) {
+        if (!has_node) return 0.0;
+        return simplex_weight(std::array<Whole, 3>{p - n[axis] - n[2], n[axis], n[2]},
+                              std::array<Whole, 3>{l - x[axis] - x[2], x[axis], x[2]}, p, l, false);
+    };
+    if (x[2] == 0) return n[2] == 0 ? line_weight(n[0], x[0], p, l, false) * line_weight(n[1], x[1], p, l, false) : 0;
+    for (const std::size_t axis : {0, 1}) {
+        const std::size_t along = 1 - axis;
+        if (x[axis] == 0) return triangle(n[axis] == 0, along);
+        if (x[axis] + x[2] == l) return triangle(n[axis] + n[2] == p, along);
+    }
+    return 0;
+}
+
+bool is_inside_pyramid(const core::LatticePlace& x, int l) {
+    return x[0] > 0 && x[1] > 0 && x[2] > 0 && x[0] + x[2] < l && x[1] + x[2] < l;
+}
+
 double node_weight(const HighDegree& cell, const core::LatticePlace& n, const core::LatticePlace& x, Whole l) {
     const Whole p = cell.degree;
     switch (cell.kind) {
@@ -53,7 +75,7 @@ double node_weight(const HighDegree& cell, const core::LatticePlace& n, const co
         return simplex_weight(std::array<Whole, 3>{p - n[0] - n[1], n[0], n[1]},
                               std::array<Whole, 3>{l - x[0] - x[1], x[0], x[1]}, p, l, cell.bezier) *
                line_weight(n[2], x[2], p, l, cell.bezier);
-    case core::CellKind::pyramid:
+    case core::CellKind::pyramid: return pyramid_face_weight(p, n, x, l);
     case core::CellKind::hexahedron: break;
     }
     return line_weight(n[0], x[0], p, l, cell.bezier) * line_weight(n[1], x[1], p, l, cell.bezier) *
@@ -99,10 +121,23 @@ private:
         if (!row.empty()) return index;
         const core::LatticePlace at{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                                     static_cast<std::uint16_t>(z)};
+        std::vector<double> weights(nodes_.size());
+        if (cell_.kind == core::CellKind::pyramid && is_inside_pyramid(at, fine_)) weights = weights_inside(at);
+        else
+            for (std::size_t i = 0; i < nodes_.size(); ++i) weights[i] = node_weight(cell_, nodes_[i], at, fine_);
         for (std::size_t i = 0; i < nodes_.size(); ++i)
-            if (const double weight = node_weight(cell_, nodes_[i], at, fine_); weight != 0)
-                row.emplace_back(static_cast<std::uint16_t>(i), weight);
+            if (weights[i] != 0) row.emplace_back(static_cast<std::uint16_t>(i), weights[i]);
         return index;
+    }
+
+    std::vector<double> weights_inside(const core::LatticePlace& at) {
+        if (cell_.degree % 2) {
+            if (!inside_) inside_.emplace(cell_.degree);
+            return inside_->at(at, static_cast<unsigned>(fine_));
+        }
+        std::vector<double> weights(nodes_.size());
+        for (std::size_t i = 0; i < nodes_.size(); ++i) weights[i] = nodes_[i] == at;
+        return weights;
     }
 
     void add_cells(const Coarse& at) {
@@ -113,7 +148,7 @@ private:
             if (flat < along_) add_shape(at, 1, 32);
             if (flat < along_ - 1) add_shape({at[0] + 1, at[1] + 1, at[2]}, -1, 32);
             return;
-        case core::CellKind::pyramid:
+        case core::CellKind::pyramid: return add_pyramids(at);
         case core::CellKind::hexahedron: break;
         }
         add_shape(at, 1, 29);
@@ -140,6 +175,30 @@ private:
         if (level < along_ - 2) add_tet({corner(1, 1, 1), corner(0, 1, 1), corner(1, 0, 1), corner(1, 1, 0)});
     }
 
+    /// A pyramid, one upside down between four such, and tets between two: as far as they lie in the cell.
+    void add_pyramids(const Coarse& at) {
+        const auto corner = [&](int x, int y, int z) { return Coarse{at[0] + x, at[1] + y, at[2] + z}; };
+        const int left = along_ - at[2];
+        const bool x_first = at[0] < left, x_again = at[0] < left - 1, y_first = at[1] < left,
+                   y_again = at[1] < left - 1;
+        if (x_first && y_first)
+            add_pyramid({corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0), corner(0, 0, 1)});
+        if (x_again && y_again)
+            add_pyramid({corner(0, 0, 1), corner(0, 1, 1), corner(1, 1, 1), corner(1, 0, 1), corner(1, 1, 0)});
+        if (x_again && y_first) add_tet({corner(1, 0, 0), corner(1, 1, 0), corner(0, 0, 1), corner(1, 0, 1)});
+        if (x_first && y_again) add_tet({corner(0, 1, 0), corner(1, 1, 0), corner(0, 0, 1), corner(0, 1, 1)});
+    }
+
+    void add_pyramid(const std::array<Coarse, 5>& c) {
+        DegreePlan::Cell cell{74, {}};
+        for (const Coarse& corner : c) cell.places.push_back(between(corner, corner));
+        for (const auto& [a, b] : quadratic_edges(core::CellKind::pyramid)) cell.places.push_back(between(c[a], c[b]));
+        cell.places.push_back(between(c[0], c[2]));
+        plan_.cells.push_back(std::move(cell));
+    }
+
+    std::uint32_t between(const Coarse& a, const Coarse& b) { return place(a[0] + b[0], a[1] + b[1], a[2] + b[2]); }
+
     void add_tet(std::array<Coarse, 4> c) {
         std::array<Coarse, 3> e{};
         for (std::size_t i = 0; i < 3; ++i)
@@ -148,18 +207,17 @@ private:
                            e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
                            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
         if (volume < 0) std::swap(c[2], c[3]);
-        const auto between = [&](std::size_t a, std::size_t b) {
-            return place(c[a][0] + c[b][0], c[a][1] + c[b][1], c[a][2] + c[b][2]);
-        };
         DegreePlan::Cell cell{24, {}};
-        for (std::size_t i = 0; i < 4; ++i) cell.places.push_back(between(i, i));
-        for (const auto& [a, b] : quadratic_edges(core::CellKind::tetrahedron)) cell.places.push_back(between(a, b));
+        for (const Coarse& corner : c) cell.places.push_back(between(corner, corner));
+        for (const auto& [a, b] : quadratic_edges(core::CellKind::tetrahedron))
+            cell.places.push_back(between(c[a], c[b]));
         plan_.cells.push_back(std::move(cell));
     }
 
     HighDegree cell_;
     int along_, fine_;
     std::vector<core::LatticePlace> nodes_;
+    std::optional<PyramidWeights> inside_;
     DegreePlan plan_;
 };
 

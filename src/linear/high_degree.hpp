@@ -29,7 +29,7 @@ struct DegreePlan {
     std::vector<Cell> cells;
 };
 
-/// Weights are rational numbers, rounded once: the same for both cells of a face.
+/// Weights on faces are rational numbers, rounded once: the same for both cells of a face.
 DegreePlan plan_of(const HighDegree& cell);
 
 /// One cell at a time.

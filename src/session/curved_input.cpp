@@ -60,7 +60,7 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
                                   report.not_finite, report.quadratic_tets));
     if (report.unknown_cells > 0)
         out.push_back(fmt::format(
-            "{} curved cells were left out: pyramids of degree 3 and above and cells above degree 10 are not handled",
+            "{} curved cells were left out: Bezier pyramids and cells above degree 10 are not handled",
             report.unknown_cells));
     return out;
 }

@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // Lagrange cells of degree 3 and above, and Bezier cells.
+#include <span>
+
 #include <gtest/gtest.h>
 
 #include <isotet/check.hpp>
@@ -8,6 +10,7 @@
 
 #include "core/node_order.hpp"
 #include "linear/curved_grid.hpp"
+#include "linear/pyramid_weights.hpp"
 
 namespace isotet::test {
 namespace {
@@ -23,7 +26,15 @@ struct KindOfDegree {
 
 const std::vector<KindOfDegree> kinds{{"kuhn", CellKind::tetrahedron, 10, 71, 78},
                                       {"hex", CellKind::hexahedron, 12, 72, 79},
-                                      {"wedge", CellKind::wedge, 13, 73, 80}};
+                                      {"wedge", CellKind::wedge, 13, 73, 80},
+                                      {"pyramid", CellKind::pyramid, 14, 74, 0}};
+
+/// Grids of one kind, and of all.
+const std::vector<std::string> shapes{"kuhn", "hex", "wedge", "pyramid", "mixed"};
+
+const KindOfDegree& kind_of_type(std::uint8_t linear_type) {
+    return *std::ranges::find(kinds, static_cast<int>(linear_type), &KindOfDegree::linear);
+}
 
 /// The weights of a linear cell's corners.
 std::vector<double> corner_weights(CellKind kind, const core::LatticePlace& node, unsigned degree) {
@@ -31,27 +42,36 @@ std::vector<double> corner_weights(CellKind kind, const core::LatticePlace& node
     if (kind == CellKind::tetrahedron) return {1 - u - v - w, u, v, w};
     if (kind == CellKind::wedge)
         return {(1 - u - v) * (1 - w), u * (1 - w), v * (1 - w), (1 - u - v) * w, u * w, v * w};
+    if (kind == CellKind::pyramid) {
+        const double a = w < 1 ? u / (1 - w) : 0, b = w < 1 ? v / (1 - w) : 0;
+        return {(1 - a) * (1 - b) * (1 - w), a * (1 - b) * (1 - w), a * b * (1 - w), (1 - a) * b * (1 - w), w};
+    }
     return {(1 - u) * (1 - v) * (1 - w), u * (1 - v) * (1 - w), u * v * (1 - w), (1 - u) * v * (1 - w),
             (1 - u) * (1 - v) * w,       u * (1 - v) * w,       u * v * w,       (1 - u) * v * w};
 }
 
 /// A made grid with cells of a degree; nodes at one place are one. Numbers of points are shuffled.
-CurvedGrid grid_of_degree(const KindOfDegree& kind, unsigned degree, bool bezier,
+CurvedGrid grid_of_degree(const std::string& shape, unsigned degree, bool bezier,
                           const std::function<double(At)>& field, const std::function<At(At)>& warp = {}) {
-    const Grid linear = make_grid({kind.shape, 2, {"sphere"}, 3}).value();
-    const auto nodes = core::nodes_of_degree(kind.kind, degree, core::NodeOrder::vtk);
-    const std::size_t corners = core::corner_count(kind.kind);
+    const Grid linear = make_grid({shape, 2, {"sphere"}, 3}).value();
     std::map<std::array<std::int64_t, 3>, std::size_t> known;
     std::vector<At> at;
     std::vector<std::size_t> cells;
-    for (std::size_t c = 0; c < linear.cells.count(); ++c)
-        for (const auto& node : nodes) {
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::uint8_t> types;
+    std::size_t first = 0;
+    for (std::size_t c = 0; c < linear.cells.count(); ++c) {
+        const Cells& all = linear.cells;
+        const KindOfDegree& kind = kind_of_type(all.types.empty() ? static_cast<std::uint8_t>(all.uniform_type)
+                                                                  : all.types.as<std::uint8_t>()[c]);
+        const std::size_t corners = core::corner_count(kind.kind);
+        for (const auto& node : core::nodes_of_degree(kind.kind, degree, core::NodeOrder::vtk)) {
             const auto weights = corner_weights(kind.kind, node, degree);
             At place{};
             std::array<std::int64_t, 3> key{};
             for (std::size_t k = 0; k < 3; ++k) {
                 for (std::size_t i = 0; i < corners; ++i) {
-                    const auto point = static_cast<std::size_t>(linear.cells.connectivity.at(c * corners + i));
+                    const auto point = static_cast<std::size_t>(all.connectivity.at(first + i));
                     place[k] += weights[i] * linear.points.at(point, k);
                 }
                 key[k] = std::llround(place[k] * 1e7);
@@ -60,6 +80,10 @@ CurvedGrid grid_of_degree(const KindOfDegree& kind, unsigned degree, bool bezier
             if (is_new) at.push_back(place);
             cells.push_back(found->second);
         }
+        first += corners;
+        offsets.push_back(static_cast<std::int64_t>(cells.size()));
+        types.push_back(bezier ? kind.bezier : kind.lagrange);
+    }
     std::vector<std::size_t> number(at.size());
     std::iota(number.begin(), number.end(), 0);
     std::ranges::shuffle(number, std::mt19937(degree));
@@ -68,18 +92,13 @@ CurvedGrid grid_of_degree(const KindOfDegree& kind, unsigned degree, bool bezier
         std::ranges::copy(warp ? warp(at[i]) : at[i], points.begin() + static_cast<std::ptrdiff_t>(3 * number[i]));
         values[number[i]] = field(at[i]);
     }
-    std::vector<std::int64_t> connectivity, offsets{0};
-    for (std::size_t c = 0; c < linear.cells.count(); ++c) {
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-            connectivity.push_back(static_cast<std::int64_t>(number[cells[c * nodes.size() + i]]));
-        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-    }
+    std::vector<std::int64_t> connectivity;
+    for (const std::size_t node : cells) connectivity.push_back(static_cast<std::int64_t>(number[node]));
     CurvedGrid out;
     out.grid.points = Array::own(std::move(points), 3);
     out.grid.cells.connectivity = Array::own(std::move(connectivity));
     out.grid.cells.offsets = Array::own(std::move(offsets));
-    out.grid.cells.types =
-        Array::own(std::vector<std::uint8_t>(linear.cells.count(), bezier ? kind.bezier : kind.lagrange));
+    out.grid.cells.types = Array::own(std::move(types));
     out.field = {"f", Array::own(std::move(values)), false, {}};
     return out;
 }
@@ -122,10 +141,10 @@ void expect_closed(const LinearGrid& linear, const std::string& what) {
 }
 
 TEST(HighDegree, KeepsQuadraticFieldsAndNeighboursTogether) {
-    for (const KindOfDegree& kind : kinds)
+    for (const std::string& shape : shapes)
         for (const unsigned degree : {3u, 4u, 5u}) {
-            const std::string what = kind.shape + " " + std::to_string(degree);
-            const CurvedGrid made = grid_of_degree(kind, degree, false, quadric);
+            const std::string what = shape + " " + std::to_string(degree);
+            const CurvedGrid made = grid_of_degree(shape, degree, false, quadric);
             const LinearGrid linear = refine(made.grid, made.field, {.tolerance = 0.05}).value();
             EXPECT_EQ(linear.refinement.curved_cells, made.grid.cells.count()) << what;
             EXPECT_EQ(linear.refinement.left_out, 0u) << what;
@@ -136,27 +155,29 @@ TEST(HighDegree, KeepsQuadraticFieldsAndNeighboursTogether) {
 }
 
 TEST(HighDegree, EvaluatesCubicFieldsAtThePlacesOfTheSplit) {
-    for (const KindOfDegree& kind : kinds)
+    for (const std::string& shape : shapes)
         for (const unsigned degree : {3u, 5u, 6u, 7u}) {
-            const CurvedGrid made = grid_of_degree(kind, degree, false, cubic);
+            const CurvedGrid made = grid_of_degree(shape, degree, false, cubic);
             const LinearGrid linear = linearize(made.grid).value();
             EXPECT_EQ(linear.derived.count() > 0, degree % 2 == 1);
-            expect_field(linear, made.field.values, cubic, kind.shape + " " + std::to_string(degree));
+            expect_field(linear, made.field.values, cubic, shape + " " + std::to_string(degree));
+            expect_closed(linear, shape + " " + std::to_string(degree));
         }
 }
 
 TEST(HighDegree, HasOneSurfaceWithoutHolesWhereFacesAreCurved) {
-    for (const KindOfDegree& kind : kinds)
+    for (const std::string& shape : shapes)
         for (const bool bezier : {false, true}) {
+            if (bezier && (shape == "pyramid" || shape == "mixed")) continue;
             const CurvedGrid made =
-                grid_of_degree(kind, 3, bezier, [](At p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }, bulge);
+                grid_of_degree(shape, 3, bezier, [](At p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }, bulge);
             ContourOptions options;
             options.refine.emplace();
             options.refine->tolerance = 0.02;
             auto session = Contour::create({made.grid, made.field, {}, {}}, options).value();
             const ContourResult result = session.extract(0.6).value();
-            ASSERT_GT(result.surfaces[0].surface.triangle_count(), 100u) << kind.shape;
-            EXPECT_EQ(check(result.surfaces[0].surface).value().boundary_edges, 0u) << kind.shape << bezier;
+            ASSERT_GT(result.surfaces[0].surface.triangle_count(), 100u) << shape;
+            EXPECT_EQ(check(result.surfaces[0].surface).value().boundary_edges, 0u) << shape << bezier;
         }
 }
 
@@ -185,7 +206,7 @@ CurvedGrid bezier_cell(const KindOfDegree& kind, unsigned degree) {
 
 TEST(HighDegree, TakesBezierNodesAsControlPoints) {
     const auto exact = [](At p) { return p[0] * p[0] - 0.7 * p[0] * p[1] + 0.4 * p[0] * p[2] + p[1] - 0.2; };
-    for (const KindOfDegree& kind : kinds)
+    for (const KindOfDegree& kind : std::span(kinds).first(3))
         for (const unsigned degree : {2u, 3u, 4u, 5u}) {
             const CurvedGrid made = bezier_cell(kind, degree);
             const LinearGrid linear = refine(made.grid, made.field, {.tolerance = 0.01}).value();
@@ -199,8 +220,8 @@ TEST(HighDegree, TakesBezierNodesAsControlPoints) {
         }
 }
 
-TEST(HighDegree, LeavesOutPyramidsAndCountsThem) {
-    CurvedGrid made = grid_of_degree(kinds[1], 3, false, quadric);
+TEST(HighDegree, LeavesOutBezierPyramidsAndCountsThem) {
+    CurvedGrid made = grid_of_degree("hex", 3, false, quadric);
     std::vector<std::uint8_t> types(made.grid.cells.count(), kinds[1].lagrange);
     types[0] = 81;
     made.grid.cells.types = Array::own(std::move(types));
@@ -209,8 +230,57 @@ TEST(HighDegree, LeavesOutPyramidsAndCountsThem) {
     EXPECT_EQ(linear.refinement.curved_cells, made.grid.cells.count() - 1);
 }
 
+TEST(HighDegree, ListsEachNodeOfAPyramidOnce) {
+    for (unsigned degree = 1; degree <= core::max_degree; ++degree)
+        for (const auto order : {core::NodeOrder::vtk, core::NodeOrder::gmsh}) {
+            std::set<core::LatticePlace> places;
+            for (const auto& place : core::nodes_of_degree(CellKind::pyramid, degree, order)) {
+                EXPECT_LE(std::max(place[0], place[1]) + place[2], static_cast<int>(degree));
+                places.insert(place);
+            }
+            EXPECT_EQ(places.size(), core::node_count(CellKind::pyramid, degree)) << degree;
+        }
+}
+
+/// (xy / (1 - z))^(p - m) times a polynomial of degree m.
+double rational(double x, double y, double z, int p, int m) {
+    const double whole = std::pow(x - 0.5 * y + 0.2, m);
+    if (m == p) return whole;
+    return z < 1 ? std::pow(x * y / (1 - z), p - m) * whole : 0;
+}
+
+TEST(HighDegree, EvaluatesPyramidsInTheirSpaceOfRationalFunctions) {
+    for (const unsigned degree : {3u, 5u, 7u, 9u}) {
+        const linear::PyramidWeights inside(degree);
+        const auto nodes = core::nodes_of_degree(CellKind::pyramid, degree, core::NodeOrder::vtk);
+        const unsigned steps = degree + 1;
+        const auto p = static_cast<int>(degree);
+        for (std::uint16_t z = 0; z < steps; ++z)
+            for (std::uint16_t y = 0; y + z <= static_cast<int>(steps); ++y)
+                for (std::uint16_t x = 0; x + z <= static_cast<int>(steps); ++x) {
+                    const std::vector<double> weights = inside.at({x, y, z}, steps);
+                    double sum = 0, on_base = 0;
+                    for (std::size_t i = 0; i < nodes.size(); ++i) {
+                        sum += weights[i];
+                        if (z == 0 && nodes[i][2] > 0) on_base += std::abs(weights[i]);
+                    }
+                    ASSERT_NEAR(sum, 1, 1e-13);
+                    ASSERT_NEAR(on_base, 0, 1e-13) << "the base decides alone";
+                    for (const int m : {0, 1, p - 1, p}) {
+                        double value = 0;
+                        for (std::size_t i = 0; i < nodes.size(); ++i)
+                            value += weights[i] * rational(nodes[i][0] / double(p), nodes[i][1] / double(p),
+                                                           nodes[i][2] / double(p), p, m);
+                        ASSERT_NEAR(value, rational(x / double(steps), y / double(steps), z / double(steps), p, m),
+                                    1e-12)
+                            << degree << " " << m << ": " << x << " " << y << " " << z;
+                    }
+                }
+    }
+}
+
 TEST(HighDegree, NamesTheCellWithAPointThatIsNotThere) {
-    CurvedGrid made = grid_of_degree(kinds[0], 3, false, quadric);
+    CurvedGrid made = grid_of_degree("kuhn", 3, false, quadric);
     std::vector<std::int64_t> connectivity;
     for (std::size_t i = 0; i < made.grid.cells.connectivity.tuples(); ++i)
         connectivity.push_back(static_cast<std::int64_t>(made.grid.cells.connectivity.at(i)));

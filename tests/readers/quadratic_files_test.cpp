@@ -14,6 +14,47 @@
 namespace isotet::test {
 namespace {
 
+/// The mean of corners, each as often as its number says.
+std::string corners_times(std::initializer_list<std::size_t> times) {
+    std::string out;
+    char corner = '0';
+    for (const std::size_t count : times) out += std::string(count, corner++);
+    return out;
+}
+
+/// Pyramids of order 3 and 4: edges, triangles, the base from corner 0 towards 3 and 1, then a smaller pyramid.
+std::vector<CellInFile> gmsh_pyramids() {
+    std::vector<CellInFile> out{{"118", 5, {}}, {"119", 5, {}}};
+    const auto add_node = [](CellInFile& cell, const std::string& corners) { cell.middles.push_back(corners); };
+    for (std::size_t order : {3u, 4u}) {
+        CellInFile& cell = out[order - 3];
+        for (const std::string edge : {"01", "03", "04", "12", "14", "23", "24", "34"})
+            for (std::size_t i = 1; i < order; ++i)
+                add_node(cell, std::string(order - i, edge[0]) + std::string(i, edge[1]));
+        for (const std::string face : {"014", "304", "124", "234"}) {
+            if (order == 3) add_node(cell, face);
+            else
+                for (const char nearest : face) add_node(cell, face + nearest);
+        }
+        const auto add_base = [&](std::size_t to_3, std::size_t to_1) {
+            const std::size_t from_3 = order - to_3, from_1 = order - to_1;
+            add_node(cell, corners_times({from_3 * from_1, from_3 * to_1, to_3 * to_1, to_3 * from_1}));
+        };
+        const std::size_t last = order - 1;
+        for (const auto& [u, v] : {std::pair<std::size_t, std::size_t>{1, 1}, {last, 1}, {last, last}, {1, last}})
+            add_base(u, v);
+        if (order == 3) continue;
+        for (const auto& [u, v] : {std::pair<std::size_t, std::size_t>{2, 1}, {3, 2}, {2, 3}, {1, 2}, {2, 2}})
+            add_base(u, v);
+    }
+    add_node(out[0], "012344");
+    for (const auto& times : {std::array{4, 2, 1, 2}, {2, 4, 2, 1}, {1, 2, 4, 2}, {2, 1, 2, 4}})
+        add_node(out[1], corners_times({std::size_t(times[0]), std::size_t(times[1]), std::size_t(times[2]),
+                                        std::size_t(times[3]), 3}));
+    add_node(out[1], "01234444");
+    return out;
+}
+
 std::vector<CellInFile> gmsh_cells() {
     const std::vector<std::string> tet{"01", "12", "20", "30", "32", "31"},
         hex{"01", "03", "04", "12", "15", "23", "26", "37", "45", "47", "56", "67"},
@@ -23,8 +64,10 @@ std::vector<CellInFile> gmsh_cells() {
     for (const char* face : {"0321", "0154", "0473", "1265", "2376", "4567", "01234567"}) whole.emplace_back(face);
     for (const char* face : {"0143", "0352", "1254"}) square.emplace_back(face);
     based.emplace_back("0123");
-    return {{"11", 4, tet},   {"12", 8, whole},   {"17", 8, hex},  {"13", 6, square},
-            {"18", 6, prism}, {"19", 5, pyramid}, {"14", 5, based}};
+    std::vector<CellInFile> all{{"11", 4, tet},   {"12", 8, whole},   {"17", 8, hex},  {"13", 6, square},
+                                {"18", 6, prism}, {"19", 5, pyramid}, {"14", 5, based}};
+    for (CellInFile& cell : gmsh_pyramids()) all.push_back(std::move(cell));
+    return all;
 }
 
 std::string node_list(std::size_t count, std::size_t from) {

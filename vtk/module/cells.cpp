@@ -64,9 +64,8 @@ void write_faces(vtkUnstructuredGrid* grid, std::vector<std::int64_t>& faces, st
 
 } // namespace
 
-/// Pyramids of degree 3 and above, which isotet leaves out, have the type of those of degree 2.
 bool SharedCells::is_refined(std::uint8_t type) const {
-    return refines_ && isotet::is_curved(type) && type != VTK_LAGRANGE_PYRAMID && type != VTK_BEZIER_PYRAMID;
+    return refines_ && isotet::is_curved(type) && type != VTK_BEZIER_PYRAMID;
 }
 
 bool SharedCells::is_contoured(std::uint8_t type) const { return isotet::Contour::contours(type) || is_refined(type); }

@@ -85,8 +85,8 @@ public:
   /**
    * Above 0: quadratic cells and those of higher degree are refined until the array is within this of their own field, as a
    * share of its range: 0.001 is 0.1 %. 0, the default: vtkContourFilter contours them, in fixed linear pieces. Cells are
-   * refined for each isovalue, in data sets that are no composite ones, on one rank; elsewhere, and pyramids of degree
-   * 3, vtkContourFilter contours them, with a warning.
+   * refined for each isovalue, in data sets that are no composite ones, on one rank; elsewhere, and Bezier pyramids,
+   * vtkContourFilter contours them, with a warning.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, 1.0);
   vtkGetMacro(Tolerance, double);

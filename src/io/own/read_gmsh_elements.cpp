@@ -19,11 +19,9 @@ struct ReorderedType {
     std::size_t nodes; ///< the first so many of all of that degree: those without nodes inside faces have fewer
 };
 
-constexpr std::array<std::uint16_t, 14> pyramid_order{0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13};
-
 std::vector<ReorderedType> reordered_types() {
     using enum core::CellKind;
-    std::vector<ReorderedType> out{{17, hexahedron, 2, 20}, {18, wedge, 2, 15}};
+    std::vector<ReorderedType> out{{17, hexahedron, 2, 20}, {18, wedge, 2, 15}, {19, pyramid, 2, 13}};
     const auto add = [&](std::int32_t number, core::CellKind kind, unsigned degree) {
         out.push_back({number, kind, degree, core::node_count(kind, degree)});
     };
@@ -36,6 +34,8 @@ std::vector<ReorderedType> reordered_types() {
     for (int i = 0; i < 5; ++i) add(106 + i, wedge, 5 + static_cast<unsigned>(i));
     add(12, hexahedron, 2);
     for (int i = 0; i < 7; ++i) add(92 + i, hexahedron, 3 + static_cast<unsigned>(i));
+    add(14, pyramid, 2);
+    for (int i = 0; i < 7; ++i) add(118 + i, pyramid, 3 + static_cast<unsigned>(i));
     return out;
 }
 
@@ -55,8 +55,6 @@ std::span<const std::uint16_t> node_order(std::int32_t number) {
     static const std::map<std::int32_t, std::vector<std::uint16_t>> orders = [] {
         std::map<std::int32_t, std::vector<std::uint16_t>> made;
         for (const ReorderedType& type : reordered_types()) made[type.number] = order_of(type);
-        made[14].assign(pyramid_order.begin(), pyramid_order.end());
-        made[19].assign(pyramid_order.begin(), pyramid_order.end() - 1);
         return made;
     }();
     const auto found = orders.find(number);
@@ -83,6 +81,7 @@ std::optional<ElementType> element_type(std::int32_t number) {
         {71, 71, 84},   {72, 71, 120},  {73, 71, 165},  {74, 71, 220},  {75, 71, 286},  {90, 73, 40},  {91, 73, 75},
         {92, 72, 64},   {93, 72, 125},  {94, 72, 216},  {95, 72, 343},  {96, 72, 512},  {97, 72, 729}, {98, 72, 1000},
         {106, 73, 126}, {107, 73, 196}, {108, 73, 288}, {109, 73, 405}, {110, 73, 550}, {118, 74, 30}, {119, 74, 55},
+        {120, 74, 91},  {121, 74, 140}, {122, 74, 204}, {123, 74, 285}, {124, 74, 385},
     };
     const auto found =
         std::find_if(std::begin(rows), std::end(rows), [&](const Row& row) { return row.number == number; });
