@@ -156,6 +156,28 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(contour.said, [])
         self.assertTrue(corners_of(run(tets).GetOutput()) == corners_of(contour.GetOutput()))
 
+    def test_contours_prisms_of_five_and_six_sides(self):
+        for sides, kind in ((5, 15), (6, 16)):
+            angle = 2 * np.pi / sides * np.arange(sides)
+            ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            points = np.concatenate([np.column_stack([ring, np.full(sides, z)]) for z in (0.0, 1.0)])
+            prism = grid_of(points, np.arange(2 * sides)[None], {"r": points[:, 2]}, kind=kind)
+            contour = run(prism)
+            self.assertEqual(contour.said, [])
+            self.assertAlmostEqual(area_of(contour.GetOutput()), sides / 2 * np.sin(2 * np.pi / sides), places=6)
+
+    def test_refines_lagrange_pyramids(self):
+        base, middle = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([0.5, 0.5, 0])
+        corners = np.concatenate([base, [[0.5, 0.5, 1]]])
+        edges = [(corners[a] + corners[b]) / 2 for a, b in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4))]
+        points = np.concatenate([corners, edges, [middle]])
+        pyramid = grid_of(points, np.arange(14)[None], {"r": points[:, 2] ** 2}, kind=74)
+        contour = start(pyramid, value=0.25)
+        contour.SetTolerance(1e-3)
+        contour.Update()
+        self.assertEqual(contour.said, [])
+        self.assertAlmostEqual(area_of(contour.GetOutput()), 0.25, places=3)
+
 
 def as_polyhedra(tets):
     from vtkmodules.vtkCommonCore import vtkIdList
