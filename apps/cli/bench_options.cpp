@@ -63,17 +63,17 @@ Command add_bench_command(const Command& program, BenchCommand& bench) {
     command
         .add_count(
             "--max-tets", {1000, 1'000'000'000}, [&](std::uint64_t n) { bench.max_tets = n; }, "N",
-            "Largest grid of --paper; without it 5000000")
+            "Largest grid of --paper; default: 5000000")
         .needs(paper);
-    add_field(command, bench.field, "The field to contour; without it the one that varies most").excludes(paper);
+    add_field(command, bench.field, "The field to contour; default: the one that varies most").excludes(paper);
     add_isovalues(command, bench.isovalues).excludes(paper);
     add_list(command, "--methods", bench.methods, all_bench_methods,
-             "Methods, separated by commas; without it all that this machine can");
+             "Methods, separated by commas; default: all that run on this machine");
     add_list(command, "--indexes", bench.indexes, all_search_indexes,
-             "Search indexes, separated by commas; without it none and interval_tree");
+             "Search indexes, separated by commas; default: none and interval_tree");
     command.add_count(
         "--rounds", {1, 1000}, [&](std::uint64_t n) { bench.rounds = n; }, "N",
-        "How often everything is measured; without it 5");
+        "How often everything is measured; default: 5");
     command.set_details(bench_details);
     return command;
 }

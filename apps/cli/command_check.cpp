@@ -61,7 +61,13 @@ std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
     table.row({"area", rounded(report.area)});
     table.row({"volume", report.closed ? rounded(report.volume) : "not closed"});
     const std::string unclean = job.strict ? "sound, but not clean" : "sound";
-    table.row({"verdict", !report.sound ? "not sound" : report.clean ? "sound and clean" : unclean});
+    const bool judges_edges = job.closed || !job.grid.file.empty();
+    table.row({"verdict", (!report.sound  ? "not sound"
+                           : report.clean ? "sound and clean"
+                                          : unclean) +
+                              std::string(report.boundary_edges > 0 && !judges_edges
+                                              ? " (boundary edges are judged with --grid or --closed only)"
+                                              : "")});
     return table.text();
 }
 

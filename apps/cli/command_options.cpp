@@ -119,7 +119,7 @@ command that uses the device says so.
 constexpr const char* view_details = R"(
 Prints one address, and opens it in the browser if there is one on this machine. The page can be reached from this
 machine only, by whoever has the address; from another one through ssh, by a line that is printed where isotet was
-started over ssh. Ctrl-C ends it. Of the keys and the mouse tells ? in the page.
+started over ssh. Ctrl-C ends it. Press ? in the page for its keys and what the mouse does.
 
 Examples:
   isotet view grid.vtu
@@ -133,7 +133,7 @@ void add_common(const Command& command, CommonOptions& common) {
                      "Write the numbers as JSON too; - is standard output, which then has no table");
     command.add_count(
         "-j,--threads", {0, 4096}, [&](std::uint64_t n) { common.threads = static_cast<int>(n); }, "N",
-        "Threads; 0, and without it: all");
+        "Threads; 0 or not given: all");
     const Option quiet = command.add_flag("-q,--quiet", common.quiet, "No table, no notes, no progress: only errors");
     command.add_flag("-v,--verbose", common.verbose, "Say more").excludes(quiet);
 }
@@ -149,7 +149,7 @@ void add_time(const Command& command, GridOptions& grid) {
 
 void add_reading(const Command& command, GridOptions& grid, const std::string& format_option) {
     command.add_text(format_option, grid.format, "FORMAT",
-                     "Format of the grid; without it content decides, then the name");
+                     "Format of the grid; default: content decides, then the name");
     command.add_texts(
         "--block", [&](const std::vector<std::string>& names) { grid.blocks = names; }, "NAME|NUMBER",
         "Read only this block, zone, part or region of the file, by its name or number as info lists them; may be "
@@ -189,7 +189,7 @@ void add_info(const Command& program, InfoCommand& info) {
     const Option chart = command.add_count(
         "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
         "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");
-    add_field(command, info.field, "The field of the chart; without it the one that varies most").needs(chart);
+    add_field(command, info.field, "The field of the chart; default: the one that varies most").needs(chart);
     add_common(command, info.common);
     command.set_details(info_details);
 }
@@ -217,7 +217,7 @@ void add_surface_arrays(const Command& command, ExtractCommand& extract) {
     command.add_texts(
         "--with", [&](const std::vector<std::string>& names) { extract.with = names; }, "FIELD[,...]",
         "Carry these point and cell fields onto the surface, separated by commas; may be repeated; an empty name "
-        "carries none. Without it: point fields that the format can hold");
+        "carries none. Default: point fields that the format can hold");
     command.add_flag(
         "--edge-ends", extract.edge_ends,
         "Write the two grid points of each vertex (edge_ends) and its place between them (edge_weights); .vtp, .vtk");
@@ -307,23 +307,23 @@ void add_render(const Command& program, RenderCommand& render) {
 void add_view(const Command& program, ViewCommand& view) {
     const Command command = program.add_command("view", "Look at isosurfaces in the browser, with a slider");
     command.add_file("FILE", view.grid.file, "FILE", "A grid: a file, or make:SHAPE:SIDE[:FIELDS]").required();
-    add_field(command, view.field, "The field to begin with; without it the one that varies most");
+    add_field(command, view.field, "The field to begin with; default: the one that varies most");
     add_isovalues(command, view.isovalues);
     command.add_text("--color-by", view.color_by, "FIELD", "Colour by this point or cell field to begin with");
     command.add_count(
         "--port", {1, 65535}, [&](std::uint64_t n) { view.port = n; }, "N",
-        "The port of 127.0.0.1 to serve the page at; without it a free one");
+        "The port of 127.0.0.1 to serve the page at; default: a free one");
     command.add_texts(
         "--allow-host",
         [&](const std::vector<std::string>& names) { view.hosts.insert(view.hosts.end(), names.begin(), names.end()); },
         "NAME", "A name by which browsers reach the page, of a proxy say, beside localhost; may be repeated");
     command.add_file(
         "--out", view.out, "FOLDER",
-        "A folder into which the page may save pictures, surfaces and animations, by name; without it none");
+        "A folder into which the page may save pictures, surfaces and animations, by name; default: none");
     command.add_text("--listen", view.listen, "ADDRESS",
                      "Serve at this address of the machine, 0.0.0.0 for all, instead of 127.0.0.1: whoever knows the "
                      "printed address can look, over an open line; or unix:PATH, a socket that only you can open");
-    command.add_flag("--keep", view.keep, "Go on when the last page was closed; without it for a minute");
+    command.add_flag("--keep", view.keep, "Keep running after the last page was closed; default: end after a minute");
     command.add_flag("--no-browser", view.no_browser, "Open no browser: only print the address");
     add_refinement(command, view.refine);
     add_time(command, view.grid);
@@ -361,7 +361,7 @@ void add_check(const Command& program, CheckCommand& check) {
     add_time(command, check.grid);
     command.add_flag("--split-cells", check.split_cells, "The surface was made with --split-cells").needs(grid);
     command.add_flag("--strict", check.strict, "Fail for more: see below");
-    command.add_text("--format", check.format, "FORMAT", "Format of the surface; without it the name decides");
+    command.add_text("--format", check.format, "FORMAT", "Format of the surface; default: the name decides");
     add_reading(command, check.grid, "--grid-format");
     for (const char* name : {"--time", "--step", "--grid-format", "--displace", "--merge-points", "--keep-pieces"}) {
         command.option(name).needs(grid);
@@ -381,9 +381,9 @@ void add_make(const Command& program, MakeCommand& make) {
         .required();
     command.add_words(
         "--fields", [&](const std::vector<std::string>& names) { make.grid.fields = names; }, "A[,B...]",
-        "Fields, separated by commas; without it sphere,gyroid");
+        "Fields, separated by commas; default: sphere,gyroid");
     command.add_count(
-        "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; without it 1");
+        "--seed", {}, [&](std::uint64_t n) { make.grid.seed = n; }, "N", "Seed of what is random; default: 1");
     command.add_file("-o,--output", make.out, "OUT_FILE", "The grid: .vtu or .vtk").required();
     add_compression(command, make.compression, ".vtu");
     add_common(command, make.common);
@@ -449,7 +449,7 @@ void add_device(const Command& command, DeviceChoice& choice) {
             choice.name = name;
         },
         "DEVICE",
-        "The Vulkan device: its number or a part of its name in isotet devices, software, or none; without it the best "
+        "The Vulkan device: its number or a part of its name in isotet devices, software, or none; default: the best "
         "graphics card");
 }
 
@@ -478,7 +478,7 @@ void add_refinement(const Command& command, RefineChoice& refine) {
             (percent ? refine->relative_tolerance : refine->tolerance) = percent ? value / 100 : value;
         },
         "T|P%|nodes",
-        "Quadratic cells: largest error of the field, in its unit or in % of its range, without it 0.1%; nodes splits "
+        "Quadratic cells: largest error of the field, in its unit or in % of its range, default: 0.1%; nodes splits "
         "cells at their nodes, without a bound");
     const auto add_length = [&](const std::string& name, auto set, const char* help) {
         command.add_value(
@@ -502,7 +502,7 @@ void add_refinement(const Command& command, RefineChoice& refine) {
         "the points; in place of --tolerance, or beside it");
     add_length(
         "--geometry-tolerance", [](RefineOptions& options, double value) { options.geometry_tolerance = value; },
-        "Quadratic cells: largest distance of the tets from the curved cells, in the unit of the points; without it a "
+        "Quadratic cells: largest distance of the tets from the curved cells, in the unit of the points; default: a "
         "hundredth of each edge's length");
 }
 
@@ -513,7 +513,7 @@ void add_device_memory(const Command& command, DeviceChoice& choice) {
             choice.memory = parse_bytes(text);
             if (!choice.memory || *choice.memory == 0) refuse_value("--device-memory", text, "bytes, such as 2GB");
         },
-        "BYTES", "Memory of the device to take at most, such as 2GB; without it what is free");
+        "BYTES", "Memory of the device to take at most, such as 2GB; default: what is free");
 }
 
 void add_commands(const Command& program, CommandLine& line) {

@@ -134,8 +134,8 @@ std::string parsed_command(const CLI::App& program) {
     return parsed.empty() ? "" : parsed.back()->get_name();
 }
 
-/// "there is no option '--isovalues'; the nearest is --isovalue"; empty when all options are known. A word that is
-/// missing elsewhere, such as FILE, matters less.
+/// "there is no option '--isovalues'; the nearest is --isovalue", where one is near; empty when all options are known. A word
+/// that is missing elsewhere, such as FILE, matters less.
 std::string unknown_option(const CLI::App& program, const CommandText& command) {
     std::vector<std::string> flags;
     for (const OptionText& option : command.options)
@@ -143,8 +143,18 @@ std::string unknown_option(const CLI::App& program, const CommandText& command) 
     for (const std::string& word : program.remaining(true)) {
         if (word.size() < 2 || word.front() != '-' || word == "--") continue;
         const std::string name = word.substr(0, word.find('='));
-        return fmt::format("there is no option '{}'; the nearest is {}", name, nearest_first(name, flags).front());
+        const std::string nearest = nearest_first(name, flags).front();
+        const bool is_near = name.size() > 3 && nearest.substr(0, 4) == name.substr(0, 4); // "--is"
+        return fmt::format("there is no option '{}'{}", name, is_near ? "; the nearest is " + nearest : "");
     }
+    return {};
+}
+
+/// For numbers that follow a list after a space: "0.2 is one word too many; ...". Empty where it is something else.
+std::string number_too_many(const CLI::App& program) {
+    for (const std::string& word : program.remaining(true))
+        if (parse_number(word))
+            return fmt::format("'{}' is one word too many; several numbers stand in a list, such as -i 0.1,0.2", word);
     return {};
 }
 
@@ -281,8 +291,7 @@ Option Command::add_one_of(const std::string& names, std::vector<std::string> wo
 }
 
 OptionTree::OptionTree(CommandLine& line)
-    : line_(&line),
-      program_(std::make_unique<CLI::App>("Isosurfaces of very large unstructured tetrahedral grids", "isotet")) {
+    : line_(&line), program_(std::make_unique<CLI::App>("Isosurfaces of large unstructured grids", "isotet")) {
     program_->require_subcommand(0, 1);
     add_commands(Command(*program_), line);
 }
@@ -310,7 +319,9 @@ Result<void> OptionTree::parse(const std::vector<std::string>& words) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() >= first_error_code)
             return Error{static_cast<ErrorCode>(error.get_exit_code() - first_error_code), error.what()};
-        const std::string command = parsed_command(*program_), unknown = unknown_option(*program_, describe(command));
+        const std::string command = parsed_command(*program_);
+        std::string unknown = unknown_option(*program_, describe(command));
+        if (unknown.empty()) unknown = number_too_many(*program_);
         return usage_error("{} (isotet{}{} --help lists the options)", unknown.empty() ? error.what() : unknown,
                            command.empty() ? "" : " ", command);
     }

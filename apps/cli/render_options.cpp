@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* render_details = R"(
 FILE is a grid or a surface. With nothing but FILE the field that varies most is taken, with three isovalues between the
-ends of its range (rare values at the ends aside), each in its own colour. FIELD is found as by isotet extract.
+ends of its range (without rare values at the ends), each in its own colour. FIELD is found as by isotet extract.
 
 The picture is as large as possible in its frame, z upwards; +x looks from the end of the x axis. OUT ends in .png;
 without it the picture gets FILE's name, in the current folder. The pictures of --sweep and --orbit are numbered from 1
@@ -43,7 +43,7 @@ void add_size(const Command& command, PictureOptions& picture) {
             picture.width = static_cast<std::uint32_t>(*width);
             picture.height = static_cast<std::uint32_t>(*height);
         },
-        "WxH", "Width and height of the picture in pixels; without it 1200x900");
+        "WxH", "Width and height of the picture in pixels; default: 1200x900");
 }
 
 /// A number from 0 to 1.
@@ -122,14 +122,14 @@ void add_camera(const Command& command, RenderCommand& render) {
         "VIEW",
         "From where one looks: iso, +x, -x, +y, -y, +z, -z, or AZIMUTH,ELEVATION, degrees to the right of the front "
         "and "
-        "upwards; without it iso, obliquely from above");
+        "upwards; default: iso, obliquely from above");
     command.add_value(
         "--up",
         [&render](const std::string& text) {
             render.up = parse_up_axis(text);
             if (!render.up) refuse_value("--up", text, "x, y or z, with a minus where it points downwards");
         },
-        "AXIS", "The axis that points upwards; without it z");
+        "AXIS", "The axis that points upwards; default: z");
     command.add_number(
         "--zoom",
         [&render](double factor) {
@@ -138,7 +138,7 @@ void add_camera(const Command& command, RenderCommand& render) {
         },
         "FACTOR", "Everything so many times as large");
     command.add_choice<bool>("--fit", render.fit_surface, {{"grid", false}, {"surface", true}},
-                             "What fills the picture: the grid, or isosurfaces and slices alone; without it grid");
+                             "What fills the picture: the grid, or isosurfaces and slices alone; default: grid");
     command.add_value(
         "--camera",
         [&render](const std::string& text) {
@@ -195,7 +195,7 @@ void add_cuts(const Command& command, RenderCommand& render) {
         "--normals", render.shade_by,
         {{"vertex", ShadeBy::vertices}, {"gradient", ShadeBy::gradient}, {"face", ShadeBy::faces}},
         "Shade by the mean of the faces around each vertex, by the gradient of the field, or "
-        "each triangle flat; without it vertex");
+        "each triangle flat; default: vertex");
 }
 
 } // namespace
@@ -207,13 +207,13 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     const Option out = command.add_file("OUT", render.out, "OUT_FILE", "The picture, as -o");
     command.add_file("-o,--output", render.out, "OUT_FILE", "The picture, .png; many: {frame} in the name, or .webp")
         .excludes(out);
-    add_field(command, render.field, "The field to contour; without it the one that varies most");
+    add_field(command, render.field, "The field to contour; default: the one that varies most");
     add_centre(command, render.field);
     const Option isovalues = add_isovalues(command, render.isovalues);
     command
         .add_count(
             "--levels", {1, 100}, [&](std::uint64_t n) { render.levels = n; }, "N",
-            "N isovalues at round numbers evenly inside the range of the field; without it 3")
+            "N isovalues at round numbers evenly inside the range of the field; default: 3")
         .excludes(isovalues);
     const Option sweep = command.add_numbers("--sweep", render.sweep, "A,B,N", "N pictures, at isovalues from A to B")
                              .excludes(isovalues);
@@ -229,11 +229,11 @@ Command add_render_command(const Command& program, RenderCommand& render) {
                 refuse_value("--fps", shortest(rate), "pictures a second, above 0 and up to 100");
             render.frames_per_second = rate;
         },
-        "RATE", "Pictures a second of an animated OUT; without it 12");
-    add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; without it 0.1");
+        "RATE", "Pictures a second of an animated OUT; default: 12");
+    add_part(command, "--boundary", render.boundary, "Opacity of the grid's boundary, 0 to 1; default: 0.1");
     command.add_flag("--outline", render.outline, "Draw the edges of the box around");
     add_part(command, "--opacity", render.opacity,
-             "Opacity of the surfaces, 0 to 1; without it 1, and of several isosurfaces 0.35 for those that may hide "
+             "Opacity of the surfaces, 0 to 1; default: 1, and of several isosurfaces 0.35 for those that may hide "
              "others");
     add_size(command, render.picture);
     add_camera(command, render);
@@ -248,25 +248,25 @@ Command add_render_command(const Command& program, RenderCommand& render) {
     for (const DrawMethod method : all_draw_methods) methods.push_back({std::string(name_of(method)), {{}, method}});
     command.add_choice("--method", render.method, methods,
                        "How: auto, direct and clusters extract surfaces, as isotet extract does; the others are "
-                       "earlier methods that draw tets and make no surface, to be compared with; without it auto");
+                       "earlier methods that draw tets and make no surface, to be compared with; default: auto");
     std::vector<std::pair<std::string, std::optional<SearchIndex>>> indexes;
     for (const SearchIndex index : all_search_indexes) indexes.emplace_back(name_of(index), index);
     command.add_choice("--index", render.index, indexes,
                        "Search index that finds the active tets for a method that draws tets, none: it draws all; "
-                       "without it cluster_ranges");
+                       "default: cluster_ranges");
     command.add_text("--color-by", render.color_by, "FIELD",
-                     "Colour by this point or cell field; without it each isovalue has its colour");
+                     "Colour by this point or cell field; default: each isovalue has its colour");
     command.add_choice<ColorMap>("--colormap", render.scale.map,
                                  {{"viridis", ColorMap::viridis},
                                   {"cividis", ColorMap::cividis},
                                   {"plasma", ColorMap::plasma},
                                   {"turbo", ColorMap::turbo},
                                   {"cool-warm", ColorMap::cool_warm}},
-                                 "Colour map; without it viridis");
+                                 "Colour map; default: viridis");
     command.add_numbers("--range", render.range, "A,B",
-                        "Values at the ends of the colour map; without it the smallest and the largest of the field");
+                        "Values at the ends of the colour map; default: the smallest and the largest of the field");
     command.add_flag("--log", render.scale.logarithmic, "Colours follow the logarithm of the values");
-    add_color(command, "--no-data", render.scale.no_data, "Colour where the field has no value; without it gray");
+    add_color(command, "--no-data", render.scale.no_data, "Colour where the field has no value; default: gray");
     const Option reference = command.add_file(
         "--reference", render.reference, "FILE",
         "Compare with this picture (.png); exit status 1 when more pixels differ than --threshold allows");
@@ -279,11 +279,11 @@ Command add_render_command(const Command& program, RenderCommand& render) {
                     refuse_value("--threshold", shortest(share), "a share of the pixels, from 0 to 1");
                 render.threshold = share;
             },
-            "SHARE", "Share of the pixels that may differ visibly from --reference; without it 0.001")
+            "SHARE", "Share of the pixels that may differ visibly from --reference; default: 0.001")
         .needs(reference);
     command.add_flag("--plain", render.plain, "No text: neither scale nor legend nor caption");
     add_color(command, "--background", render.picture.background,
-              "Background: white, black, gray, red, green, blue, transparent, or #rrggbb; without it white");
+              "Background: white, black, gray, red, green, blue, transparent, or #rrggbb; default: white");
     command.set_details(render_details);
     return command;
 }

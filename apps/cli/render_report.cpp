@@ -60,7 +60,7 @@ std::string render_table(const DrawJob& job, const DrawReport& drawn) {
                                                  shortest(report.field.upper))
                                    : input.field});
     }
-    if (report.slice_triangles > 0) table.row({"slices", counted(report.slice_triangles, "triangle")});
+    if (!job.slices.empty()) table.row({"slices", counted(report.slice_triangles, "triangle")});
     if (report.boundary_faces > 0) table.row({"boundary", grouped(report.boundary_faces) + " faces"});
     if (!job.sweep.empty())
         table.row({"isovalues",
@@ -125,7 +125,7 @@ Json render_json(const DrawJob& job, const DrawReport& drawn) {
     report["camera"] = picture.camera;
     report["step"] = input.step ? Json(*input.step) : Json(nullptr);
     report["time"] = input.time ? Json(*input.time) : Json(nullptr);
-    report["slice_triangles"] = made.slice_triangles > 0 ? Json(made.slice_triangles) : Json(nullptr);
+    report["slice_triangles"] = job.slices.empty() ? Json(nullptr) : Json(made.slice_triangles);
     report["device"] = nullptr;
     if (device) report["device"] = {{"name", json_text(device->name)}, {"kind", name_of(device->kind)}};
     report["engine"] = engine_name(input);

@@ -117,10 +117,11 @@ struct SceneReport {
     FieldReport field; ///< of a grid, from the first show() on
     double pack_seconds = 0, boundary_seconds = 0, upload_seconds = 0, extract_seconds = 0;
     std::uint64_t boundary_faces = 0, slice_triangles = 0;
-    bool on_device = false;              ///< the last surfaces were extracted there
-    Method method = Method::direct;      ///< of the last surfaces
-    DeviceWork extract_work;             ///< of the last ones on the device
-    std::optional<TetStoreReport> store; ///< with IsosurfaceOptions::draw
+    std::vector<std::size_t> empty_slices; ///< SceneLook::slices that do not meet the grid
+    bool on_device = false;                ///< the last surfaces were extracted there
+    Method method = Method::direct;        ///< of the last surfaces
+    DeviceWork extract_work;               ///< of the last ones on the device
+    std::optional<TetStoreReport> store;   ///< with IsosurfaceOptions::draw
 };
 
 /// A scene of isosurfaces of one grid, or of one surface. Moving is cheap; it keeps the device open, if it has one.

@@ -61,10 +61,11 @@ struct RefinementReport {
     double geometry_bound = 0;          ///< proven: the tets are nowhere farther from the curved cells
     bool too_fine = false;              ///< an edge could not be bisected any further: bounds may exceed tolerances
     std::vector<double> isovalues;      ///< the only ones that the grid is good for, ascending; empty: all
-    bool too_bent = false; ///< an edge bends strongly at every length, as where a cell folds: it was bisected
-                           ///< to 1/64 of a cell only, and geometry_bound may be large
-    double distance = 0;   ///< with RefineOptions::distance: 99 of 100 tets have a surface not farther from that of the
-                           ///< quadratic field, by estimate: the tet's bound over its gradient
+    bool too_bent = false;       ///< an edge bends strongly at every length, as where a cell folds: it was bisected
+                                 ///< to 1/64 of a cell only, and geometry_bound may be large
+    double wanted_distance = 0;  ///< RefineOptions::distance
+    double distance = 0;         ///< with it: 99 of 100 tets have a surface not farther from that of the
+                                 ///< quadratic field, by estimate: the tet's bound over its gradient
     double largest_distance = 0; ///< the largest of all tets; infinite where the field is flat
 };
 

@@ -178,9 +178,11 @@ private:
         const std::uint64_t points = options_.grid->points.tuples();
         for (std::uint64_t i = 0; i < 2 * mesh_.vertex_count(); ++i)
             if (ends[i] >= points)
-                return Error{ErrorCode::invalid_data,
-                             fmt::format("vertex {} lies on an edge of point {}, but the grid has {} points", i / 2,
-                                         static_cast<std::int64_t>(ends[i]), points)};
+                return Error{
+                    ErrorCode::invalid_data,
+                    fmt::format("vertex {} lies on an edge of point {}, but the grid has {} points: it is not the "
+                                "grid from which the surface was extracted",
+                                i / 2, static_cast<std::int64_t>(ends[i]), points)};
         std::vector<PointSet> sets;
         for (const EdgeUse& edge : lists_.unequal_edges)
             if (const auto set = grid_points<2>({edge.low, edge.high})) sets.push_back(*set);

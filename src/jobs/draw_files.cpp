@@ -50,7 +50,7 @@ Result<Picture> draw_frames(const std::vector<Frame>& frames, const DrawJob& job
         if (i == 0 || next_step || frames[i].isovalues != frames[i - 1].isovalues) {
             if (auto shown = input.scene->show(frames[i].isovalues, caller.run()); !shown) return shown.error();
             caller.notes(input.scene->take_notes());
-            note_empty_surfaces(input, caller);
+            note_what_is_empty(job, input, caller);
         }
         const core::Stopwatch drawing;
         Result<Picture> picture = frame_drawer.draw(input, frames[i].azimuth);

@@ -133,6 +133,11 @@ Error GridSource::no_such_field(const std::string& name) const {
     std::vector<std::string> all;
     for (const FieldInfo& field : info_.fields)
         if (std::ranges::find(all, field.name) == all.end()) all.push_back(field.name);
+    if (const std::size_t colon = name.rfind(':');
+        colon != std::string::npos && std::ranges::find(all, name.substr(0, colon)) != all.end())
+        return {ErrorCode::invalid_argument,
+                fmt::format("field '{}' has no component '{}': components are x, y, z, mag, or numbers from 0",
+                            name.substr(0, colon), name.substr(colon + 1))};
     return {ErrorCode::invalid_argument,
             fmt::format("there is no field '{}': the grid has {}", name,
                         all.empty() ? "none; x, y and z are its coordinates" : quoted_list(nearest_first(name, all)))};

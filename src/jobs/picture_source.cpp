@@ -24,9 +24,7 @@ bool names_isovalues(const DrawJob& job) {
     return !job.isovalues.empty() || job.levels > 0 || !job.sweep.empty() || job.method.draw;
 }
 
-Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field) {
-    if (!job.isovalues.empty()) return job.isovalues;
-    const ValueRange range = typical_range(field.values);
+Result<std::vector<double>> choose_levels(const DrawJob& job, const PointField& field, const ValueRange& range) {
     std::vector<double> levels = evenly_spaced_levels(
         range.lower, range.upper, job.levels > 0 ? job.levels : default_levels, LevelRounding::short_decimals);
     if (!levels.empty()) return levels;
@@ -175,6 +173,24 @@ Result<void> PictureSource::widen_range(const std::string& color, Caller& caller
     return {};
 }
 
+/// What the values of a field mostly lie in, over all steps.
+Result<ValueRange> PictureSource::typical_range_of_steps(const PointField& first, Caller& caller) {
+    ValueRange all = typical_range(first.values);
+    if (steps_.size() < 2) return all;
+    const Result<FoundField> found = choose_field(*source_, {first.name, job_.field.cell_field});
+    if (!found) return found.error();
+    for (std::size_t which = 1; which < steps_.size(); ++which) {
+        const Result<Grid> grid = source_->read({found->point, found->cell}, steps_[which], caller);
+        if (!grid) return grid.error();
+        const Result<PointField> field = find_chosen(*grid, first.name, job_.field, caller);
+        if (!field) return field.error();
+        const ValueRange one = typical_range(field->values);
+        if (!(one.lower <= one.upper)) continue; // no finite value
+        all = all.lower <= all.upper ? ValueRange{std::min(all.lower, one.lower), std::max(all.upper, one.upper)} : one;
+    }
+    return all;
+}
+
 /// A step that was read ahead, or reads it.
 Result<Grid> PictureSource::read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller) {
     const bool is_there = ahead_.valid() && ahead_step_ == step && fields == last_read_;
@@ -270,10 +286,16 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     IsosurfaceOptions options;
     if (contents->field) {
         input.field = contents->field->name;
-        Result<std::vector<double>> levels = choose_levels(job_, *contents->field);
-        if (!levels) return levels.error();
-        input.isovalues = *std::move(levels);
-        if (steps_.size() > 1) job_.isovalues = input.isovalues;
+        if (job_.isovalues.empty()) {
+            const Result<ValueRange> range = typical_range_of_steps(*contents->field, caller);
+            if (!range) return range.error();
+            Result<std::vector<double>> levels = choose_levels(job_, *contents->field, *range);
+            if (!levels) return levels.error();
+            input.isovalues = *std::move(levels);
+            if (steps_.size() > 1) job_.isovalues = input.isovalues;
+        } else {
+            input.isovalues = job_.isovalues;
+        }
         options.field = *contents->field;
     }
     options.grid = contents->grid;

@@ -34,11 +34,12 @@ private:
     Result<DrawInput> take_surface(const std::optional<Device>& device, Caller& caller);
     Result<Contents> read_contents(std::size_t step, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);
+    Result<ValueRange> typical_range_of_steps(const PointField& first, Caller& caller);
     Result<Grid> read_grid(const FieldsToRead& fields, std::size_t step, Caller& caller);
     void read_ahead(std::size_t step, Caller& caller);
     SceneLook look_of(const Contents& contents) const;
 
-    DrawJob job_; ///< with the isovalues and the range of the first step
+    DrawJob job_; ///< with the isovalues and the range of all steps
     std::string surface_format_;
     std::optional<Surface> surface_;
     double surface_seconds_ = 0;

@@ -43,7 +43,9 @@ std::vector<std::string> isovalue_texts(const IsosurfaceScene& scene) {
     return told_apart(isovalues);
 }
 
-void note_empty_surfaces(const DrawInput& input, Caller& caller) {
+void note_what_is_empty(const DrawJob& job, const DrawInput& input, Caller& caller) {
+    for (const std::size_t slice : input.scene->report().empty_slices)
+        caller.note(fmt::format("the slice {} does not meet the grid", plane_text(job.slices[slice])));
     const auto& [field, store] = std::tie(input.scene->report().field, input.scene->report().store);
     for (const ShownSurface& surface : input.scene->surfaces()) {
         if (!surface.isovalue) continue;

@@ -10,7 +10,7 @@ namespace isotet::jobs {
 /// Scale, legend and caption; empty with `plain`.
 Annotation annotation_of(const DrawJob& job, const DrawInput& input);
 
-/// Notes the isovalues that give no surface.
-void note_empty_surfaces(const DrawInput& input, Caller& caller);
+/// Notes the isovalues that give no surface, and slices that do not meet the grid.
+void note_what_is_empty(const DrawJob& job, const DrawInput& input, Caller& caller);
 
 } // namespace isotet::jobs

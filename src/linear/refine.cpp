@@ -174,6 +174,7 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     report.points = out.refined.count();
     report.refined = field != nullptr;
     report.tolerance = tolerance;
+    report.wanted_distance = field ? options.distance : 0;
     report.isovalues = std::move(isovalues);
     out.refinement = std::move(report);
     out.user_points = before.user_points;

@@ -35,9 +35,10 @@ Result<void> IsosurfaceScene::Data::look_around(const Grid& grid, const Run& run
     }
     report.boundary_seconds = looking.seconds();
     const ColorField* colors = look.colors ? &*look.colors : nullptr;
-    for (const Plane& plane : look.slices) {
-        Result<Surface> slice = slice_of(grid, plane, colors, run);
+    for (std::size_t i = 0; i < look.slices.size(); ++i) {
+        Result<Surface> slice = slice_of(grid, look.slices[i], colors, run);
         if (!slice) return slice.error();
+        if (slice->triangle_count() == 0) report.empty_slices.push_back(i);
         report.slice_triangles += slice->triangle_count();
         if (look.edges) edges.push_back(scene::edges_of(*slice));
         slices.push_back(*std::move(slice));

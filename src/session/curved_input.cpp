@@ -42,8 +42,9 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
             report.curved_cells, report.tets, report.field_bound,
             report.tolerance > 0 ? fmt::format(" (asked for {:.3g})", report.tolerance) : "", report.geometry_bound,
             report.distance > 0
-                ? fmt::format(", 99 of 100 surfaces in them within {:.3g} of the quadratic field's, by estimate",
-                              report.distance)
+                ? fmt::format("; in 99 of 100 of them the surface is within {:.3g} of the quadratic field's, by "
+                              "estimate (asked for {:.3g})",
+                              report.distance, report.wanted_distance)
                 : ""));
     else if (report.curved_cells > 0)
         out.push_back(fmt::format("{} curved cells were split at their nodes into {} tets, without a tolerance for the "
@@ -59,9 +60,9 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
         out.push_back(fmt::format("{} of {} quadratic tets were left out: a node has no finite value",
                                   report.not_finite, report.quadratic_tets));
     if (report.unknown_cells > 0)
-        out.push_back(fmt::format(
-            "{} curved cells were left out: Bezier pyramids and cells above degree 10 are not handled",
-            report.unknown_cells));
+        out.push_back(
+            fmt::format("{} curved cells were left out: Bezier pyramids and cells above degree 10 are not handled",
+                        report.unknown_cells));
     return out;
 }
 

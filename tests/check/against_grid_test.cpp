@@ -152,7 +152,8 @@ TEST(CheckAgainstGrid, NamesAnEdgeEndThatTheGridDoesNotHave) {
         ASSERT_FALSE(report);
         EXPECT_EQ(report.error().code, ErrorCode::invalid_data);
         EXPECT_EQ(report.error().message,
-                  "vertex 1 lies on an edge of point " + std::to_string(wrong) + ", but the grid has 7 points");
+                  "vertex 1 lies on an edge of point " + std::to_string(wrong) +
+                      ", but the grid has 7 points: it is not the grid from which the surface was extracted");
     }
 }
 

@@ -2,10 +2,13 @@
 #include <isotet/jobs/draw_files.hpp>
 
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
+#include <isotet/make.hpp>
 #include <isotet/picture_file.hpp>
+#include <isotet/write.hpp>
 
 #include "jobs/listener.hpp"
 #include "support/temporary_folder.hpp"
@@ -89,6 +92,41 @@ TEST(DrawFiles, NotesIsovaluesWithoutASurface) {
     ASSERT_EQ(listener.noted.size(), 1u);
     EXPECT_TRUE(listener.noted[0].starts_with("there is no surface at 9: the values of 'sphere' go from 0 to"))
         << listener.noted[0];
+}
+
+TEST(DrawFiles, NotesSlicesThatMissTheGrid) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture("make:kuhn:4:sphere", folder.file("a.png"));
+    job.slices = {{{1, 0, 0}, 0}, {{1, 0, 0}, 9}};
+    ASSERT_TRUE(draw_files(job, listener));
+    EXPECT_EQ(listener.noted.back(), "the slice x = 9 does not meet the grid");
+}
+
+/// Two time steps: 0 everywhere, then the distance from the middle.
+std::string series_from_zero(const test::TemporaryFolder& folder) {
+    Grid grid = make_grid({"kuhn", 4, {"sphere"}}).value();
+    EXPECT_TRUE(write_grid(grid, folder.file("1.vtu")));
+    grid.point_fields[0].values = Array::own(std::vector<float>(grid.points.tuples()));
+    EXPECT_TRUE(write_grid(grid, folder.file("0.vtu")));
+    std::ofstream(folder.file("run.pvd")) << "<VTKFile type=\"Collection\"><Collection>"
+                                          << "<DataSet timestep=\"0\" file=\"0.vtu\"/>"
+                                          << "<DataSet timestep=\"1\" file=\"1.vtu\"/></Collection></VTKFile>";
+    return folder.file("run.pvd");
+}
+
+TEST(DrawFiles, ChoosesIsovaluesByTheValuesOfAllSteps) {
+    const test::TemporaryFolder folder;
+    Listener listener;
+    DrawJob job = small_picture(series_from_zero(folder), folder.file("t{frame}.png"));
+    job.field.name = "sphere";
+    job.all_steps = true;
+    job.levels = 3;
+    const auto report = draw_files(job, listener);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->pictures.pictures, 2u);
+    EXPECT_EQ(isovalue_texts(*report->input.scene).size(), 3u);
+    for (const ShownSurface& surface : report->input.scene->surfaces()) EXPECT_GT(surface.triangles, 0u);
 }
 
 } // namespace

@@ -118,6 +118,16 @@ TEST(Join, FillsFieldsThatAPieceLacksWithNaN) {
     EXPECT_TRUE(has_note(*result, "\"n\" is in 1 of 2 pieces only"));
 }
 
+TEST(Join, TellsOfAllFieldsThatAPieceLacksAtOnce) {
+    Loaded loaded;
+    for (const double x : {0.0, 5.0}) loaded.pieces.push_back(tetrahedron(x, 1));
+    for (const char* name : {"a", "b"})
+        loaded.pieces[1].grid.point_fields.push_back({name, Array::own(std::vector<float>{1, 2, 3, 4})});
+    const auto result = join(std::move(loaded), false);
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(has_note(*result, "point fields \"a\", \"b\" are in 1 of 2 pieces only"));
+}
+
 TEST(Join, KeepsTheTypeThatAllPiecesHave) {
     Loaded loaded;
     for (const double x : {0.0, 5.0}) {

@@ -3,11 +3,12 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "io/own/escape.hpp"
 #include "io/own/face_streams.hpp"
@@ -238,14 +239,21 @@ Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& colum
     });
 }
 
-void note_column(const Column& column, std::size_t pieces, std::string_view kind, std::vector<std::string>& notes) {
-    if (!column.fits)
-        notes.push_back(
-            fmt::format("{} field \"{}\" has different numbers of components in different pieces and was left out",
-                        kind, escaped(column.name)));
-    else if (column.pieces < pieces)
-        notes.push_back(fmt::format("{} field \"{}\" is in {} of {} pieces only: NaN in the others", kind,
-                                    escaped(column.name), column.pieces, pieces));
+/// What was made of fields that not all pieces have alike; one note for all that are in as many pieces.
+void note_columns(const std::vector<Column>& columns, std::size_t pieces, std::string_view kind,
+                  std::vector<std::string>& notes) {
+    std::map<std::size_t, std::vector<std::string>> in_some; // by pieces
+    for (const Column& column : columns) {
+        if (!column.fits)
+            notes.push_back(
+                fmt::format("{} field \"{}\" has different numbers of components in different pieces and was left out",
+                            kind, escaped(column.name)));
+        else if (column.pieces < pieces) in_some[column.pieces].push_back(fmt::format("\"{}\"", escaped(column.name)));
+    }
+    for (const auto& [count, names] : in_some)
+        notes.push_back(fmt::format("{} field{} {} {} in {} of {} pieces only: NaN in the others", kind,
+                                    names.size() == 1 ? "" : "s", fmt::join(names, ", "),
+                                    names.size() == 1 ? "is" : "are", count, pieces));
 }
 
 /// Points that were joined though their values differ: a field that jumps from piece to piece.
@@ -273,8 +281,9 @@ template <class TuplesOf, class Look>
 std::vector<Field> joined_fields(std::vector<Piece>& pieces, Fields which, std::string_view kind, std::size_t tuples,
                                  const TuplesOf& tuples_of, const Look& look, std::vector<std::string>& notes) {
     std::vector<Field> result;
-    for (const Column& column : columns(pieces, which)) {
-        note_column(column, pieces.size(), kind, notes);
+    const std::vector<Column> all = columns(pieces, which);
+    note_columns(all, pieces.size(), kind, notes);
+    for (const Column& column : all) {
         if (column.fits) {
             result.push_back({column.name, joined_field(pieces, which, column, tuples, tuples_of)});
             look(result.back());

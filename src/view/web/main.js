@@ -147,8 +147,8 @@ function tellFacts() {
   if (triangles === 0 && first) parts[0] = 'no triangles at this value';
   const {picture} = frame;
   if (picture) parts.push(`drawn by the server (${serverDraws() || 'until now'}): ${picture.type === 'image/png' ? 'exact' : 'while it moves'}, ${picture.width} × ${picture.height}`);
-  parts.push(`extract ${format.duration(frame.extract_ms)}`, `${picture ? 'draw and code' : 'code'} ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
-    `${picture ? 'show' : 'draw'} ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} after the hand`);
+  parts.push(`extract ${format.duration(frame.extract_ms)}`, `${picture ? 'draw and encode' : 'encode'} ${format.duration(frame.mesh_ms)}`, format.bytes(frame.bytes),
+    `${picture ? 'show' : 'draw'} ${format.duration(frame.draw_ms)}`, `${format.duration(frame.age_ms)} in all`);
   if (frame.field_bound != null) parts.push(`curved cells refined: within ${format.short(frame.field_bound)} of the field`);
   else if (grid.refines && !picture) parts.push('curved cells split at their nodes');
   if (frame.method === 'direct' && !picture && frame.field_bound == null) parts.push('direct, while the grid is packed');
