@@ -117,8 +117,8 @@ class GridAccessor:
             tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
         left_out = surface._how["cells_left_out"] - self._blank
         if left_out:
-            warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours three-dimensional cells of degree "
-                          "1 and 2, and polyhedra", stacklevel=2)  # fmt: skip
+            warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours three-dimensional cells of "
+                          "degree 1 to 10, and polyhedra with faces", stacklevel=2)  # fmt: skip
         _finish(surface, values, array, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
         out.GetFieldData().PassData(grid.GetFieldData())
         return out
