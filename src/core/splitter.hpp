@@ -38,6 +38,7 @@ private:
     using Position = std::uint8_t;
 
     Number number(Position corner) const { return numbers_[corner]; }
+
     /// True when the diagonal of the quadrilateral a b c d starts in a (or c): when one of these is the lowest.
     bool diagonal_from_first(Position a, Position b, Position c, Position d) const {
         return std::min(number(a), number(c)) <= std::min(number(b), number(d));

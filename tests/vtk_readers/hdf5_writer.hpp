@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -130,6 +132,26 @@ inline void write_two_tets(Hdf5Writer& file) {
     file.data<std::uint8_t>("/VTKHDF/Types", {10, 10}, {2});
     file.data<std::int64_t>("/VTKHDF/Connectivity", {0, 1, 2, 3, 0, 2, 1, 4}, {8});
     file.data<std::int64_t>("/VTKHDF/Offsets", {0, 4, 8}, {3});
+}
+
+/// A grid of VTKHDF: one cell on its points, 3 coordinates each, in their order, and the field f.
+inline void write_one_cell(Hdf5Writer& file, std::uint8_t type, const std::vector<double>& points,
+                           const std::vector<double>& values) {
+    const auto count = static_cast<std::int64_t>(values.size());
+    const hsize_t rows = values.size();
+    std::vector<std::int64_t> connectivity(values.size());
+    std::iota(connectivity.begin(), connectivity.end(), std::int64_t{0});
+    for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"}) file.group(name);
+    file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
+    file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+    file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {count}, {1});
+    file.data<std::int64_t>("/VTKHDF/NumberOfCells", {1}, {1});
+    file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", {count}, {1});
+    file.data<double>("/VTKHDF/Points", points, {rows, 3});
+    file.data<std::uint8_t>("/VTKHDF/Types", {type}, {1});
+    file.data<std::int64_t>("/VTKHDF/Connectivity", connectivity, {rows});
+    file.data<std::int64_t>("/VTKHDF/Offsets", {0, count}, {2});
+    file.data<double>("/VTKHDF/PointData/f", values, {rows});
 }
 
 } // namespace isotet::test

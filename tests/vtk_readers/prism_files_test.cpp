@@ -68,21 +68,8 @@ struct PrismOfVtk {
     }
 
     void write_vtkhdf(const std::string& path) const {
-        const auto count = static_cast<std::int64_t>(2 * sides);
-        const auto rows = static_cast<hsize_t>(count);
         Hdf5Writer file(path);
-        for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
-            file.group(name);
-        file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-        file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
-        file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {count}, {1});
-        file.data<std::int64_t>("/VTKHDF/NumberOfCells", {1}, {1});
-        file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", {count}, {1});
-        file.data<double>("/VTKHDF/Points", points(), {rows, 3});
-        file.data<std::uint8_t>("/VTKHDF/Types", {type()}, {1});
-        file.data<std::int64_t>("/VTKHDF/Connectivity", corners(), {rows});
-        file.data<std::int64_t>("/VTKHDF/Offsets", {0, count}, {2});
-        file.data<double>("/VTKHDF/PointData/f", values(), {rows});
+        write_one_cell(file, type(), points(), values());
     }
 };
 

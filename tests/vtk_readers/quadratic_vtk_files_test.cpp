@@ -137,27 +137,12 @@ TEST(QuadraticFiles, OfVtkhdfHaveTheirNodesWhereVtkPutsThem) {
     for (const CellInFile& cell : vtk_cells()) {
         const std::string path = folder.file("t" + cell.type + ".vtkhdf");
         const Columns columns = columns_of(cell, vtk_field(cell));
-        const auto count = static_cast<std::int64_t>(columns.values.size());
         std::vector<double> points;
-        std::vector<std::int64_t> connectivity;
-        for (std::size_t i = 0; i < columns.values.size(); ++i) {
+        for (std::size_t i = 0; i < columns.values.size(); ++i)
             for (std::size_t k = 0; k < 3; ++k) points.push_back(columns.axes[k][i]);
-            connectivity.push_back(static_cast<std::int64_t>(i));
-        }
         {
             Hdf5Writer file(path);
-            for (const char* name : {"/VTKHDF", "/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
-                file.group(name);
-            file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-            file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
-            file.data<std::int64_t>("/VTKHDF/NumberOfPoints", {count}, {1});
-            file.data<std::int64_t>("/VTKHDF/NumberOfCells", {1}, {1});
-            file.data<std::int64_t>("/VTKHDF/NumberOfConnectivityIds", {count}, {1});
-            file.data<double>("/VTKHDF/Points", points, {columns.values.size(), 3});
-            file.data<std::uint8_t>("/VTKHDF/Types", {static_cast<std::uint8_t>(std::stoi(cell.type))}, {1});
-            file.data<std::int64_t>("/VTKHDF/Connectivity", connectivity, {columns.values.size()});
-            file.data<std::int64_t>("/VTKHDF/Offsets", {0, count}, {2});
-            file.data<double>("/VTKHDF/PointData/f", columns.values, {columns.values.size()});
+            write_one_cell(file, static_cast<std::uint8_t>(std::stoi(cell.type)), points, columns.values);
         }
         const auto result = read(path);
         ASSERT_TRUE(result) << cell.type << ": " << result.error().message;
