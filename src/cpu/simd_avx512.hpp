@@ -97,32 +97,24 @@ struct Avx512 {
     ISOTET_AVX512 static std::size_t list_keys(KeyTable& used, VertexKey* out) {
         const VertexKey* const begin = out;
         const __m512i lanes = _mm512_loadu_si512(first_numbers.data()), zero = _mm512_setzero_si512();
-        std::array<std::uint64_t, 2> rows;
-        for (std::size_t half = 0; half < 2; ++half) {
-            const __m512i x = _mm512_load_si512(&used.rows[64 * half]);
-            rows[half] = _mm512_test_epi8_mask(x, x);
-            _mm512_store_si512(&used.rows[64 * half], zero);
-        }
-        for (std::size_t half = 0; half < 2; ++half)
-            for (; rows[half]; rows[half] &= rows[half] - 1) {
-                const std::size_t row = 64 * half + static_cast<std::size_t>(std::countr_zero(rows[half]));
-                for (std::size_t first = KeyTable::row_size * row; first < KeyTable::row_size * (row + 1);
-                     first += 64) {
-                    const __m512i x = _mm512_load_si512(&used.bytes[first]);
-                    const __mmask64 there = _mm512_test_epi8_mask(x, x);
-                    _mm512_store_si512(&used.bytes[first], zero);
-                    const __m512i found = _mm512_maskz_compress_epi8(there, lanes),
-                                  before = _mm512_set1_epi16(static_cast<short>(first));
-                    _mm512_storeu_si512(out,
-                                        _mm512_add_epi16(before, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(found))));
-                    const auto count = static_cast<std::size_t>(_mm_popcnt_u64(there));
-                    if (count > 32)
-                        _mm512_storeu_si512(
-                            out + 32,
-                            _mm512_add_epi16(before, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(found, 1))));
-                    out += count;
-                }
+        for (std::size_t flags = 0; flags < KeyTable::part_count; flags += 64) {
+            const __m512i some = _mm512_load_si512(&used.parts[flags]);
+            _mm512_store_si512(&used.parts[flags], zero);
+            for (std::uint64_t parts = _mm512_test_epi8_mask(some, some); parts; parts &= parts - 1) {
+                const std::size_t first = KeyTable::part_size * (flags + static_cast<std::size_t>(std::countr_zero(parts)));
+                const __m512i x = _mm512_load_si512(&used.bytes[first]);
+                const __mmask64 there = _mm512_test_epi8_mask(x, x);
+                _mm512_store_si512(&used.bytes[first], zero);
+                const __m512i found = _mm512_maskz_compress_epi8(there, lanes),
+                              before = _mm512_set1_epi16(static_cast<short>(first));
+                _mm512_storeu_si512(out, _mm512_add_epi16(before, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(found))));
+                const auto count = static_cast<std::size_t>(_mm_popcnt_u64(there));
+                if (count > 32)
+                    _mm512_storeu_si512(
+                        out + 32, _mm512_add_epi16(before, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(found, 1))));
+                out += count;
             }
+        }
         return static_cast<std::size_t>(out - begin);
     }
 

@@ -71,19 +71,20 @@ constexpr VertexKey edge_key(core::SeamEdge edge) {
     return static_cast<VertexKey>(edge.lower * core::max_cluster_points + edge.higher);
 }
 
-/// Which keys tets use: 1 or 0 for each, and 1 for each row of keys (of a lower local index) in which some were.
+/// Which keys tets use: 1 or 0 for each, and 1 for each part of 64 keys in which some were.
 struct KeyTable {
-    static constexpr std::size_t row_size = core::max_cluster_points;
+    static constexpr std::size_t row_size = core::max_cluster_points, part_size = 64,
+                                 part_count = row_size * row_size / part_size;
 
     void use(VertexKey key) {
         bytes[key] = 1;
-        rows[key / row_size] = 1;
+        parts[key / part_size] = 1;
     }
     bool has(VertexKey key) const { return bytes[key]; }
     void take_out(VertexKey key) { bytes[key] = 0; }
 
     alignas(64) std::array<std::uint8_t, row_size * row_size> bytes{};
-    alignas(64) std::array<std::uint8_t, row_size> rows{};
+    alignas(64) std::array<std::uint8_t, part_count> parts{};
 };
 
 struct Portable {
@@ -184,21 +185,22 @@ struct Portable {
     /// The same for a `Simd` that has nothing but ones(): which of 64 bytes are 1, the others being 0.
     template <class Simd>
     static std::size_t list_keys(KeyTable& used, VertexKey* out) {
-        // How many keys a part of a row has is as good as random, and each guess of a branch that fails costs as much
-        // as several keys: parts without any are left out first, without a branch.
-        std::array<std::uint64_t, table_size * table_size / 64 + 1> masks;
-        std::array<VertexKey, table_size * table_size / 64 + 1> firsts;
+        // How many keys a part has is as good as random, and each guess of a branch that fails costs as much as several
+        // keys: parts from which all were taken out are left out first, without a branch.
+        constexpr std::size_t size = KeyTable::part_size, most = KeyTable::part_count;
+        std::array<std::uint64_t, most / 64> used_parts;
+        for (std::size_t k = 0; k < used_parts.size(); ++k) used_parts[k] = Simd::ones(&used.parts[64 * k]);
+        used.parts.fill(0);
+        std::array<std::uint64_t, most + 1> masks;
+        std::array<VertexKey, most + 1> firsts;
         std::size_t parts = 0;
-        const std::array<std::uint64_t, 2> rows{Simd::ones(&used.rows[0]), Simd::ones(&used.rows[64])};
-        core::for_bits(rows.data(), 2, [&](std::size_t row) {
-            for (std::size_t first = table_size * row; first < table_size * (row + 1); first += 64) {
-                masks[parts] = Simd::ones(&used.bytes[first]);
-                firsts[parts] = static_cast<VertexKey>(first);
-                parts += masks[parts] != 0;
-                std::fill_n(&used.bytes[first], 64, std::uint8_t{0});
-            }
+        core::for_bits(used_parts.data(), used_parts.size(), [&](std::size_t part) {
+            const std::size_t first = size * part;
+            masks[parts] = Simd::ones(&used.bytes[first]);
+            firsts[parts] = static_cast<VertexKey>(first);
+            parts += masks[parts] != 0;
+            std::fill_n(&used.bytes[first], size, std::uint8_t{0});
         });
-        used.rows.fill(0);
         std::size_t count = 0;
         for (std::size_t part = 0; part < parts; ++part) {
             std::uint64_t bits = masks[part];
