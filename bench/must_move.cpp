@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "bench/must_move.hpp"
 
+#include <algorithm>
+
 #include "core/packed.hpp"
 #include "core/storage.hpp"
 
@@ -18,12 +20,15 @@ std::uint64_t bytes_of_selected(const core::Packed& packed, Real isovalue) {
         const core::ClusterHeader& header = packed.headers[cluster];
         bytes += sizeof(header) + 4 * core::ClusterLinks::words(header) + 4 * sizeof(Real) * header.own_points;
         const std::uint8_t step = core::quantize(isovalue, range);
-        const std::size_t groups = header.groups();
-        for (std::size_t group = header.first_group; group < header.first_group + groups; ++group) {
-            const core::GroupRange steps = packed.group_ranges[group];
-            bytes += sizeof(steps);
-            if (steps.lower <= step && step <= steps.upper) bytes += core::group_size * sizeof(core::StoredTet);
-        }
+        std::size_t group = header.first_group;
+        for (const core::CellKind kind : core::cell_kinds)
+            for (std::size_t left = core::words_of(kind) * header.count(kind); left; ++group) {
+                const core::GroupRange steps = packed.group_ranges[group];
+                const std::size_t words = std::min(left, core::group_size);
+                bytes += sizeof(steps);
+                if (steps.lower <= step && step <= steps.upper) bytes += words * sizeof(core::StoredTet);
+                left -= words;
+            }
     }
     return bytes;
 }

@@ -119,7 +119,7 @@ private:
 ///
 /// `field`      the field to contour; its length must be the number of points
 /// Guarantees   the packed grid is the same bytes for any thread count
-/// Cost         O(T log T); about 10 to 12 bytes a tet stay, at most 40 bytes a tet beyond the input at the peak
+/// Cost         O(T log T); about 10 to 11 bytes a tet stay, at most 40 bytes a tet beyond the input at the peak
 /// Errors       invalid_data as survey(); invalid_argument when the field does not fit the grid, or either does not fit
 ///              the frame; out_of_memory, before memory is taken, with the amount needed and the amount free; cancelled
 /// Threads      safe from many threads

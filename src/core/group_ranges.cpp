@@ -105,17 +105,28 @@ ISOTET_AVX512 void find_avx512(const StoredTet* tets, std::size_t groups, const 
 
 #endif
 
-} // namespace
-
-void find_group_ranges(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
-                       GroupRange* out) {
+void find_whole(const StoredTet* words, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
+                GroupRange* out) {
     switch (level()) {
 #if defined(__x86_64__)
-    case Level::avx512: return find_avx512(tets, groups, lower, upper, out);
-    case Level::avx2: return find_avx2(tets, groups, lower, upper, out);
+    case Level::avx512: return find_avx512(words, groups, lower, upper, out);
+    case Level::avx2: return find_avx2(words, groups, lower, upper, out);
 #endif
-    default: return find_portable(tets, groups, lower, upper, out);
+    default: return find_portable(words, groups, lower, upper, out);
     }
+}
+
+} // namespace
+
+void find_group_ranges(std::span<const StoredTet> words, const PointSteps& lower, const PointSteps& upper,
+                       GroupRange* out) {
+    const std::size_t whole = words.size() / group_size;
+    find_whole(words.data(), whole, lower, upper, out);
+    if (whole * group_size == words.size()) return;
+    std::array<StoredTet, group_size> last;
+    last.fill(words.back());
+    std::ranges::copy(words.subspan(whole * group_size), last.begin());
+    find_whole(last.data(), 1, lower, upper, out + whole);
 }
 
 static_assert(max_cluster_points == 128 && group_size == 32, "tables of 128 bytes, registers of 64");

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/packed.hpp"
 
@@ -13,10 +14,10 @@ namespace isotet::core {
 /// A byte for each local point of a cluster.
 using PointSteps = std::array<std::uint8_t, max_cluster_points>;
 
-/// For whole groups, padding included.
+/// For the words of one kind of cells; the last group may have less than 32.
 /// `lower`, `upper`  the steps whose smallest and whose largest is taken: they differ where points have no data
 /// Guarantees        the same on every instruction level (level.hpp)
-void find_group_ranges(const StoredTet* tets, std::size_t groups, const PointSteps& lower, const PointSteps& upper,
+void find_group_ranges(std::span<const StoredTet> words, const PointSteps& lower, const PointSteps& upper,
                        GroupRange* out);
 
 } // namespace isotet::core

@@ -17,9 +17,8 @@ public:
     void find(const Packed& packed, std::size_t cluster) {
         const ClusterHeader& h = packed.headers[cluster];
         const ClusterLinks links = packed.cluster_links(cluster);
-        // In eights, without a branch a point: what is written too much is written again, or left alone.
-        std::array<std::uint8_t, max_cluster_points + at_once> indices;
-        std::copy(links.ghost_points.begin(), links.ghost_points.end(), indices.begin());
+        // Many at once, without a branch a point: what is read and written too much is written again, or left alone.
+        const std::uint8_t* const indices = links.ghost_points.data();
         std::size_t n = 0;
         for (const Neighbour& neighbour : links.neighbours) {
             const std::uint64_t first = packed.headers[neighbour.cluster].first_point;
@@ -35,7 +34,8 @@ public:
     std::uint64_t operator[](std::size_t local) const { return points_[local]; }
 
 private:
-    static constexpr std::size_t at_once = 8;
+    static constexpr std::size_t at_once = 32;
+    static_assert(at_once <= 4 * slack_words);
     std::array<std::uint64_t, max_cluster_points + at_once> points_;
     std::size_t ghost_ = 0;
 };

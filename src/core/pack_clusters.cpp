@@ -32,15 +32,15 @@ BlockClusters grow_block(RankedBuckets<Item>& cells, std::uint64_t first, std::s
 
 std::size_t blocks_for(std::uint64_t cells) { return (cells + cells_per_block - 1) / cells_per_block; }
 
-std::size_t groups_of(const BlockClusters::Cluster& cluster) {
+ClusterHeader header_of(const BlockClusters::Cluster& cluster) {
     ClusterHeader header{};
     header.cells = cluster.cells;
-    return header.groups();
+    return header;
 }
 
-/// Where a block's clusters, groups and points start.
+/// Where a block's clusters, groups, words and points start.
 struct Start {
-    std::size_t cluster = 0, group = 0, local = 0;
+    std::size_t cluster = 0, group = 0, word = 0, local = 0;
 };
 
 /// Copies the clusters of one block to where they belong.
@@ -52,13 +52,13 @@ public:
 
     void write(Start at) {
         std::copy(block_.points.begin(), block_.points.end(), draft_.locals.begin() + at.local);
+        to_ = at.word;
         for (const BlockClusters::Cluster& cluster : block_.clusters) {
             ClusterHeader& header = packed_.headers[at.cluster];
-            header = {};
-            header.cells = cluster.cells;
+            header = header_of(cluster);
+            header.first_word = to_;
             header.first_group = static_cast<std::uint32_t>(at.group);
             draft_.first_local[at.cluster] = at.local;
-            to_ = at.group * group_size;
             for (const CellKind kind : cell_kinds) write_kind(kind, header.count(kind));
             at.group += header.groups();
             at.local += cluster.points;
@@ -67,15 +67,12 @@ public:
     }
 
 private:
-    /// The cells of a kind, and copies of the last one behind them.
     void write_kind(CellKind kind, std::size_t count) {
-        if (count == 0) return;
-        const std::size_t words = words_of(kind), at_once = cells_per_group(kind);
-        for (std::size_t i = 0; i < (count + at_once - 1) / at_once * at_once; ++i, to_ += words) {
-            const std::size_t from = std::min(i, count - 1);
-            std::copy_n(block_.words.data() + word_ + words * from, words, packed_.cells.data() + to_);
+        const std::size_t words = words_of(kind);
+        std::copy_n(block_.words.data() + word_, words * count, packed_.cells.data() + to_);
+        for (std::size_t i = 0; i < count; ++i, to_ += words) {
             if (origins_.empty()) continue;
-            const std::uint64_t cell = origins_[cell_ + from].cell();
+            const std::uint64_t cell = origins_[cell_ + i].cell();
             for (std::size_t k = 0; k < words; ++k)
                 if (packed_.wide_cell_ids.empty()) packed_.cell_ids[to_ + k] = static_cast<std::uint32_t>(cell);
                 else packed_.wide_cell_ids[to_ + k] = cell;
@@ -128,7 +125,11 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
         const BlockClusters& block = blocks[b];
         next.cluster += block.clusters.size();
         next.local += block.points.size();
-        for (const auto& cluster : block.clusters) next.group += groups_of(cluster);
+        for (const auto& cluster : block.clusters) {
+            const ClusterHeader header = header_of(cluster);
+            next.group += header.groups();
+            next.word += header.words();
+        }
         starts[b + 1] = next;
     }
     const Start total = starts[block_count];
@@ -140,13 +141,14 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
 
     Packed& packed = draft.packed;
     packed.headers = SharedBuffer<ClusterHeader>(total.cluster);
-    packed.cells = SharedBuffer<StoredTet>(total.group * group_size);
+    packed.cells = SharedBuffer<StoredTet>(total.word + slack_words);
+    std::fill(packed.cells.begin() + total.word, packed.cells.end(), StoredTet{});
     draft.first_local = Buffer<std::uint64_t>(total.cluster + 1);
     draft.locals = Buffer<std::uint64_t>(total.local);
     draft.first_local[total.cluster] = total.local;
     const bool wide_cells = user_cells > std::size_t{1} << 32;
-    if (source_cells && wide_cells) packed.wide_cell_ids = SharedBuffer<std::uint64_t>(packed.cells.size());
-    else if (source_cells) packed.cell_ids = SharedBuffer<std::uint32_t>(packed.cells.size());
+    if (source_cells && wide_cells) packed.wide_cell_ids = SharedBuffer<std::uint64_t>(total.word);
+    else if (source_cells) packed.cell_ids = SharedBuffer<std::uint32_t>(total.word);
     parallel_each(block_count, 1, [&](std::size_t b) {
         const BlockClusters block = std::move(blocks[b]);
         std::vector<CellOrigin> origins;

@@ -43,7 +43,7 @@ struct Draft {
 /// themselves take.
 std::size_t blocks_at_once(std::uint64_t cells);
 
-/// Grows clusters block by block. Fills headers (cells, first_group), cells (corners as positions among the cluster's
+/// Grows clusters block by block. Fills headers (cells, first_word, first_group), cells (corners as positions among the cluster's
 /// points), first_local and locals; and cell ids when the origins are there.
 /// `user_cells`   how many the user's grid has
 template <class Item>

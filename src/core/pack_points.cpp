@@ -81,8 +81,8 @@ void number_points(std::uint64_t user_points, Draft& draft) {
         }
         for (std::size_t k = 0; k < header.own_points; ++k) // own ones last: no owner is a later cluster
             list[ghost_count + k] = PointRef::make(static_cast<std::uint32_t>(c), static_cast<std::uint8_t>(k)).value;
-        StoredTet* const words = packed.cells.data() + packed.first_word(c);
-        for (std::size_t i = 0; i < group_size * header.groups(); ++i)
+        StoredTet* const words = packed.cells.data() + header.first_word;
+        for (std::size_t i = 0; i < header.words(); ++i)
             for (std::uint8_t& corner : words[i].corners) corner = after[corner];
     });
 }

@@ -43,7 +43,8 @@ struct EdgeMatrix {
         for (const std::uint8_t corner : v) rows[corner].add(corners);
     }
     void add(const StoredCell& cell) {
-        for (const auto& [k, l] : edges_of(cell.kind)) { // which is lower does not matter: of rows the higher part counts
+        for (const auto& [k, l] :
+             edges_of(cell.kind)) { // which is lower does not matter: of rows the higher part counts
             rows[cell.corners[k]].add(cell.corners[l]);
             rows[cell.corners[l]].add(cell.corners[k]);
         }
@@ -109,9 +110,9 @@ void sort_requests(std::span<SeamRequest> requests, std::vector<SeamRequest>& sc
 class Neighbourhood {
 public:
     /// Seams arrive in the order of the cluster's candidates and keep it among those of one owner.
-    void add_seam(std::uint32_t owner, GhostSeam seam) {
+    void add_seam(std::uint32_t owner, SeamEdge seam, std::uint16_t place) {
         ++entry(owner).ghost_seams;
-        seams_.push_back({owner, seam});
+        arrived_.push_back({owner, seam, place});
     }
     /// Points arrive by ascending owner.
     void add_point(std::uint32_t owner) { ++entry(owner).ghost_points; }
@@ -120,26 +121,34 @@ public:
     void finish() {
         std::sort(table_.begin(), table_.end(),
                   [](const Neighbour& a, const Neighbour& b) { return a.cluster < b.cluster; });
-        sorted_.resize(seams_.size());
+        seams_.resize(arrived_.size());
+        places_.resize(arrived_.size());
         std::size_t begin = 0;
         for (const Neighbour& neighbour : table_) {
             first_.push_back(begin);
             begin += neighbour.ghost_seams;
         }
-        for (const Seam& seam : seams_) sorted_[first_[position(seam.owner)]++] = seam.seam;
+        for (const Seam& seam : arrived_) {
+            const std::size_t at = first_[position(seam.owner)]++;
+            seams_[at] = seam.edge;
+            places_[at] = seam.place;
+        }
     }
     void clear() {
         table_.clear();
-        seams_.clear();
+        arrived_.clear();
         first_.clear();
     }
     std::span<const Neighbour> table() const { return table_; }
-    std::span<const GhostSeam> seams() const { return sorted_; } ///< once finished
+    /// Once finished: the ghost seams by owner, and their places among its own seams.
+    std::span<const SeamEdge> seams() const { return seams_; }
+    std::span<const std::uint16_t> places() const { return places_; }
 
 private:
     struct Seam {
         std::uint32_t owner;
-        GhostSeam seam;
+        SeamEdge edge;
+        std::uint16_t place;
     };
 
     /// Where the owner stands in the table, or its end. Tables are short, and the same owner comes several times in a
@@ -156,8 +165,9 @@ private:
     }
 
     std::vector<Neighbour> table_;
-    std::vector<Seam> seams_;
-    std::vector<GhostSeam> sorted_;
+    std::vector<Seam> arrived_;
+    std::vector<SeamEdge> seams_;
+    std::vector<std::uint16_t> places_;
     std::vector<std::size_t> first_;
     std::size_t last_ = 0;
 };
@@ -190,7 +200,8 @@ public:
             header.first_link = words;
             words += ClusterLinks::words(header);
         }
-        packed_.links = SharedBuffer<std::uint32_t>(words);
+        packed_.links = SharedBuffer<std::uint32_t>(words + slack_words);
+        std::fill(packed_.links.begin() + words, packed_.links.end(), 0);
         parallel_each(tasks, 1, [&](std::size_t task) {
             std::copy(lists[task].begin(), lists[task].end(),
                       packed_.links.begin() + packed_.headers[task * clusters_per_task].first_link);
@@ -372,27 +383,35 @@ private:
             const Answer answer = answers_[k];
             if (answer.owner == c) own_seams.push_back(candidates_[k]);
             else if (answer.owner != no_owner)
-                neighbourhood.add_seam(answer.owner,
-                                       {candidates_[k], answers_[first_candidate_[answer.owner] + answer.place].place});
+                neighbourhood.add_seam(answer.owner, candidates_[k],
+                                       answers_[first_candidate_[answer.owner] + answer.place].place);
         }
         neighbourhood.finish();
         header.neighbours = static_cast<std::uint16_t>(neighbourhood.table().size());
         header.ghost_seams = static_cast<std::uint16_t>(neighbourhood.seams().size());
+        header.wide_seams = std::ranges::any_of(neighbourhood.table(), [&](const Neighbour& neighbour) {
+            return neighbour.ghost_seams && packed_.headers[neighbour.cluster].own_seams > 256;
+        });
         std::uint8_t points[max_cluster_points];
         for (std::size_t k = 0; k < header.ghost_points; ++k) points[k] = ref(c, k).index();
 
         const std::size_t before = list.size();
         list.resize(before + ClusterLinks::words(header));
-        std::uint32_t* out = list.data() + before;
-        const auto put = [&out](const void* data, std::size_t bytes) {
-            if (!bytes) return;
-            std::memcpy(out, data, bytes); // what fills up the last word stays 0
-            out += words_for(bytes);
+        auto* out = reinterpret_cast<std::uint8_t*>(list.data() + before); // what fills up the last word stays 0
+        const auto put = [&out](const auto& parts) {
+            const std::size_t bytes = parts.size() * sizeof parts[0];
+            if (bytes) std::memcpy(out, parts.data(), bytes);
+            out += bytes;
         };
-        put(neighbourhood.table().data(), neighbourhood.table().size_bytes());
-        put(points, header.ghost_points);
-        put(own_seams.data(), own_seams.size() * sizeof(SeamEdge));
-        put(neighbourhood.seams().data(), neighbourhood.seams().size_bytes());
+        put(neighbourhood.table());
+        put(own_seams);
+        put(neighbourhood.seams());
+        put(std::span(points, header.ghost_points));
+        if (header.wide_seams) put(neighbourhood.places());
+        else
+            out = std::ranges::transform(neighbourhood.places(), out, [](std::uint16_t place) {
+                      return static_cast<std::uint8_t>(place);
+                  }).out;
     }
 
     Draft& draft_;

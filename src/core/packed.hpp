@@ -3,23 +3,22 @@
 //
 //   cluster c                                 arrays of all clusters, one after another
 //   +-----------------------------+
-//   | headers[c]         40 B     |-- first_point --> positions[3 * p], values[p], point_ids[p]   (own points only)
-//   | ranges[c]           8 B     |-- first_group --> cells[32 * g ...], group_ranges[g]          (g = first_group ...)
+//   | headers[c]         48 B     |-- first_point --> positions[3 * p], values[p], point_ids[p]   (own points only)
+//   | ranges[c]           8 B     |-- first_word  --> cells[w ...], first_group --> group_ranges[g ...]
 //   | has_no_data[c]      1 B     |-- first_link  --> links[w ...], 32-bit words:
 //   +-----------------------------+      neighbours      2 words each: cluster | ghost points + 65536 * ghost seams
-//                                        ghost points  1 byte each, grouped by neighbour, padded to a word:
-//                                                        index among the neighbour's own points
-//                                        own seams       2 bytes each (lower, higher local index), padded to a word
-//                                        ghost seams   1 word each, grouped by neighbour:
-//                                                        lower + 256 * higher + 65536 * index among the owner's own
-//                                                        seams
+//                                        own seams       2 bytes each: lower, higher local index
+//                                        ghost seams     2 bytes each, grouped by neighbour
+//                                        ghost points    1 byte each, grouped by neighbour: index among its own points
+//                                        places          of ghost seams, 1 byte each (2 where wide_seams): index among
+//                                                        the neighbour's own seams
 //
 // Local indices run ghost points first, then own points, ascending in packed order. A point belongs to the
 // lowest-numbered cluster that holds it (its owner), so every neighbour in the table has a lower number.
 // A stored tet is one word, four local indices, its first corner that of the lowest user's number. A pyramid, wedge or
 // hexahedron is two words, eight local indices, behind its last corner copies of its first. A cluster has its tets
-// first, then its pyramids, wedges and hexahedra; each kind begins a group of 32 words, and its last group is padded with
-// copies of its last cell, which are never looked at.
+// first, then its pyramids, wedges and hexahedra, one after another. Each kind is looked at in groups of 32 words, the last
+// of which may have less. Behind the last words of all, of cells and of links, stand some more that may be read.
 #pragma once
 
 #include <algorithm>
@@ -47,6 +46,9 @@ constexpr std::size_t max_cluster_points = 128;
 constexpr std::size_t max_cluster_tets = 1024;
 constexpr std::size_t group_size = 32; ///< words
 
+/// How many words more than there are may be read at the end of cells and links.
+constexpr std::size_t slack_words = 16;
+
 /// Words that a cell of a kind takes.
 constexpr std::size_t words_of(CellKind kind) { return kind == CellKind::tetrahedron ? 1 : 2; }
 constexpr std::size_t cells_per_group(CellKind kind) { return group_size / words_of(kind); }
@@ -58,6 +60,7 @@ constexpr std::size_t max_mixed_cluster_tets = max_cluster_tets - cell_kind_coun
 
 struct ClusterHeader {
     std::uint64_t first_point;
+    std::uint64_t first_word;
     std::uint64_t first_link;
     std::uint32_t first_group;
     std::uint16_t own_points;
@@ -66,7 +69,7 @@ struct ClusterHeader {
     std::uint16_t neighbours;
     std::uint16_t own_seams;
     std::uint16_t ghost_seams;
-    std::uint16_t unused;
+    std::uint16_t wide_seams; ///< 1 where some owner of its ghost seams has more than 256 own seams
 
     std::size_t count(CellKind kind) const { return cells[static_cast<std::size_t>(kind)]; }
     std::size_t tets() const { return cells[0]; }
@@ -79,10 +82,11 @@ struct ClusterHeader {
         for (const CellKind kind : cell_kinds) sum += groups(kind);
         return sum;
     }
+    std::size_t words() const { return tets() + 2 * others(); }
     /// No tet gives more than two triangles and four vertices, and no other cell more than so many.
     std::size_t like_tets() const { return tets() + tets_for_a_cell * others(); }
 };
-static_assert(sizeof(ClusterHeader) == 40);
+static_assert(sizeof(ClusterHeader) == 48);
 
 /// Smallest and largest stored value over all points with data; lower > upper when there is none.
 template <class Real>
@@ -108,12 +112,6 @@ struct SeamEdge {
 };
 static_assert(sizeof(SeamEdge) == 2);
 
-struct GhostSeam {
-    SeamEdge edge;
-    std::uint16_t index; ///< among the owner's own seams
-};
-static_assert(sizeof(GhostSeam) == 4);
-
 struct StoredTet {
     std::array<std::uint8_t, 4> corners; ///< local indices
 };
@@ -128,16 +126,28 @@ struct StoredCell {
 
 constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
 
-/// The four parts of a cluster's links.
+/// The parts of a cluster's links, in this order.
 struct ClusterLinks {
     std::span<const Neighbour> neighbours;
+    std::span<const SeamEdge> own_seams, ghost_seams;
     std::span<const std::uint8_t> ghost_points;
-    std::span<const SeamEdge> own_seams;
-    std::span<const GhostSeam> ghost_seams;
+    const std::uint8_t* places; ///< of ghost seams
+    bool wide;                  ///< places of 16 bits
 
-    static std::size_t words(const ClusterHeader& h) {
-        return 2u * h.neighbours + words_for(h.ghost_points) + words_for(2u * h.own_seams) + h.ghost_seams;
+    /// Index of ghost seam k among its owner's own seams.
+    std::uint32_t place_in_owner(std::size_t k) const {
+        if (!wide) return places[k];
+        std::uint16_t place;
+        std::memcpy(&place, places + 2 * k, sizeof place);
+        return place;
     }
+
+    /// Bytes behind the neighbours.
+    static std::size_t bytes(const ClusterHeader& h) {
+        return sizeof(SeamEdge) * (std::size_t{h.own_seams} + h.ghost_seams) + h.ghost_points +
+               (1u + h.wide_seams) * h.ghost_seams;
+    }
+    static std::size_t words(const ClusterHeader& h) { return 2u * h.neighbours + words_for(bytes(h)); }
 };
 
 /// What depends on the precision.
@@ -160,7 +170,7 @@ class StorageCache;
 /// Copying shares all arrays. A copy that gets another field or other points gets arrays of its own for them.
 struct Packed {
     SharedBuffer<ClusterHeader> headers;
-    SharedBuffer<StoredTet> cells; ///< words, 32 a group
+    SharedBuffer<StoredTet> cells; ///< words
     SharedBuffer<GroupRange> group_ranges;
     SharedBuffer<std::uint32_t> links;
     SharedBuffer<std::uint8_t> has_no_data; ///< 1 where the cluster holds a point without data
@@ -207,9 +217,8 @@ struct Packed {
     std::uint64_t user_cell(std::uint64_t word) const {
         return wide_cell_ids.empty() ? cell_ids[word] : wide_cell_ids[word];
     }
-    /// The first word of a cluster's cells.
-    std::uint64_t first_word(std::size_t cluster) const {
-        return group_size * std::uint64_t{headers[cluster].first_group};
+    std::size_t groups() const {
+        return clusters() ? headers[clusters() - 1].first_group + headers[clusters() - 1].groups() : 0;
     }
 
     ClusterLinks cluster_links(std::size_t cluster) const {
@@ -218,30 +227,28 @@ struct Packed {
         ClusterLinks out;
         // Words are written with memcpy and read as the structs they hold: trivially copyable, same size, no padding.
         out.neighbours = {reinterpret_cast<const Neighbour*>(words), h.neighbours};
-        words += 2u * h.neighbours;
-        out.ghost_points = {reinterpret_cast<const std::uint8_t*>(words), h.ghost_points};
-        words += words_for(h.ghost_points);
-        out.own_seams = {reinterpret_cast<const SeamEdge*>(words), h.own_seams};
-        words += words_for(2u * h.own_seams);
-        out.ghost_seams = {reinterpret_cast<const GhostSeam*>(words), h.ghost_seams};
+        const auto* const seams = reinterpret_cast<const SeamEdge*>(words + 2u * h.neighbours);
+        out.own_seams = {seams, h.own_seams};
+        out.ghost_seams = {seams + h.own_seams, h.ghost_seams};
+        const auto* const points = reinterpret_cast<const std::uint8_t*>(seams + h.own_seams + h.ghost_seams);
+        out.ghost_points = {points, h.ghost_points};
+        out.places = points + h.ghost_points;
+        out.wide = h.wide_seams;
         return out;
     }
     std::span<const StoredTet> cluster_tets(std::size_t cluster) const {
         const ClusterHeader& h = headers[cluster];
-        return {cells.data() + first_word(cluster), h.tets()};
+        return {cells.data() + h.first_word, h.tets()};
     }
     /// Calls f(cell) with every cell of a cluster that is no tet.
     template <class F>
     void for_other_cells(std::size_t cluster, const F& f) const {
         const ClusterHeader& h = headers[cluster];
-        const auto* const corners = reinterpret_cast<const std::uint8_t*>(cells.data() + first_word(cluster));
-        std::size_t word = group_size * h.groups(CellKind::tetrahedron);
-        for (std::size_t k = 1; k < cell_kind_count; ++k) {
-            const CellKind kind = cell_kinds[k];
-            for (std::size_t i = 0; i < h.count(kind); ++i)
-                f(StoredCell{kind, {corners + 4 * (word + 2 * i), corner_count(kind)}, word + 2 * i});
-            word += group_size * h.groups(kind);
-        }
+        const auto* const corners = reinterpret_cast<const std::uint8_t*>(cells.data() + h.first_word);
+        std::size_t word = h.tets();
+        for (std::size_t k = 1; k < cell_kind_count; ++k)
+            for (std::size_t i = 0; i < h.count(cell_kinds[k]); ++i, word += 2)
+                f(StoredCell{cell_kinds[k], {corners + 4 * word, corner_count(cell_kinds[k])}, word});
     }
 };
 

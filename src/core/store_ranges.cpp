@@ -88,8 +88,14 @@ void store_ranges(Packed& packed, std::size_t cluster, const LocalPoints& points
     PointSteps lower, upper;
     local.steps(lower, upper);
     const ClusterHeader& h = packed.headers[cluster];
-    find_group_ranges(packed.cells.data() + packed.first_word(cluster), h.groups(), lower, upper,
-                      packed.group_ranges.data() + h.first_group);
+    const StoredTet* words = packed.cells.data() + h.first_word;
+    GroupRange* out = packed.group_ranges.data() + h.first_group;
+    for (const CellKind kind : cell_kinds) {
+        const std::size_t count = words_of(kind) * h.count(kind);
+        find_group_ranges({words, count}, lower, upper, out);
+        words += count;
+        out += h.groups(kind);
+    }
 }
 
 } // namespace

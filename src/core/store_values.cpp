@@ -18,7 +18,7 @@ Result<void> store_values(const PointField& field, Packed& packed, const Progres
     Values<Real>& reals = packed.as<Real>();
     reals.values = SharedBuffer<Real>(packed.points());
     reals.ranges = SharedBuffer<Range<Real>>(packed.clusters());
-    packed.group_ranges = SharedBuffer<GroupRange>(packed.cells.size() / group_size);
+    packed.group_ranges = SharedBuffer<GroupRange>(packed.groups());
     packed.has_no_data = SharedBuffer<std::uint8_t>(packed.clusters());
     std::fill(packed.has_no_data.begin(), packed.has_no_data.end(), std::uint8_t{0});
     const FieldStorage stored =

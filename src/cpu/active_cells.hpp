@@ -16,14 +16,18 @@ struct Groups {
     const core::StoredTet* const words; ///< of the cluster
     const core::GroupRange* const ranges;
     const std::uint8_t step; ///< the isovalue in steps of the cluster's range
-    std::size_t next = 0;
+    std::size_t next = 0, next_word = 0;
 
-    /// Calls f(words, cells, first word) for those of the next `count` cells, `size` a group, that may be cut.
+    /// Calls f(words, cells, first word) for those groups of the next `count` cells, of one kind, that may be cut.
     template <class F>
-    void for_hit(std::size_t count, std::size_t size, const F& f) {
-        for (std::size_t first = 0; first < count; first += size, ++next)
-            if (ranges[next].lower <= step && step <= ranges[next].upper)
-                f(words + core::group_size * next, std::min(size, count - first), core::group_size * next);
+    void for_hit(core::CellKind kind, std::size_t count, const F& f) {
+        const std::size_t at_once = core::cells_per_group(kind);
+        for (std::size_t first = 0; first < count; first += at_once, ++next)
+            if (ranges[next].lower <= step && step <= ranges[next].upper) {
+                const std::size_t word = next_word + core::words_of(kind) * first;
+                f(words + word, std::min(at_once, count - first), word);
+            }
+        next_word += core::words_of(kind) * count;
     }
 };
 
@@ -31,10 +35,9 @@ template <class Simd, core::CellKind kind, class Real, class Keep>
 void cut_cells(std::size_t count, Groups& groups, CutScratch<Real>& s, const Keep& keep) {
     if (count == 0) return;
     s.cells.count = 0;
-    groups.for_hit(count, core::cells_per_group(kind),
-                   [&](const core::StoredTet* words, std::size_t n, std::size_t first) {
-                       Simd::template cut_cells<kind>(s.above.data(), words, n, first, s.cells);
-                   });
+    groups.for_hit(kind, count, [&](const core::StoredTet* words, std::size_t n, std::size_t first) {
+        Simd::template cut_cells<kind>(s.above.data(), words, n, first, s.cells);
+    });
     keep(s.cells, core::corner_count(kind));
     Simd::template polygons<kind>(s.cells, s.cut, s.keys.data());
 }
@@ -45,10 +48,10 @@ template <class Simd, class Real, class Keep>
 void cut_all(const Packed& packed, std::size_t cluster, Real isovalue, CutScratch<Real>& s, const Keep& keep) {
     using core::CellKind;
     const core::ClusterHeader& h = packed.headers[cluster];
-    Groups groups{packed.cells.data() + packed.first_word(cluster), packed.group_ranges.data() + h.first_group,
+    Groups groups{packed.cells.data() + h.first_word, packed.group_ranges.data() + h.first_group,
                   core::quantize(isovalue, packed.as<Real>().ranges[cluster])};
     s.cut.count = 0;
-    groups.for_hit(h.tets(), core::group_size, [&](const core::StoredTet* tets, std::size_t n, std::size_t first) {
+    groups.for_hit(CellKind::tetrahedron, h.tets(), [&](const core::StoredTet* tets, std::size_t n, std::size_t first) {
         Simd::cut(s.above.data(), tets, n, first, s.cut);
     });
     keep(s.cut);

@@ -169,7 +169,7 @@ private:
             const auto seams =
                 links_.own_seams.subspan(begin, std::min<std::size_t>(64, links_.own_seams.size() - begin));
             std::uint64_t bits = 0, used = 0;
-            Simd::cross_own_seams(s_.above.data(), seams, &bits, crossed.data());
+            Simd::cross_seams(s_.above.data(), seams, &bits, crossed.data());
             const VertexKey* key = crossed.data();
             core::for_bits(&bits, 1, [&](std::size_t k) {
                 if (s_.used.has(*key)) {
@@ -183,18 +183,14 @@ private:
     }
 
     void share_ghost_seams() {
-        const std::size_t crossed = Simd::cross_ghost_seams(s_.above.data(), links_.ghost_seams,
-                                                            s_.crossed_seams.data(), s_.crossed_places.data());
-        const core::Neighbour* neighbour = links_.neighbours.data();
-        std::size_t end = crossed ? neighbour->ghost_seams : 0;
-        for (std::size_t i = 0; i < crossed; ++i) {
-            while (s_.crossed_places[i] >= end) end += (++neighbour)->ghost_seams;
-            const core::GhostSeam seam = s_.crossed_seams[i];
-            if (!s_.used.has(edge_key(seam.edge))) continue;
-            const std::size_t owner = place_of(neighbour->cluster);
-            if (packed_.has_no_data[neighbour->cluster]) cutting_.masks.set_seam(owner, seam.index);
-            s_.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
-        }
+        s_.template for_crossed_ghost_seams<Simd>(links_,
+                                                  [&](VertexKey key, std::uint32_t neighbour, std::uint32_t index) {
+                                                      if (!s_.used.has(key)) return;
+                                                      const std::size_t owner = place_of(neighbour);
+                                                      if (packed_.has_no_data[neighbour])
+                                                          cutting_.masks.set_seam(owner, index);
+                                                      s_.share(key, {static_cast<std::uint32_t>(owner), index});
+                                                  });
     }
 
     void list_inner_edges() { s_.listed.grow(Simd::list_keys(s_.used, s_.listed.end())); }

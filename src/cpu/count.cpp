@@ -51,8 +51,7 @@ private:
         if (ahead.has(1)) {
             const core::ClusterHeader& h = packed.headers[cluster(1)];
             prefetch_bytes(packed.links.data() + h.first_link, 4 * core::ClusterLinks::words(h));
-            prefetch_bytes(packed.cells.data() + packed.first_word(cluster(1)),
-                           sizeof(core::StoredTet) * core::group_size * h.groups());
+            prefetch_bytes(packed.cells.data() + h.first_word, sizeof(core::StoredTet) * h.words());
             prefetch_bytes(packed.as<Real>().values.data() + h.first_point, sizeof(Real) * h.own_points);
         }
         if (ahead.has(0)) {

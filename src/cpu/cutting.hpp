@@ -58,6 +58,7 @@ template <class Real>
 struct CutScratch {
     static constexpr std::size_t points = core::max_cluster_points;
     static constexpr std::size_t padded = max_vertices + 128; ///< SIMD code writes more than it counts
+    static constexpr std::size_t ghost_words = core::words_of_bits(points * (points - 1) / 2);
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
     std::size_t cluster = none, next_cluster = none;
@@ -69,10 +70,10 @@ struct CutScratch {
     std::array<std::uint8_t, points> special;             ///< tied or without data; for any_cluster.cpp
     CutTets cut;
     CutCells cells;
-    std::array<VertexKey, 4 * CutTets::room> keys; ///< of the polygons of active cells, four each
-    KeyTable used;                                 ///< empty between places
-    std::array<core::GhostSeam, padded> crossed_seams;
-    std::array<std::uint16_t, padded> crossed_places; ///< of these, in the list
+    std::array<VertexKey, 4 * CutTets::room> keys;  ///< of the polygons of active cells, four each
+    KeyTable used;                                  ///< empty between places
+    std::array<VertexKey, padded> ghost_keys;       ///< of ghost seams that are crossed
+    std::array<std::uint64_t, ghost_words> crossed; ///< a bit for each ghost seam
     ShortList<VertexKey, padded> listed;
     std::array<EndPair, padded> ends; ///< of listed vertices
     std::array<Real, padded> weights;
@@ -82,6 +83,18 @@ struct CutScratch {
     Arena arena;
     std::size_t record_bytes = 0; ///< of all records made
 
+    /// Calls f(key, neighbour that owns it, its index among this one's own seams) for every ghost seam that is crossed.
+    template <class Simd, class F>
+    void for_crossed_ghost_seams(const core::ClusterLinks& links, const F& f) {
+        Simd::cross_seams(above.data(), links.ghost_seams, crossed.data(), ghost_keys.data());
+        const VertexKey* key = ghost_keys.data();
+        const core::Neighbour* neighbour = links.neighbours.data();
+        std::size_t end = links.ghost_seams.empty() ? 0 : neighbour->ghost_seams;
+        core::for_bits(crossed.data(), core::words_of_bits(links.ghost_seams.size()), [&](std::size_t k) {
+            while (k >= end) end += (++neighbour)->ghost_seams;
+            f(*key++, neighbour->cluster, links.place_in_owner(k));
+        });
+    }
     void share(VertexKey key, SharedVertex vertex) {
         used.take_out(key);
         shared.push_back(vertex);

@@ -102,7 +102,7 @@ private:
 
     void ask_for_links(std::uint32_t cluster) const {
         const core::ClusterHeader& h = packed_.headers[cluster];
-        prefetch_bytes(packed_.links.data() + h.first_link, 4 * (2u * h.neighbours + core::words_for(h.ghost_points)));
+        prefetch_bytes(packed_.links.data() + h.first_link, 4 * core::ClusterLinks::words(h));
     }
 
     void ask_for_positions(std::size_t place, Scratch<Real>& s) const {
@@ -230,7 +230,7 @@ private:
     }
 
     void write_sources(const Record<Real>& record, std::size_t cluster, std::int64_t* out) const {
-        const std::uint64_t first_word = packed_.first_word(cluster);
+        const std::uint64_t first_word = packed_.headers[cluster].first_word;
         for (std::size_t t = 0; t < record.triangles; ++t)
             out[t] = static_cast<std::int64_t>(packed_.user_cell(first_word + record.tets()[t]));
     }

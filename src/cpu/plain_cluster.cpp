@@ -17,22 +17,15 @@ using Scratch = CutScratch<float>;
 /// Own seams into `listed` and the mask, ghost ones into `shared`; what remains are inner edges.
 template <class Simd>
 void sort_out_seams(const Cutting<float>& cutting, const core::ClusterLinks& links, std::size_t place, Scratch& s) {
-    s.listed.grow(Simd::cross_own_seams(s.above.data(), links.own_seams, cutting.masks.seams(place), s.listed.end()));
+    s.listed.grow(Simd::cross_seams(s.above.data(), links.own_seams, cutting.masks.seams(place), s.listed.end()));
     for (const VertexKey key : s.listed) s.used.take_out(key);
 
-    const std::size_t crossed =
-        Simd::cross_ghost_seams(s.above.data(), links.ghost_seams, s.crossed_seams.data(), s.crossed_places.data());
-    // Crossed ghost seams ascend, and so do the neighbours' parts of the list.
     const std::uint32_t isovalue = cutting.selection.isovalues[place];
-    const core::Neighbour* neighbour = links.neighbours.data();
-    std::size_t end = crossed ? neighbour->ghost_seams : 0;
-    for (std::size_t i = 0; i < crossed; ++i) {
-        while (s.crossed_places[i] >= end) end += (++neighbour)->ghost_seams;
-        const core::GhostSeam seam = s.crossed_seams[i];
-        const std::size_t owner = cutting.selection.place(neighbour->cluster, isovalue);
-        s.share(edge_key(seam.edge), {static_cast<std::uint32_t>(owner), seam.index});
-        if (cutting.packed.has_no_data[neighbour->cluster]) cutting.masks.set_seam(owner, seam.index);
-    }
+    s.for_crossed_ghost_seams<Simd>(links, [&](VertexKey key, std::uint32_t neighbour, std::uint32_t index) {
+        const std::size_t owner = cutting.selection.place(neighbour, isovalue);
+        s.share(key, {static_cast<std::uint32_t>(owner), index});
+        if (cutting.packed.has_no_data[neighbour]) cutting.masks.set_seam(owner, index);
+    });
 }
 
 template <class Simd>

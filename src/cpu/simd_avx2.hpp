@@ -35,7 +35,8 @@ struct Avx2 {
         const __m256i table = table_of(above);
         const __m256i weights = _mm256_set1_epi32(0x08040201);
         for (std::size_t i = 0; i < n; i += 8) {
-            const __m256i corners = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(tets + i)); // groups are padded
+            const __m256i corners =
+                _mm256_loadu_si256(reinterpret_cast<const __m256i*>(tets + i)); // what stands behind may be read
             const __m256i sides = look_up(table, corners);
             const __m256i index = _mm256_madd_epi16(_mm256_maddubs_epi16(sides, weights), _mm256_set1_epi16(1));
             // 1 to 14 are cut: neither 0 nor 15.
@@ -57,8 +58,8 @@ struct Avx2 {
         }
     }
 
-    ISOTET_AVX2 static std::size_t cross_own_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
-                                                   std::uint64_t* mask, VertexKey* out) {
+    ISOTET_AVX2 static std::size_t cross_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
+                                               std::uint64_t* mask, VertexKey* out) {
         const __m256i table = table_of(above);
         std::fill_n(mask, core::words_of_bits(seams.size()), std::uint64_t{0});
         std::size_t count = 0, k = 0;
@@ -80,30 +81,6 @@ struct Avx2 {
             mask[k / 64] |= crossed << k % 64;
             out[count] = edge_key(seams[k]);
             count += crossed;
-        }
-        return count;
-    }
-
-    ISOTET_AVX2 static std::size_t cross_ghost_seams(const std::uint8_t* above, std::span<const core::GhostSeam> seams,
-                                                     core::GhostSeam* out, std::uint16_t* places) {
-        const __m256i table = table_of(above);
-        std::size_t count = 0, k = 0;
-        for (; k + 8 <= seams.size(); k += 8) {
-            const __m256i found = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(seams.data() + k));
-            const __m256i sides = look_up(table, found);
-            const __m256i differ = _mm256_slli_epi32(_mm256_xor_si256(sides, _mm256_srli_epi32(sides, 8)), 31);
-            const auto crossed = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(differ)));
-            const __m128i lanes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of[crossed].data()));
-            _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + count),
-                                _mm256_permutevar8x32_epi32(found, _mm256_cvtepu8_epi32(lanes)));
-            const __m128i place = _mm_add_epi16(_mm_cvtepu8_epi16(lanes), _mm_set1_epi16(static_cast<short>(k)));
-            _mm_storeu_si128(reinterpret_cast<__m128i*>(places + count), place);
-            count += static_cast<std::size_t>(_mm_popcnt_u32(crossed));
-        }
-        for (; k < seams.size(); ++k) {
-            out[count] = seams[k];
-            places[count] = static_cast<std::uint16_t>(k);
-            count += above[seams[k].edge.lower] ^ above[seams[k].edge.higher];
         }
         return count;
     }
@@ -131,7 +108,8 @@ struct Avx2 {
         constexpr unsigned all = (1u << core::corner_count(kind)) - 1;
         const __m256i table = table_of(above);
         for (std::size_t i = 0; i < n; i += 4) {
-            const __m256i corners = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words + 2 * i)); // padded
+            const __m256i corners =
+                _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words + 2 * i)); // what stands behind may be read
             auto cases =
                 static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(look_up(table, corners), 7)));
             for (std::size_t k = i; k < std::min(i + 4, n); ++k, cases >>= 8) {

@@ -35,7 +35,7 @@ struct Avx512 {
         const __m512i weights = _mm512_set1_epi32(0x08040201);
         const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
         for (std::size_t i = 0; i < n; i += 16) {
-            // Groups are padded, so a whole register can always be read.
+            // Behind the last ones stand others, or slack: a whole register can always be read.
             const __m512i corners = _mm512_loadu_si512(tets + i);
             const __m512i sides = _mm512_permutex2var_epi8(low, corners, high);
             const __m512i index = _mm512_madd_epi16(_mm512_maddubs_epi16(sides, weights), _mm512_set1_epi16(1));
@@ -52,8 +52,8 @@ struct Avx512 {
         }
     }
 
-    ISOTET_AVX512 static std::size_t cross_own_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
-                                                     std::uint64_t* mask, VertexKey* out) {
+    ISOTET_AVX512 static std::size_t cross_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
+                                                 std::uint64_t* mask, VertexKey* out) {
         const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
         const VertexKey* const begin = out;
         for (std::size_t k = 0; k < seams.size(); k += 32) {
@@ -72,28 +72,6 @@ struct Avx512 {
         return static_cast<std::size_t>(out - begin);
     }
 
-    ISOTET_AVX512 static std::size_t cross_ghost_seams(const std::uint8_t* above,
-                                                       std::span<const core::GhostSeam> seams, core::GhostSeam* out,
-                                                       std::uint16_t* places) {
-        const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
-        const __m256i lanes = _mm256_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-        std::size_t count = 0;
-        for (std::size_t k = 0; k < seams.size(); k += 16) {
-            const __mmask16 there =
-                seams.size() - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (seams.size() - k)) - 1);
-            const __m512i found = _mm512_maskz_loadu_epi32(there, seams.data() + k);
-            const __m512i sides = _mm512_permutex2var_epi8(low, found, high);
-            const __mmask16 crossed = _mm512_mask_test_epi32_mask(
-                there, _mm512_xor_si512(sides, _mm512_srli_epi32(sides, 8)), _mm512_set1_epi32(1));
-            _mm512_storeu_si512(out + count, _mm512_maskz_compress_epi32(crossed, found));
-            const __m256i place = _mm256_add_epi16(lanes, _mm256_set1_epi16(static_cast<short>(k)));
-            _mm256_storeu_si256(reinterpret_cast<__m256i*>(places + count),
-                                _mm256_maskz_compress_epi16(crossed, place));
-            count += static_cast<std::size_t>(_mm_popcnt_u32(crossed));
-        }
-        return count;
-    }
-
     ISOTET_AVX512 static std::size_t list_keys(KeyTable& used, VertexKey* out) {
         const VertexKey* const begin = out;
         const __m512i lanes = _mm512_loadu_si512(first_numbers.data()), zero = _mm512_setzero_si512();
@@ -101,7 +79,8 @@ struct Avx512 {
             const __m512i some = _mm512_load_si512(&used.parts[flags]);
             _mm512_store_si512(&used.parts[flags], zero);
             for (std::uint64_t parts = _mm512_test_epi8_mask(some, some); parts; parts &= parts - 1) {
-                const std::size_t first = KeyTable::part_size * (flags + static_cast<std::size_t>(std::countr_zero(parts)));
+                const std::size_t first =
+                    KeyTable::part_size * (flags + static_cast<std::size_t>(std::countr_zero(parts)));
                 const __m512i x = _mm512_load_si512(&used.bytes[first]);
                 const __mmask64 there = _mm512_test_epi8_mask(x, x);
                 _mm512_store_si512(&used.bytes[first], zero);
@@ -127,7 +106,7 @@ struct Avx512 {
         const __m512i low = _mm512_loadu_si512(above), high = _mm512_loadu_si512(above + 64);
         const __m128i lanes = _mm_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14);
         for (std::size_t i = 0; i < n; i += 8) {
-            const __m512i corners = _mm512_loadu_si512(words + 2 * i); // groups are padded
+            const __m512i corners = _mm512_loadu_si512(words + 2 * i); // what stands behind may be read
             const __m512i sides = _mm512_permutex2var_epi8(low, corners, high);
             // A bit for each of eight times eight corners: the cases.
             const auto bits = static_cast<long long>(_mm512_test_epi8_mask(sides, sides));

@@ -151,10 +151,10 @@ struct Portable {
         }
     }
 
-    /// Bit k of `mask` is set when the ends of own seam k lie on different sides; the words are cleared first. Writes
+    /// Bit k of `mask` is set when the ends of seam k lie on different sides; the words are cleared first. Writes
     /// the keys of these seams, in order, and returns how many there are. May write up to 32 more.
-    static std::size_t cross_own_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
-                                       std::uint64_t* mask, VertexKey* out) {
+    static std::size_t cross_seams(const std::uint8_t* above, std::span<const core::SeamEdge> seams,
+                                   std::uint64_t* mask, VertexKey* out) {
         std::fill_n(mask, core::words_of_bits(seams.size()), std::uint64_t{0});
         std::size_t count = 0;
         for (std::size_t k = 0; k < seams.size(); ++k) {
@@ -162,19 +162,6 @@ struct Portable {
             mask[k / 64] |= crossed << k % 64;
             out[count] = edge_key(seams[k]);
             count += crossed;
-        }
-        return count;
-    }
-
-    /// Writes the ghost seams with ends on different sides, in order, and their places in the list. Returns how many
-    /// there are. May write up to 16 more.
-    static std::size_t cross_ghost_seams(const std::uint8_t* above, std::span<const core::GhostSeam> seams,
-                                         core::GhostSeam* out, std::uint16_t* places) {
-        std::size_t count = 0;
-        for (std::size_t k = 0; k < seams.size(); ++k) {
-            out[count] = seams[k];
-            places[count] = static_cast<std::uint16_t>(k);
-            count += above[seams[k].edge.lower] ^ above[seams[k].edge.higher];
         }
         return count;
     }

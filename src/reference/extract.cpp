@@ -33,7 +33,7 @@ std::vector<ReferenceCell> all_cells(const Packed& packed) {
     for (std::uint32_t c = 0; c < packed.clusters(); ++c) {
         std::uint64_t locals[core::max_cluster_points];
         core::local_points(packed, c, locals);
-        std::uint64_t word = packed.first_word(c);
+        std::uint64_t word = packed.headers[c].first_word;
         for (const core::StoredTet& tet : packed.cluster_tets(c)) {
             const auto& v = tet.corners;
             cells.push_back(
@@ -41,7 +41,7 @@ std::vector<ReferenceCell> all_cells(const Packed& packed) {
         }
         packed.for_other_cells(c, [&](const core::StoredCell& cell) {
             ReferenceCell& out =
-                cells.emplace_back(cell.kind, std::vector<std::uint64_t>{}, c, packed.first_word(c) + cell.word);
+                cells.emplace_back(cell.kind, std::vector<std::uint64_t>{}, c, packed.headers[c].first_word + cell.word);
             for (const std::uint8_t corner : cell.corners) out.points.push_back(locals[corner]);
         });
     }

@@ -59,7 +59,7 @@ TEST_F(Pages, ThatDoNotFitComeAndGo) {
 }
 
 TEST_F(Pages, OfAGridOfFourTimesTheMemoryGiveTheSameBytes) {
-    const Grid grid = made_grid("shuffled", 24, {"plane"});
+    const Grid grid = made_grid("shuffled", 26, {"plane"});
     const PackedGrid packed = pack(grid, point_field(grid)).value();
     const DeviceGridOptions options{.page_bytes = 32 << 10, .surface_bytes = 0};
     const DeviceGridNeeds needs = DeviceGrid::needs(packed, options);

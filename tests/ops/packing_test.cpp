@@ -129,7 +129,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
             }
             ASSERT_EQ(core::canonical(user), user);
             stored.emplace(std::vector<std::uint64_t>(user.begin(), user.end()),
-                           static_cast<std::int64_t>(packed.user_cell(packed.first_word(c) + i)));
+                           static_cast<std::int64_t>(packed.user_cell(packed.headers[c].first_word + i)));
         }
         packed.for_other_cells(c, [&](const core::StoredCell& cell) {
             for (const std::uint8_t corner : cell.corners) point_holders[locals[c].at(corner)].insert(c);
@@ -141,7 +141,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
                 }
             const core::WholeCell user = core::ranked_cell(packed, locals[c].data(), cell);
             stored.emplace(std::vector<std::uint64_t>(user.corners.begin(), user.corners.begin() + cell.corners.size()),
-                           static_cast<std::int64_t>(packed.user_cell(packed.first_word(c) + cell.word)));
+                           static_cast<std::int64_t>(packed.user_cell(packed.headers[c].first_word + cell.word)));
         });
     }
     ASSERT_EQ(next_point, packed.points());
@@ -190,10 +190,10 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
         for (const core::Neighbour& neighbour : links.neighbours) {
             ASSERT_LT(neighbour.cluster, c);
             for (const std::size_t end = k + neighbour.ghost_seams; k < end; ++k) {
-                const core::GhostSeam& seam = links.ghost_seams[k];
-                const std::pair pair{locals[c].at(seam.edge.lower), locals[c].at(seam.edge.higher)};
+                const core::SeamEdge seam = links.ghost_seams[k];
+                const std::pair pair{locals[c].at(seam.lower), locals[c].at(seam.higher)};
                 ASSERT_EQ(*edge_holders.at(pair).begin(), neighbour.cluster);
-                const core::SeamEdge there = packed.cluster_links(neighbour.cluster).own_seams[seam.index];
+                const core::SeamEdge there = packed.cluster_links(neighbour.cluster).own_seams[links.place_in_owner(k)];
                 ASSERT_EQ(pair, (std::pair{locals[neighbour.cluster].at(there.lower),
                                            locals[neighbour.cluster].at(there.higher)}));
                 ASSERT_TRUE(listed.insert(pair).second);
@@ -220,8 +220,12 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
                 ASSERT_TRUE(group.lower <= step && step <= group.upper);
             }
         }
+        std::map<core::CellKind, std::size_t> seen;
         packed.for_other_cells(c, [&](const core::StoredCell& cell) {
-            const core::GroupRange group = packed.group_ranges[h.first_group + cell.word / core::group_size];
+            std::size_t place = seen[cell.kind]++ / core::cells_per_group(cell.kind);
+            for (core::CellKind kind : core::cell_kinds)
+                if (kind < cell.kind) place += h.groups(kind);
+            const core::GroupRange group = packed.group_ranges[h.first_group + place];
             for (const std::uint8_t corner : cell.corners) {
                 const float value = reals.values[locals[c][corner]];
                 if (core::is_nan(value)) continue;
@@ -251,6 +255,23 @@ TEST(PackedArrays, SayWhatTheTetsSay) {
     expect_packed_arrays(mixed, point_field(mixed), true);
 }
 
+// Tets between any four of few points: clusters with more own seams than a byte can number.
+TEST(PackedArrays, SayWhatTheTetsSayWhereClustersHaveManySeams) {
+    std::mt19937 random(3);
+    std::vector<std::array<double, 3>> points(150);
+    for (auto& point : points)
+        for (double& x : point) x = std::uniform_real_distribution<double>(-1, 1)(random);
+    std::vector<Corners> tets(4000);
+    for (Corners& tet : tets)
+        for (std::int64_t& corner : tet) corner = std::uniform_int_distribution<std::int64_t>(0, 149)(random);
+    const Grid grid = tet_grid(points, tets);
+    const PointField field = field_of(std::vector<float>(points.size(), 1));
+    const PackedGrid packed = pack(grid, field).value();
+    EXPECT_TRUE(std::ranges::any_of(packed.data().headers, [](const auto& header) { return header.wide_seams; }));
+    EXPECT_FALSE(std::ranges::all_of(packed.data().headers, [](const auto& header) { return header.wide_seams; }));
+    expect_packed_arrays(grid, field);
+}
+
 TEST(RepeatedTets, AreFoundAmongManyOfOnePoint) {
     // Any three of eleven points around a twelfth: 165 tets, each several times and in any order of corners.
     std::mt19937 random(5);
@@ -278,7 +299,8 @@ TEST(RepeatedTets, AreFoundAmongManyOfOnePoint) {
     std::set<std::uint64_t> kept, expected;
     const core::Packed& data = packed.data();
     for (std::size_t c = 0; c < data.clusters(); ++c)
-        for (std::size_t i = 0; i < data.headers[c].tets(); ++i) kept.insert(data.user_cell(data.first_word(c) + i));
+        for (std::size_t i = 0; i < data.headers[c].tets(); ++i)
+            kept.insert(data.user_cell(data.headers[c].first_word + i));
     for (const auto& [corners, cell] : first) expected.insert(cell);
     EXPECT_EQ(kept, expected);
 }

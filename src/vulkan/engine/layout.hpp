@@ -14,7 +14,7 @@ namespace isotet::vulkan {
 
 namespace layout {
 
-static_assert(sizeof(Page) == 52 && sizeof(Cluster) == 36 && sizeof(Neighbour) == 12 && sizeof(Range) == 8);
+static_assert(sizeof(Page) == 56 && sizeof(Cluster) == 40 && sizeof(Neighbour) == 12 && sizeof(Range) == 8);
 static_assert(sizeof(Count) == 8 && sizeof(Start) == 12 && sizeof(Lists) == 48 && sizeof(DrawArguments) == 20);
 static_assert(sizeof(Tables) == 116 && sizeof(Output) == 144 && sizeof(ExtractPush) == 36 && sizeof(RangesPush) == 8);
 static_assert(sizeof(SurfacePush) == 8 && sizeof(FieldPush) == 28);

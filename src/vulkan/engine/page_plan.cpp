@@ -16,8 +16,8 @@ using core::Packed;
 std::uint32_t groups_of(const ClusterHeader& h) { return static_cast<std::uint32_t>(h.groups()); }
 
 std::uint64_t own_bytes(const Packed& packed, const ClusterHeader& h) {
-    const std::uint64_t words = h.own_points * (packed.gradients.empty() ? 4u : 5u) + groups_of(h) * core::group_size +
-                                ClusterLinks::words(h) + h.neighbours;
+    const std::uint64_t words =
+        h.own_points * (packed.gradients.empty() ? 4u : 5u) + h.words() + ClusterLinks::words(h) + h.neighbours;
     return 4 * words + 2 * groups_of(h);
 }
 
@@ -33,6 +33,8 @@ std::vector<PlannedPage> cut(const Packed& packed, std::uint64_t page_bytes) {
             page.first_cluster = static_cast<std::uint32_t>(c);
             page.first_link = h.first_link;
             page.layout.first_point = static_cast<std::uint32_t>(h.first_point);
+            page.first_word = h.first_word;
+            page.layout.first_word = static_cast<std::uint32_t>(h.first_word);
             page.layout.first_group = h.first_group;
             bytes = 0;
         }
@@ -41,6 +43,7 @@ std::vector<PlannedPage> cut(const Packed& packed, std::uint64_t page_bytes) {
         ++page.clusters;
         page.link_words += static_cast<std::uint32_t>(ClusterLinks::words(h));
         page.neighbours += h.neighbours;
+        page.cell_words += static_cast<std::uint32_t>(h.words());
         page.groups += groups_of(h);
         page.layout.own_points += h.own_points;
     }
@@ -85,7 +88,7 @@ void place_arrays(const Packed& packed, PlannedPage& page) {
     place(page.layout.positions, 3 * page.points());
     place(page.layout.gradients, packed.gradients.empty() ? 0 : page.points());
     place(page.layout.halo, static_cast<std::uint32_t>(page.halo.size()));
-    place(page.layout.cells, static_cast<std::uint32_t>(core::group_size) * page.groups);
+    place(page.layout.cells, page.cell_words);
     place(page.layout.group_ranges, (page.groups + 1) / 2);
     place(page.layout.links, page.link_words + page.neighbours);
     page.words = words;
@@ -104,7 +107,7 @@ public:
     void write(std::uint32_t cluster, std::uint32_t* out) const {
         const ClusterHeader& h = packed_.headers[cluster];
         const ClusterLinks links = packed_.cluster_links(cluster);
-        std::uint8_t places[core::max_cluster_points + 3] = {};
+        std::uint8_t places[core::max_cluster_points];
         std::copy(links.ghost_points.begin(), links.ghost_points.end(), places);
         std::uint32_t point = 0, seam = 0;
         for (const core::Neighbour& neighbour : links.neighbours) {
@@ -115,11 +118,10 @@ public:
             point += neighbour.ghost_points;
             seam += neighbour.ghost_seams;
         }
-        const std::size_t point_words = core::words_for(h.ghost_points);
-        std::memcpy(out, places, 4 * point_words);
-        // The seams stand there as they do here.
-        const std::size_t before = 2u * h.neighbours + point_words;
-        std::copy_n(packed_.links.data() + h.first_link + before, ClusterLinks::words(h) - before, out + point_words);
+        // What stands behind is as it is here, but for the places of the ghost points.
+        const std::size_t before = 2u * h.neighbours, seams = sizeof(core::SeamEdge) * (h.own_seams + h.ghost_seams);
+        std::copy_n(packed_.links.data() + h.first_link + before, ClusterLinks::words(h) - before, out);
+        std::memcpy(reinterpret_cast<std::byte*>(out) + seams, places, h.ghost_points);
     }
 
 private:
@@ -157,12 +159,13 @@ void place_clusters(const Packed& packed, const PlannedPage& page, std::uint32_t
         out[i] = {};
         out[i].page = page_number;
         out[i].first_point = static_cast<std::uint32_t>(h.first_point - page.layout.first_point);
+        out[i].first_word = static_cast<std::uint32_t>(h.first_word - page.first_word);
         out[i].first_group = h.first_group - page.layout.first_group;
         out[i].first_link = link;
         out[i].points = h.own_points | std::uint32_t{h.ghost_points} << 16;
         out[i].tets = static_cast<std::uint32_t>(h.tets()) | std::uint32_t{h.neighbours} << 16;
         out[i].others = h.cells[1] | std::uint32_t{h.cells[2]} << 10 | std::uint32_t{h.cells[3]} << 20;
-        out[i].seams = h.own_seams | std::uint32_t{h.ghost_seams} << 16;
+        out[i].seams = h.own_seams | (h.wide_seams ? layout::wide_seams_flag : 0) | std::uint32_t{h.ghost_seams} << 16;
         link += static_cast<std::uint32_t>(ClusterLinks::words(h)) + h.neighbours;
     }
 }
@@ -173,8 +176,7 @@ void fill_page(const Packed& packed, const PlannedPage& page, const layout::Clus
     fill_points(words_of(packed.as<float>().positions), 3, page, out + at.positions);
     if (!packed.gradients.empty()) fill_points(packed.gradients.data(), 1, page, out + at.gradients);
     std::copy(page.halo.begin(), page.halo.end(), out + at.halo);
-    std::memcpy(out + at.cells, packed.cells.data() + core::group_size * std::size_t{at.first_group},
-                sizeof(core::StoredTet) * core::group_size * page.groups);
+    std::memcpy(out + at.cells, packed.cells.data() + page.first_word, sizeof(core::StoredTet) * page.cell_words);
     std::memcpy(out + at.group_ranges, packed.group_ranges.data() + at.first_group,
                 sizeof(core::GroupRange) * page.groups);
     const LinkWriter links(packed, page);

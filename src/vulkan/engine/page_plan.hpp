@@ -14,10 +14,11 @@ namespace isotet::vulkan {
 
 struct PlannedPage {
     std::uint32_t first_cluster = 0, clusters = 0;
+    std::uint64_t first_word = 0; ///< of the packed grid's cells
     std::uint64_t first_link = 0; ///< of the packed grid
     std::uint32_t link_words = 0; ///< of the packed grid; on the device there is one more a neighbour
     std::uint32_t neighbours = 0;
-    std::uint32_t groups = 0;
+    std::uint32_t cell_words = 0, groups = 0;
     core::Buffer<std::uint32_t> halo; ///< packed points, ascending
     layout::Page layout{};            ///< all but `data` and `batch`
     std::uint32_t words = 0;          ///< all of it

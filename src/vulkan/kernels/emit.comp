@@ -269,7 +269,7 @@ void write_triangles(bool special) {
                                : corners.x == corners.y || corners.y == corners.z || corners.z == corners.x)
                     continue;
                 write_triangle(at, corners);
-                if (with_sources) Words(sources).at[at] = group_size * (page.first_group + cluster.first_group) + cell.word;
+                if (with_sources) Words(sources).at[at] = page.first_word + cluster.first_word + cell.word;
                 ++at;
             }
         }

@@ -48,14 +48,16 @@ void find_steps(float value, Range range) {
     upper_steps[self] = has_data(value) ? step : no_upper;
 }
 
-/// With the copies of the last cell of each kind that fill its last group.
-void find_group_ranges(uint groups) {
-    for (uint k = gl_LocalInvocationIndex; k < group_size * groups; k += workgroup_size) {
+void find_group_ranges() {
+    const uint words = kind_words.w + 2u * kind_counts.w;
+    for (uint k = gl_LocalInvocationIndex; k < words; k += workgroup_size) {
+        const uint kind = k < kind_words.y ? 0u : k < kind_words.z ? 1u : k < kind_words.w ? 2u : 3u;
+        const uint group = (kind == 0u ? 0u : kind_ends[kind - 1u]) + (k - kind_words[kind]) / group_size;
         const uint word = cell_word(k);
         const uvec4 v = uvec4(word & 0xffu, word >> 8 & 0xffu, word >> 16 & 0xffu, word >> 24);
-        atomicMin(group_lower[k / group_size],
+        atomicMin(group_lower[group],
                   min(min(lower_steps[v.x], lower_steps[v.y]), min(lower_steps[v.z], lower_steps[v.w])));
-        atomicMax(group_upper[k / group_size],
+        atomicMax(group_upper[group],
                   max(max(upper_steps[v.x], upper_steps[v.y]), max(upper_steps[v.z], upper_steps[v.w])));
     }
 }
@@ -100,7 +102,7 @@ void main() {
     const Range range = Range(from_ordered(lowest), from_ordered(highest));
     find_steps(value, range);
     barrier();
-    find_group_ranges(groups);
+    find_group_ranges();
     barrier();
     if (self < groups) write_group_range(self);
     if (self == 0u) write_cluster(tables, number, range);

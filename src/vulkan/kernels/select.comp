@@ -45,6 +45,6 @@ void main() {
     if (!selected) return;
     Words(tables.selected).at[first_place + place] = number;
     const Cluster cluster = Clusters(tables.clusters).at[number];
-    const uint words = tied_words + ((cluster.seams & 0xffffu) + 31u) / 32u;
+    const uint words = tied_words + ((cluster.seams & own_seams_bits) + 31u) / 32u;
     for (uint word = 0u; word < words; ++word) Words(tables.masks).at[cluster.first_mask + word] = 0u;
 }

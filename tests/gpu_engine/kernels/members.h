@@ -23,8 +23,8 @@
 #define ISOTET_MEMBERS(M) \
     M(a_page, Page, data) M(a_page, Page, values) M(a_page, Page, positions) M(a_page, Page, gradients) \
     M(a_page, Page, halo) M(a_page, Page, cells) M(a_page, Page, group_ranges) M(a_page, Page, links) \
-    M(a_page, Page, own_points) M(a_page, Page, first_point) M(a_page, Page, first_group) M(a_page, Page, batch) \
-    M(a_cluster, Cluster, page) M(a_cluster, Cluster, first_point) M(a_cluster, Cluster, first_group) \
+    M(a_page, Page, own_points) M(a_page, Page, first_point) M(a_page, Page, first_word) M(a_page, Page, first_group) M(a_page, Page, batch) \
+    M(a_cluster, Cluster, page) M(a_cluster, Cluster, first_point) M(a_cluster, Cluster, first_word) M(a_cluster, Cluster, first_group) \
     M(a_cluster, Cluster, first_link) M(a_cluster, Cluster, first_mask) M(a_cluster, Cluster, points) \
     M(a_cluster, Cluster, tets) M(a_cluster, Cluster, others) M(a_cluster, Cluster, seams) \
     M(a_neighbour, Neighbour, cluster) M(a_neighbour, Neighbour, first_point) M(a_neighbour, Neighbour, begin) \

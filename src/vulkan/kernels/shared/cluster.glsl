@@ -11,7 +11,10 @@ Page page;
 uint own_points, ghost_points, neighbour_count, own_seams, ghost_seams;
 uvec4 kind_counts; ///< tets, pyramids, wedges, hexahedra
 uvec4 kind_ends;   ///< the group behind the last one of each
-uint ghost_points_at, own_seams_at, ghost_seams_at; ///< words of the page
+uvec4 kind_words;  ///< the first word of each
+uint seams_at;     ///< word of the page
+uint ghost_points_at, places_at; ///< bytes of the page
+uint place_bytes;  ///< of a ghost seam's place: 1 or 2
 
 void open_cluster(Tables tables, uint number) {
     cluster = Clusters(tables.clusters).at[number];
@@ -20,14 +23,18 @@ void open_cluster(Tables tables, uint number) {
     ghost_points = cluster.points >> 16;
     kind_counts = uvec4(cluster.tets & 0xffffu, cluster.others & 1023u, cluster.others >> 10 & 1023u, cluster.others >> 20);
     kind_ends.x = (kind_counts.x + group_size - 1u) / group_size;
-    for (uint kind = 1u; kind < 4u; ++kind)
+    kind_words = uvec4(0u, kind_counts.x, 0u, 0u);
+    for (uint kind = 1u; kind < 4u; ++kind) {
         kind_ends[kind] = kind_ends[kind - 1u] + (kind_counts[kind] + group_size / 2u - 1u) / (group_size / 2u);
+        if (kind < 3u) kind_words[kind + 1u] = kind_words[kind] + 2u * kind_counts[kind];
+    }
     neighbour_count = cluster.tets >> 16;
-    own_seams = cluster.seams & 0xffffu;
+    own_seams = cluster.seams & own_seams_bits;
+    place_bytes = (cluster.seams & wide_seams_flag) == 0u ? 1u : 2u;
     ghost_seams = cluster.seams >> 16;
-    ghost_points_at = page.links + cluster.first_link + 3u * neighbour_count;
-    own_seams_at = ghost_points_at + (ghost_points + 3u) / 4u;
-    ghost_seams_at = own_seams_at + (own_seams + 1u) / 2u;
+    seams_at = page.links + cluster.first_link + 3u * neighbour_count;
+    ghost_points_at = 4u * seams_at + 2u * (own_seams + ghost_seams);
+    places_at = ghost_points_at + ghost_points;
 }
 
 uint local_points() { return ghost_points + own_points; }
@@ -35,6 +42,8 @@ uint local_points() { return ghost_points + own_points; }
 /// A word of the page. Its address is made of numbers here: SwiftShader keeps a global that is a reference in half of the bytes
 /// it takes, and so overwrites the one behind.
 uint page_word(uint at) { return Words(page.data).at[at]; }
+
+uint page_byte(uint at) { return page_word(at / 4u) >> 8u * (at % 4u) & 0xffu; }
 
 Neighbour neighbour_at(uint place) {
     const uint at = page.links + cluster.first_link + 3u * place;
@@ -56,7 +65,7 @@ Neighbour neighbour_of(uint k, uint shift) {
 }
 
 /// Ghost point `k`: its place among the points that its neighbour has in this page.
-uint ghost_place(uint k) { return page_word(ghost_points_at + k / 4u) >> 8u * (k % 4u) & 0xffu; }
+uint ghost_place(uint k) { return page_byte(ghost_points_at + k); }
 
 /// The page-local number of local point `k`.
 uint page_point(uint k) {
@@ -88,7 +97,7 @@ uint place_in_owner(Tables tables, Neighbour neighbour, uint k) {
 uint group_count() { return kind_ends.w; }
 
 /// Word `k` of the cluster's cells: four corners.
-uint cell_word(uint k) { return page_word(page.cells + group_size * cluster.first_group + k); }
+uint cell_word(uint k) { return page_word(page.cells + cluster.first_word + k); }
 
 /// Range of a group in steps of the cluster's: lower + 256 * upper.
 uint range_of_group(uint group) {
@@ -96,16 +105,16 @@ uint range_of_group(uint group) {
     return page_word(page.group_ranges + at / 2u) >> 16u * (at % 2u) & 0xffffu;
 }
 
-/// (lower, higher) local index of own seam `k`.
+/// (lower, higher) local index of own seam `k`; those of ghost seams stand behind.
 uvec2 own_seam(uint k) {
-    const uint pair = page_word(own_seams_at + k / 2u) >> 16u * (k % 2u);
+    const uint pair = page_word(seams_at + k / 2u) >> 16u * (k % 2u);
     return uvec2(pair & 0xffu, pair >> 8 & 0xffu);
 }
 
 /// (lower, higher, index among the owner's own seams) of ghost seam `k`.
 uvec3 ghost_seam(uint k) {
-    const uint word = page_word(ghost_seams_at + k);
-    return uvec3(word & 0xffu, word >> 8 & 0xffu, word >> 16);
+    const uint at = places_at + place_bytes * k;
+    return uvec3(own_seam(own_seams + k), page_byte(at) | (place_bytes == 1u ? 0u : page_byte(at + 1u) << 8));
 }
 
 #endif

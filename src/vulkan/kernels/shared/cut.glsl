@@ -125,7 +125,7 @@ Cell cut_cell(Tables tables, uint group, uint lane, bool special) {
         cell.kind = 4u;
         return cell;
     }
-    cell.word = group_size * group + (is_tet ? lane : 2u * lane);
+    cell.word = kind_words[cell.kind] + group_size * (group - first_group) + (is_tet ? lane : 2u * lane);
     cell.words = uvec2(cell_word(cell.word), is_tet ? 0u : cell_word(cell.word + 1u));
     cell.above = corners_in(above, cell, corners);
     if (special && corners_in(no_data, cell, corners) != 0u) return cell;

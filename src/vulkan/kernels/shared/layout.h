@@ -64,11 +64,12 @@ struct Page {
     uint positions;    ///< 3 a point
     uint gradients;    ///< one a point, where the grid was packed with them
     uint halo;         ///< one a halo point: its packed number
-    uint cells;        ///< one a tet, two any other cell, groups padded
+    uint cells;        ///< one a tet, two any other cell
     uint group_ranges; ///< 16 bits a group
     uint links;
     uint own_points;
     uint first_point;  ///< packed number of own point 0
+    uint first_word;   ///< number of word 0 of its cells in the whole grid
     uint first_group;  ///< number of group 0 in the whole grid
     uint batch;        ///< the pass over pages that it takes part in
 };
@@ -76,14 +77,16 @@ struct Page {
 struct Cluster {
     uint page;
     uint first_point;  ///< of its own points, in the page
+    uint first_word;   ///< of its cells, in the page
     uint first_group;  ///< in the page
     uint first_link;   ///< in the page's links
     uint first_mask;   ///< in the masks: tied_words, then one bit an own seam
     uint points;       ///< own + 65536 * ghost
     uint tets;         ///< tets + 65536 * neighbours
     uint others;       ///< pyramids + 1024 * wedges + 2^20 * hexahedra
-    uint seams;        ///< own + 65536 * ghost
+    uint seams;        ///< own + wide_seams_flag + 65536 * ghost
 };
+ISOTET_CONSTANT own_seams_bits = 0x7fffu, wide_seams_flag = 0x8000u; ///< as in core::ClusterHeader
 
 /// What core::Neighbour says, with sums in place of counts: nothing has to be added up to find a part.
 struct Neighbour {
