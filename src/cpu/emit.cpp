@@ -49,7 +49,7 @@ struct Scratch {
     FoundPoints* next = &found[1];          ///< of the one after it
     std::array<EndPair, max_vertices> ends; ///< of vertices that only masks know
     std::array<Real, max_vertices> weights;
-    std::array<std::uint32_t, max_vertices> numbers; ///< of vertices, by local number
+    std::array<std::uint32_t, max_vertices + 32> numbers{}; ///< of vertices, by local number; SIMD code reads more
     std::array<std::uint64_t, max_vertices> wide_numbers;
 };
 

@@ -19,13 +19,16 @@ struct Avx512 {
                                        std::uint8_t* above) {
         const __m512 level = _mm512_set1_ps(isovalue.value), tied = _mm512_set1_ps(isovalue.tied);
         unsigned special = 0;
+        std::array<std::uint64_t, 2> sides{};
         for (std::size_t k = 0; k < n; k += 16) {
             const __mmask16 there = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
             const __m512 x = _mm512_maskz_loadu_ps(there, values + k);
             const __mmask16 is_above = _mm512_cmp_ps_mask(x, level, _CMP_GE_OQ);
             special |= _mm512_mask_cmp_ps_mask(there, x, tied, _CMP_EQ_UQ); // tied, or not a number
-            _mm_storeu_si128(reinterpret_cast<__m128i*>(above + k), _mm_maskz_set1_epi8(is_above, 1));
+            sides[k / 64] |= std::uint64_t{is_above} << k % 64;
         }
+        // Whole registers, as they are loaded soon: what was stored in parts would have to be waited for.
+        for (std::size_t k = 0; k < 2; ++k) _mm512_storeu_si512(above + 64 * k, _mm512_maskz_set1_epi8(sides[k], 1));
         return special;
     }
 
@@ -171,14 +174,19 @@ struct Avx512 {
                                      const std::uint32_t* numbers, std::uint32_t* out) {
         const __m512i before = _mm512_set1_epi32(static_cast<int>(first)),
                       end = _mm512_set1_epi32(static_cast<int>(listed));
+        // Mostly there are no more others than two registers hold. Behind them anything may stand, but it can be read.
+        const __m512i low = _mm512_loadu_si512(numbers + listed), high = _mm512_loadu_si512(numbers + listed + 16);
         for (std::size_t i = 0; i < n; i += 16) {
             const __mmask16 there = n - i >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - i)) - 1);
             __m512i index;
             if constexpr (sizeof(Local) == 1) index = _mm512_cvtepu8_epi32(_mm_maskz_loadu_epi8(there, local + i));
             else index = _mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(there, local + i));
             const __mmask16 others = _mm512_mask_cmpge_epu32_mask(there, index, end);
-            const __m512i own = _mm512_add_epi32(index, before);
-            _mm512_mask_storeu_epi32(out + i, there, _mm512_mask_i32gather_epi32(own, others, index, numbers, 4));
+            const __m512i own = _mm512_add_epi32(index, before), other = _mm512_sub_epi32(index, end);
+            __m512i number = _mm512_mask_mov_epi32(own, others, _mm512_permutex2var_epi32(low, other, high));
+            const __mmask16 far = _mm512_mask_cmpge_epu32_mask(others, other, _mm512_set1_epi32(32));
+            if (far) number = _mm512_mask_i32gather_epi32(number, far, index, numbers, 4);
+            _mm512_mask_storeu_epi32(out + i, there, number);
         }
     }
     template <class Local>
