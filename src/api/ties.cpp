@@ -1,11 +1,14 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "api/ties.hpp"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/prefetch.hpp"
 #include "core/storage.hpp"
 
 namespace isotet {
@@ -32,14 +35,27 @@ namespace {
 template <class Real, class F>
 void for_points_with(const core::Packed& packed, Real stored, const F& f) {
     const auto& reals = packed.as<Real>();
-    core::parallel_each(packed.clusters(), 1 << 10, [&](std::size_t c) {
-        if (!(reals.ranges[c].lower <= stored && stored <= reals.ranges[c].upper)) return;
-        const core::ClusterHeader& h = packed.headers[c];
-        const Real* const values = reals.values.data() + h.first_point;
-        unsigned any = 0; // mostly none: found without a branch a point
-        for (std::size_t k = 0; k < h.own_points; ++k) any |= values[k] == stored;
-        for (std::size_t k = 0; any && k < h.own_points; ++k)
-            if (values[k] == stored) f(h.first_point + k);
+    const auto values_of = [&](std::uint32_t c) { return reals.values.data() + packed.headers[c].first_point; };
+    // Which clusters may hold it is as good as random: they are listed first, without a branch each, and their values asked
+    // for before they are looked at.
+    constexpr std::size_t at_once = 512, ahead = 8;
+    core::parallel_each((packed.clusters() + at_once - 1) / at_once, 2, [&](std::size_t part) {
+        std::array<std::uint32_t, at_once + 1> hits;
+        std::size_t count = 0;
+        for (std::size_t c = at_once * part, end = std::min(packed.clusters(), c + at_once); c < end; ++c) {
+            hits[count] = static_cast<std::uint32_t>(c);
+            count += unsigned{reals.ranges[c].lower <= stored} & unsigned{stored <= reals.ranges[c].upper};
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i + ahead < count)
+                core::prefetch_bytes(values_of(hits[i + ahead]), sizeof(Real) * core::max_cluster_points / 2);
+            const core::ClusterHeader& h = packed.headers[hits[i]];
+            const Real* const values = values_of(hits[i]);
+            unsigned any = 0; // mostly none: found without a branch a point
+            for (std::size_t k = 0; k < h.own_points; ++k) any |= values[k] == stored;
+            for (std::size_t k = 0; any && k < h.own_points; ++k)
+                if (values[k] == stored) f(h.first_point + k);
+        }
     });
 }
 
