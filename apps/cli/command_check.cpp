@@ -71,13 +71,15 @@ std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
     return table.text();
 }
 
-std::string findings_table(const std::vector<Finding>& findings, bool sound) {
+std::string findings_table(const std::vector<Finding>& findings, bool passed) {
     Table table = facts();
     for (const Finding& finding : findings) {
         table.row({finding.what, fmt::format("at {}, {}, {}", shortest(finding.where[0]), shortest(finding.where[1]),
                                              shortest(finding.where[2]))});
     }
-    return table.empty() ? "" : fmt::format("\n{}\n{}", sound ? "for information:" : "found:", table.text());
+    return table.empty()
+               ? ""
+               : fmt::format("\n{}\n{}", passed ? "some places, for information:" : "some places:", table.text());
 }
 
 Json check_json(const CheckedFiles& checked, const CheckJob& job) {

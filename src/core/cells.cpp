@@ -172,6 +172,20 @@ Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
     return Fault::none;
 }
 
+/// What a cell with so many corners may have been meant to be, since some programs write curved cells as linear ones.
+std::string hint_at_curved(std::uint8_t type, std::uint64_t corners) {
+    struct Curved {
+        std::uint8_t linear, nodes, type;
+    };
+    static constexpr Curved kinds[] = {{10, 10, 24}, {12, 20, 25}, {12, 24, 33}, {12, 27, 29}, {13, 12, 31},
+                                       {13, 15, 26}, {13, 18, 32}, {14, 13, 27}, {14, 19, 37}};
+    for (const Curved& kind : kinds)
+        if (kind.linear == type && kind.nodes == corners)
+            return fmt::format("; a {} has {}: its cell type is {}, not {}", name_of_cell_type(kind.type), corners,
+                               kind.type, type);
+    return "";
+}
+
 std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std::size_t cell) {
     const std::uint64_t begin = cells.first(cell), corners = cells.corners(cell);
     const std::string who = cells.only_tets()
@@ -185,7 +199,8 @@ std::string describe(Fault fault, const Grid& grid, const CellReader& cells, std
                            static_cast<std::int64_t>(begin), static_cast<std::int64_t>(begin + corners),
                            cells.connectivity_size());
     if (fault == Fault::corner_count)
-        return fmt::format("{} has {} corners, but must have {}", who, corners, expected_corners(cells.type(cell)));
+        return fmt::format("{} has {} corners, but must have {}{}", who, corners, expected_corners(cells.type(cell)),
+                           hint_at_curved(cells.type(cell), corners));
     for (std::uint64_t k = 0; k < corners; ++k) {
         const std::uint64_t point = cells.corner(begin + k);
         if (point >= cells.points()) {

@@ -79,6 +79,12 @@ TEST(Pack, RefusesCellsWithTheWrongNumberOfCorners) {
     grid.cells.offsets = Array::own(std::vector<std::int32_t>{0, 7});
     grid.cells.types = Array::own(std::vector<std::uint8_t>{12});
     expect_bad_grid(grid, "cells[0] (hexahedron) has 7 corners, but must have 8");
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>(20, 0));
+    grid.cells.offsets = Array::own(std::vector<std::int32_t>{0, 20});
+    expect_bad_grid(
+        grid, "cells[0] (hexahedron) has 20 corners, but must have 8; a quadratic hexahedron has 20: its cell type "
+              "is 25, not 12");
+    grid.cells.connectivity = Array::own(std::vector<std::int64_t>{0, 1, 2, 3, 4, 0, 1});
     grid.cells.offsets = {};
     grid.cells.types = {};
     expect_bad_grid(grid, "the connectivity has 7 entries, but must be a multiple of 4 for tetrahedron cells");
