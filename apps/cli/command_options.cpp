@@ -377,7 +377,7 @@ void add_make(const Command& program, MakeCommand& make) {
                   "kuhn, perturbed, shuffled, layer, hex, wedge, pyramid, mixed, tet10, curved, hex27 or kelvin")
         .required();
     command.add_count(
-               "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge")
+               "--side", {1}, [&](std::uint64_t n) { make.grid.side = n; }, "N", "Cubes along an edge, 1 to 4096")
         .required();
     command.add_words(
         "--fields", [&](const std::vector<std::string>& names) { make.grid.fields = names; }, "A[,B...]",
