@@ -125,6 +125,18 @@ def test_type(browser, viewer):
     browser.wait('document.getElementById("value").getAttribute("aria-invalid") === "true"')
     check('number' in browser.value('document.getElementById("message").textContent'), 'the rule is told')
     check(shown(browser) == 0.5, 'the last surface stays')
+    for text in ('0.6', 'half'):
+        browser.value('document.getElementById("value").select()')
+        browser.type(text)
+        browser.key('Enter')
+    at_rest(browser, 0.6)
+    check('number' in browser.value('document.getElementById("message").textContent'),
+          'a surface that was on its way does not wipe the rule out')
+    browser.value('document.getElementById("value").select()')
+    browser.type('0.7')
+    browser.key('Enter')
+    at_rest(browser, 0.7)
+    check(browser.value('document.getElementById("message").hidden'), 'what is right wipes it out')
 
 
 def test_orbit_pan_zoom(browser, viewer):

@@ -16,15 +16,25 @@ const [token, ...rest] = location.hash.slice(1).split('&');
 let state = fromAddress(rest.join('&'));
 const camera = new Camera();
 let grid = null, maps = null, frame = null, scene = null;
-let number = 0, sent = null, sentAt = new Map(), waiting = 0, restTimer = 0, wishPlanned = false, drawPlanned = false;
+let number = 0, saidAfter = 0, sent = null, sentAt = new Map(), waiting = 0, restTimer = 0, wishPlanned = false, drawPlanned = false;
 
 // --- what is shown -------------------------------------------------------------------------------------------------
 
 function css(name) { return getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim(); }
 
-function say(sentence) {
-  id('message').textContent = sentence || '';
+function showMessage(sentence) {
+  id('message').textContent = sentence;
   id('message').hidden = !sentence;
+}
+
+/** Says it until a frame comes that was asked for after number `after`: one still on its way must not wipe it out. */
+function say(sentence, after = number) {
+  saidAfter = sentence ? after : 0;
+  showMessage(sentence);
+}
+
+function showNotes(next) {
+  if (next.number > saidAfter) say(next.notes.join(' '), 0);
 }
 
 /** Colour and opacity of what the frame has: the slider's surface, pinned ones, slices, the boundary. */
@@ -179,7 +189,7 @@ async function takePicture(next) {
   frame = next;
   acknowledge(frame);
   if (next.number >= number) stopWaiting();
-  say(next.notes.join(' '));
+  showNotes(next);
   showSurfaces();
   showRange();
   tellFacts();
@@ -210,7 +220,7 @@ function takeFrame(buffer) {
   next.field = state.field;
   frame = next;
   if (next.number >= number) stopWaiting();
-  say(next.notes.join(' '));
+  showNotes(next);
   showSurfaces();
   showRange();
   drawSoon();
@@ -767,7 +777,7 @@ function takeGrid(message) {
   const label = (name) => [name, name + (grid.fields.find((one) => one.name === name)?.cell ? ' (cells)' : '')];
   fill(id('field'), names.map(label), state.field);
   fill(id('color-by'), [['', 'Surface'], ...names.map(label)], state.colorBy);
-  say(grid.notes.join(' '));
+  say(grid.notes.join(' '), 0);
   document.body.dataset.grid = `${grid.points} points, ${grid.cells} cells`;
   showState();
   if (fresh) history.replaceState(null, '', address());
@@ -807,7 +817,7 @@ const messages = {
   refused(message) {
     if (message.number >= number) stopWaiting();
     sent = null;
-    say(message.sentence);
+    say(message.sentence, message.number);
   },
   saved: (message) => save.tell(`Saved: ${message.path}`),
   error: (message) => (message.about === 'save' ? save.tell(message.sentence) : say(message.sentence)),
