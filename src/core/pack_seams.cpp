@@ -43,8 +43,8 @@ struct EdgeMatrix {
         for (const std::uint8_t corner : v) rows[corner].add(corners);
     }
     void add(const StoredCell& cell) {
-        for (const auto& [k, l] :
-             edges_of(cell.kind)) { // which is lower does not matter: of rows the higher part counts
+        // Which end is lower does not matter: of rows the higher part counts.
+        for (const auto& [k, l] : edges_of(cell.kind)) {
             rows[cell.corners[k]].add(cell.corners[l]);
             rows[cell.corners[l]].add(cell.corners[k]);
         }

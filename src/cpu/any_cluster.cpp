@@ -183,14 +183,13 @@ private:
     }
 
     void share_ghost_seams() {
-        s_.template for_crossed_ghost_seams<Simd>(links_,
-                                                  [&](VertexKey key, std::uint32_t neighbour, std::uint32_t index) {
-                                                      if (!s_.used.has(key)) return;
-                                                      const std::size_t owner = place_of(neighbour);
-                                                      if (packed_.has_no_data[neighbour])
-                                                          cutting_.masks.set_seam(owner, index);
-                                                      s_.share(key, {static_cast<std::uint32_t>(owner), index});
-                                                  });
+        const auto share = [&](VertexKey key, std::uint32_t neighbour, std::uint32_t index) {
+            if (!s_.used.has(key)) return;
+            const std::size_t owner = place_of(neighbour);
+            if (packed_.has_no_data[neighbour]) cutting_.masks.set_seam(owner, index);
+            s_.share(key, {static_cast<std::uint32_t>(owner), index});
+        };
+        s_.template for_crossed_ghost_seams<Simd>(links_, share);
     }
 
     void list_inner_edges() { s_.listed.grow(Simd::list_keys(s_.used, s_.listed.end())); }
