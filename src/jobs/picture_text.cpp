@@ -69,27 +69,26 @@ Annotation annotation_of(const DrawJob& job, const DrawInput& input) {
     const FieldReport& field = input.scene->report().field;
     std::uint64_t all = 0;
     for (const ShownSurface& surface : surfaces) all += surface.size();
-    annotation.caption = std::filesystem::path(job.grid.file).filename().string();
-    if (!input.is_surface) annotation.caption += "  ·  " + counted(input.cells, "cell");
+    // Narrow pictures cut captions off at their end: what tells one picture of a series from another comes first.
     const std::string separator = "  ·  ";
+    const auto add = [&](const std::string& text) { annotation.caption += separator + text; };
     const std::vector<std::string> values = isovalue_texts(*input.scene);
     constexpr std::size_t few = 6;
+    annotation.caption = std::filesystem::path(job.grid.file).filename().string();
     if (!input.field.empty() && surfaces.size() == 1)
-        annotation.caption +=
-            separator + fmt::format("{} = {}", input.field,
-                                    rounded(*surfaces.front().isovalue, (field.upper - field.lower) / 1000));
+        add(fmt::format("{} = {}", input.field,
+                        rounded(*surfaces.front().isovalue, (field.upper - field.lower) / 1000)));
     else if (!input.field.empty() && (input.colors || job.method.draw) && surfaces.size() <= few)
-        annotation.caption += separator + fmt::format("{} = {}", input.field, fmt::join(values, ", "));
-    else if (!input.field.empty())
-        annotation.caption += separator + fmt::format("{} at {} isovalues", input.field, surfaces.size());
-    for (const Plane& plane : job.slices) annotation.caption += separator + plane_text(plane);
-    if (input.time) annotation.caption += separator + "t = " + rounded(*input.time);
-    if (input.step) annotation.caption += separator + fmt::format("step {}", *input.step);
+        add(fmt::format("{} = {}", input.field, fmt::join(values, ", ")));
+    else if (!input.field.empty()) add(fmt::format("{} at {} isovalues", input.field, surfaces.size()));
+    if (input.time) add("t = " + rounded(*input.time));
+    if (input.step) add(fmt::format("step {}", *input.step));
+    for (const Plane& plane : job.slices) add(plane_text(plane));
     if (!job.stretch.empty())
-        annotation.caption += separator + fmt::format("axes × {}, {}, {}", shortest(job.stretch[0]),
-                                                      shortest(job.stretch[1]), shortest(job.stretch[2]));
-    if (all > 0)
-        annotation.caption += separator + (job.method.draw ? counted(all, "tet") + " drawn" : counted(all, "triangle"));
+        add(fmt::format("axes × {}, {}, {}", shortest(job.stretch[0]), shortest(job.stretch[1]),
+                        shortest(job.stretch[2])));
+    if (!input.is_surface) add(counted(input.cells, "cell"));
+    if (all > 0) add(job.method.draw ? counted(all, "tet") + " drawn" : counted(all, "triangle"));
     // The camera follows when it is known.
     annotation.orientation = Orientation{{}, job.parallel || job.scale_bar, job.unit};
     if (input.colors && !input.colors->classes.empty()) {
