@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "core/curved_types.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 
@@ -174,15 +175,11 @@ Fault fault_of(const Grid& grid, const CellReader& cells, std::size_t cell) {
 
 /// What a cell with so many corners may have been meant to be, since some programs write curved cells as linear ones.
 std::string hint_at_curved(std::uint8_t type, std::uint64_t corners) {
-    struct Curved {
-        std::uint8_t linear, nodes, type;
-    };
-    static constexpr Curved kinds[] = {{10, 10, 24}, {12, 20, 25}, {12, 24, 33}, {12, 27, 29}, {13, 12, 31},
-                                       {13, 15, 26}, {13, 18, 32}, {14, 13, 27}, {14, 19, 37}};
-    for (const Curved& kind : kinds)
-        if (kind.linear == type && kind.nodes == corners)
-            return fmt::format("; a {} has {}: its cell type is {}, not {}", name_of_cell_type(kind.type), corners,
-                               kind.type, type);
+    if (type == static_cast<std::uint8_t>(CellType::voxel)) return ""; // there is no curved one
+    for (const CurvedType& curved : curved_types)
+        if (curved.kind == kind_of(type) && curved.nodes == corners)
+            return fmt::format("; a {} has {}: its cell type is {}, not {}", name_of_cell_type(curved.type), corners,
+                               curved.type, type);
     return "";
 }
 

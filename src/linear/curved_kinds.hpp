@@ -11,6 +11,7 @@
 
 #include "core/cell_kind.hpp"
 #include "core/cells.hpp"
+#include "core/curved_types.hpp"
 #include "core/node_order.hpp"
 
 namespace isotet::linear {
@@ -123,18 +124,9 @@ constexpr std::optional<HighDegree> high_degree_of(std::uint8_t type, std::uint6
 
 /// The number of nodes of a type that has only one; 0 for others.
 constexpr std::uint64_t expected_nodes(std::uint8_t type) {
-    switch (type) {
-    case 24: return 10;
-    case 25: return 20;
-    case 26: return 15;
-    case 27: return 13;
-    case 29: return 27;
-    case 31: return 12;
-    case 32: return 18;
-    case 33: return 24;
-    case 37: return 19;
-    default: return 0;
-    }
+    for (const core::CurvedType& curved : core::curved_types)
+        if (curved.type == type) return curved.nodes;
+    return 0;
 }
 
 } // namespace isotet::linear
