@@ -52,41 +52,39 @@ public:
 
     void write(Start at) {
         std::copy(block_.points.begin(), block_.points.end(), draft_.locals.begin() + at.local);
-        to_ = at.word;
+        std::copy(block_.words.begin(), block_.words.end(), packed_.cells.begin() + at.word);
+        const CellOrigin* origin = origins_.data();
         for (const BlockClusters::Cluster& cluster : block_.clusters) {
             ClusterHeader& header = packed_.headers[at.cluster];
             header = header_of(cluster);
-            header.first_word = to_;
+            header.first_word = at.word;
             header.first_group = static_cast<std::uint32_t>(at.group);
             draft_.first_local[at.cluster] = at.local;
-            for (const CellKind kind : cell_kinds) write_kind(kind, header.count(kind));
+            if (!origins_.empty()) origin = write_ids(header, origin);
             at.group += header.groups();
+            at.word += header.words();
             at.local += cluster.points;
             ++at.cluster;
         }
     }
 
 private:
-    void write_kind(CellKind kind, std::size_t count) {
-        const std::size_t words = words_of(kind);
-        std::copy_n(block_.words.data() + word_, words * count, packed_.cells.data() + to_);
-        for (std::size_t i = 0; i < count; ++i, to_ += words) {
-            if (origins_.empty()) continue;
-            const std::uint64_t cell = origins_[cell_ + i].cell();
-            for (std::size_t k = 0; k < words; ++k)
-                if (packed_.wide_cell_ids.empty()) packed_.cell_ids[to_ + k] = static_cast<std::uint32_t>(cell);
-                else packed_.wide_cell_ids[to_ + k] = cell;
-        }
-        word_ += words * count;
-        cell_ += count;
+    /// Each word of a cell has its id. Returns the origin of the next cluster's first cell.
+    const CellOrigin* write_ids(const ClusterHeader& header, const CellOrigin* origin) {
+        std::uint64_t word = header.first_word;
+        for (const CellKind kind : cell_kinds)
+            for (std::size_t i = 0; i < header.count(kind); ++i, ++origin)
+                for (std::size_t k = 0; k < words_of(kind); ++k, ++word)
+                    if (packed_.wide_cell_ids.empty())
+                        packed_.cell_ids[word] = static_cast<std::uint32_t>(origin->cell());
+                    else packed_.wide_cell_ids[word] = origin->cell();
+        return origin;
     }
 
     const BlockClusters& block_;
     const std::span<const CellOrigin> origins_;
     Draft& draft_;
     Packed& packed_;
-    std::size_t word_ = 0, cell_ = 0; ///< of the block, so far
-    std::size_t to_ = 0;              ///< the next word of all
 };
 
 } // namespace
@@ -125,11 +123,8 @@ Result<void> form_clusters(CellOrder<Item> order, std::uint64_t user_cells, Draf
         const BlockClusters& block = blocks[b];
         next.cluster += block.clusters.size();
         next.local += block.points.size();
-        for (const auto& cluster : block.clusters) {
-            const ClusterHeader header = header_of(cluster);
-            next.group += header.groups();
-            next.word += header.words();
-        }
+        next.word += block.words.size();
+        for (const auto& cluster : block.clusters) next.group += header_of(cluster).groups();
         starts[b + 1] = next;
     }
     const Start total = starts[block_count];
