@@ -110,9 +110,9 @@ void sort_requests(std::span<SeamRequest> requests, std::vector<SeamRequest>& sc
 class Neighbourhood {
 public:
     /// Seams arrive in the order of the cluster's candidates and keep it among those of one owner.
-    void add_seam(std::uint32_t owner, SeamEdge seam, std::uint16_t place) {
+    void add_seam(std::uint32_t owner, SeamEdge seam, std::uint16_t index) {
         ++entry(owner).ghost_seams;
-        arrived_.push_back({owner, seam, place});
+        arrived_.push_back({owner, seam, index});
     }
     /// Points arrive by ascending owner.
     void add_point(std::uint32_t owner) { ++entry(owner).ghost_points; }
@@ -122,7 +122,7 @@ public:
         std::sort(table_.begin(), table_.end(),
                   [](const Neighbour& a, const Neighbour& b) { return a.cluster < b.cluster; });
         seams_.resize(arrived_.size());
-        places_.resize(arrived_.size());
+        indices_.resize(arrived_.size());
         std::size_t begin = 0;
         for (const Neighbour& neighbour : table_) {
             first_.push_back(begin);
@@ -131,7 +131,7 @@ public:
         for (const Seam& seam : arrived_) {
             const std::size_t at = first_[position(seam.owner)]++;
             seams_[at] = seam.edge;
-            places_[at] = seam.place;
+            indices_[at] = seam.index;
         }
     }
     void clear() {
@@ -140,15 +140,15 @@ public:
         first_.clear();
     }
     std::span<const Neighbour> table() const { return table_; }
-    /// Once finished: the ghost seams by owner, and their places among its own seams.
+    /// Once finished: the ghost seams by owner, and their indices among its own seams.
     std::span<const SeamEdge> seams() const { return seams_; }
-    std::span<const std::uint16_t> places() const { return places_; }
+    std::span<const std::uint16_t> indices() const { return indices_; }
 
 private:
     struct Seam {
         std::uint32_t owner;
         SeamEdge edge;
-        std::uint16_t place;
+        std::uint16_t index;
     };
 
     /// Where the owner stands in the table, or its end. Tables are short, and the same owner comes several times in a
@@ -167,7 +167,7 @@ private:
     std::vector<Neighbour> table_;
     std::vector<Seam> arrived_;
     std::vector<SeamEdge> seams_;
-    std::vector<std::uint16_t> places_;
+    std::vector<std::uint16_t> indices_;
     std::vector<std::size_t> first_;
     std::size_t last_ = 0;
 };
@@ -407,10 +407,10 @@ private:
         put(own_seams);
         put(neighbourhood.seams());
         put(std::span(points, header.ghost_points));
-        if (header.wide_seams) put(neighbourhood.places());
+        if (header.wide_seams) put(neighbourhood.indices());
         else
-            out = std::ranges::transform(neighbourhood.places(), out, [](std::uint16_t place) {
-                      return static_cast<std::uint8_t>(place);
+            out = std::ranges::transform(neighbourhood.indices(), out, [](std::uint16_t index) {
+                      return static_cast<std::uint8_t>(index);
                   }).out;
     }
 

@@ -10,7 +10,7 @@
 //                                        own seams       2 bytes each: lower, higher local index
 //                                        ghost seams     2 bytes each, grouped by neighbour
 //                                        ghost points    1 byte each, grouped by neighbour: index among its own points
-//                                        places          of ghost seams, 1 byte each (2 where wide_seams): index among
+//                                        seam indices    of ghost seams, 1 byte each (2 where wide_seams): index among
 //                                                        the neighbour's own seams
 //
 // Local indices run ghost points first, then own points, ascending in packed order. A point belongs to the
@@ -131,15 +131,15 @@ struct ClusterLinks {
     std::span<const Neighbour> neighbours;
     std::span<const SeamEdge> own_seams, ghost_seams;
     std::span<const std::uint8_t> ghost_points;
-    const std::uint8_t* places; ///< of ghost seams
-    bool wide;                  ///< places of 16 bits
+    const std::uint8_t* seam_indices; ///< of ghost seams
+    bool wide;                        ///< of 16 bits each
 
     /// Index of ghost seam k among its owner's own seams.
-    std::uint32_t place_in_owner(std::size_t k) const {
-        if (!wide) return places[k];
-        std::uint16_t place;
-        std::memcpy(&place, places + 2 * k, sizeof place);
-        return place;
+    std::uint32_t seam_index(std::size_t k) const {
+        if (!wide) return seam_indices[k];
+        std::uint16_t index;
+        std::memcpy(&index, seam_indices + 2 * k, sizeof index);
+        return index;
     }
 
     /// Bytes behind the neighbours.
@@ -232,7 +232,7 @@ struct Packed {
         out.ghost_seams = {seams + h.own_seams, h.ghost_seams};
         const auto* const points = reinterpret_cast<const std::uint8_t*>(seams + h.own_seams + h.ghost_seams);
         out.ghost_points = {points, h.ghost_points};
-        out.places = points + h.ghost_points;
+        out.seam_indices = points + h.ghost_points;
         out.wide = h.wide_seams;
         return out;
     }

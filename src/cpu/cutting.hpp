@@ -92,7 +92,7 @@ struct CutScratch {
         std::size_t end = links.ghost_seams.empty() ? 0 : neighbour->ghost_seams;
         core::for_bits(crossed.data(), core::words_of_bits(links.ghost_seams.size()), [&](std::size_t k) {
             while (k >= end) end += (++neighbour)->ghost_seams;
-            f(*key++, neighbour->cluster, links.place_in_owner(k));
+            f(*key++, neighbour->cluster, links.seam_index(k));
         });
     }
     void share(VertexKey key, SharedVertex vertex) {

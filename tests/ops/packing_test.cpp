@@ -193,7 +193,7 @@ void expect_packed_arrays(const Grid& grid, const PointField& field, bool split_
                 const core::SeamEdge seam = links.ghost_seams[k];
                 const std::pair pair{locals[c].at(seam.lower), locals[c].at(seam.higher)};
                 ASSERT_EQ(*edge_holders.at(pair).begin(), neighbour.cluster);
-                const core::SeamEdge there = packed.cluster_links(neighbour.cluster).own_seams[links.place_in_owner(k)];
+                const core::SeamEdge there = packed.cluster_links(neighbour.cluster).own_seams[links.seam_index(k)];
                 ASSERT_EQ(pair, (std::pair{locals[neighbour.cluster].at(there.lower),
                                            locals[neighbour.cluster].at(there.higher)}));
                 ASSERT_TRUE(listed.insert(pair).second);

@@ -13,8 +13,8 @@ uvec4 kind_counts; ///< tets, pyramids, wedges, hexahedra
 uvec4 kind_ends;   ///< the group behind the last one of each
 uvec4 kind_words;  ///< the first word of each
 uint seams_at;     ///< word of the page
-uint ghost_points_at, places_at; ///< bytes of the page
-uint place_bytes;  ///< of a ghost seam's place: 1 or 2
+uint ghost_points_at, seam_indices_at; ///< bytes of the page
+uint index_bytes;  ///< of a ghost seam's index: 1 or 2
 
 void open_cluster(Tables tables, uint number) {
     cluster = Clusters(tables.clusters).at[number];
@@ -30,11 +30,11 @@ void open_cluster(Tables tables, uint number) {
     }
     neighbour_count = cluster.tets >> 16;
     own_seams = cluster.seams & own_seams_bits;
-    place_bytes = (cluster.seams & wide_seams_flag) == 0u ? 1u : 2u;
+    index_bytes = (cluster.seams & wide_seams_flag) == 0u ? 1u : 2u;
     ghost_seams = cluster.seams >> 16;
     seams_at = page.links + cluster.first_link + 3u * neighbour_count;
     ghost_points_at = 4u * seams_at + 2u * (own_seams + ghost_seams);
-    places_at = ghost_points_at + ghost_points;
+    seam_indices_at = ghost_points_at + ghost_points;
 }
 
 uint local_points() { return ghost_points + own_points; }
@@ -113,8 +113,8 @@ uvec2 own_seam(uint k) {
 
 /// (lower, higher, index among the owner's own seams) of ghost seam `k`.
 uvec3 ghost_seam(uint k) {
-    const uint at = places_at + place_bytes * k;
-    return uvec3(own_seam(own_seams + k), page_byte(at) | (place_bytes == 1u ? 0u : page_byte(at + 1u) << 8));
+    const uint at = seam_indices_at + index_bytes * k;
+    return uvec3(own_seam(own_seams + k), page_byte(at) | (index_bytes == 1u ? 0u : page_byte(at + 1u) << 8));
 }
 
 #endif
