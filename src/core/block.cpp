@@ -67,15 +67,16 @@ Block map_block(std::size_t bytes) {
 /// Blocks given back, waiting for the next one who wants about as much; and what is in use.
 class KeptBlocks {
 public:
-    /// The smallest block that is large enough and not more than a quarter too large; with reuse, also a piece of a
-    /// larger one.
+    /// The smallest block that is large enough and not more than a quarter too large, else a piece of one that is so much
+    /// larger that it was made for something else; with reuse, a piece of any.
     Block take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
+        const auto fits = [&](std::size_t size) {
+            return size >= bytes && (reuses_ || size - bytes <= bytes / 4 || size / 4 >= bytes);
+        };
         auto best = blocks_.end();
         for (auto block = blocks_.begin(); block != blocks_.end(); ++block)
-            if (block->bytes >= bytes && (reuses_ || block->bytes - bytes <= bytes / 4) &&
-                (best == blocks_.end() || block->bytes < best->bytes))
-                best = block;
+            if (fits(block->bytes) && (best == blocks_.end() || block->bytes < best->bytes)) best = block;
         if (best == blocks_.end()) return {};
         Block taken = *best;
         const std::size_t piece = round_up(bytes, bytes < huge_page ? page_size() : huge_page);
