@@ -69,22 +69,17 @@ void sort_range(FoundEdge<Point>* edges, std::size_t count, std::uint64_t base, 
     // By lower end, counting; the few edges from one point then by insertion, unless they are not few.
     std::vector<std::uint32_t>& places = scratch.places;
     places.assign(points + 1, 0);
-    for (std::size_t i = 0; i < count; ++i) ++places[edges[i].edge.lower - base + 1];
+    std::uint32_t most = 0; // from one point
+    for (std::size_t i = 0; i < count; ++i) most = std::max(most, ++places[edges[i].edge.lower - base + 1]);
+    if (most > 32) return std::sort(edges, edges + count, comes_before);
     for (std::size_t p = 0; p < points; ++p) places[p + 1] += places[p];
-    scratch.edges.assign(edges, edges + count);
-    for (const FoundEdge<Point>& edge : scratch.edges) edges[places[edge.edge.lower - base]++] = edge;
-    std::size_t begin = 0;
-    for (std::size_t p = 0; p < points; ++p) {
-        const std::size_t end = places[p]; // where the next point's edges begin
-        if (end - begin > 32) std::sort(edges + begin, edges + end, comes_before);
-        else
-            for (std::size_t i = begin + 1; i < end; ++i) {
-                const FoundEdge<Point> moving = edges[i];
-                std::size_t to = i;
-                for (; to > begin && edges[to - 1].edge.higher > moving.edge.higher; --to) edges[to] = edges[to - 1];
-                edges[to] = moving;
-            }
-        begin = end;
+    if (scratch.edges.size() < count) scratch.edges.resize(count);
+    FoundEdge<Point>* const by_lower = scratch.edges.data();
+    for (std::size_t i = 0; i < count; ++i) by_lower[places[edges[i].edge.lower - base]++] = edges[i];
+    for (std::size_t i = 0; i < count; ++i) {
+        std::size_t to = i;
+        for (; to > 0 && comes_before(by_lower[i], edges[to - 1]); --to) edges[to] = edges[to - 1];
+        edges[to] = by_lower[i];
     }
 }
 
