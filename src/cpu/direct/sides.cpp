@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/parallel.hpp"
+#include "cpu/at_level.hpp"
 #include "cpu/direct/points.hpp"
 
 namespace isotet::cpu::direct {
@@ -121,7 +122,8 @@ SidesFound find_sides(const ops::DirectInput& input, const PointSurvey& survey, 
         const SideFinder<Real, T> finder(survey.field, stored, nearest_value(values, isovalue), ties, watch);
         core::parallel_each(all.stretches.size(), 1, [&](std::size_t stretch) {
             const std::size_t begin = stretch * side_grain, end = std::min(typed.size(), begin + side_grain);
-            const SidesFound found = finder.find(typed.data() + begin, end - begin, sides.flags().data() + begin);
+            SidesFound found;
+            at_level([&] { found = finder.find(typed.data() + begin, end - begin, sides.flags().data() + begin); });
             all.stretches[stretch] = found.tied || found.near;
             if (found.tied) tied.store(true, std::memory_order_relaxed);
             if (found.near) near.store(true, std::memory_order_relaxed);

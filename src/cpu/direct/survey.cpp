@@ -13,6 +13,7 @@
 #include "core/frame.hpp"
 #include "core/orientation.hpp"
 #include "core/value_summary.hpp"
+#include "cpu/at_level.hpp"
 #include "cpu/direct/points.hpp"
 
 namespace isotet::cpu::direct {
@@ -50,7 +51,9 @@ core::ValueSummary summarize(const Array& values, const Sides* seen, double offs
         return tbb::parallel_reduce(
             tbb::blocked_range<std::size_t>(0, values.tuples(), survey_grain), core::ValueSummary{},
             [&](const tbb::blocked_range<std::size_t>& range, core::ValueSummary summary) {
-                summary.combine(summarize(typed, values.components(), seen, range.begin(), range.end(), offset));
+                at_level([&] {
+                    summary.combine(summarize(typed, values.components(), seen, range.begin(), range.end(), offset));
+                });
                 return summary;
             },
             [](core::ValueSummary a, const core::ValueSummary& b) {
@@ -126,9 +129,12 @@ Bounds bounds_of(const Array& array, const Sides* seen, bool wanted) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, array.tuples(), survey_grain), Bounds{},
         [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
-            const bool sound = array.type() == ScalarType::float32
-                                   ? all_are_sound(array.as<float>().data() + 3 * range.begin(), 3 * range.size())
-                                   : all_are_sound(array.as<double>().data() + 3 * range.begin(), 3 * range.size());
+            bool sound = true;
+            at_level([&] {
+                sound = array.type() == ScalarType::float32
+                            ? all_are_sound(array.as<float>().data() + 3 * range.begin(), 3 * range.size())
+                            : all_are_sound(array.as<double>().data() + 3 * range.begin(), 3 * range.size());
+            });
             bounds.has_unsound |= !sound;
             for (std::size_t point = range.begin(); wanted && point < range.end(); ++point)
                 if (!(seen && seen->is_unseen(point)) && (sound || is_sound(points[point]))) bounds.add(points[point]);
