@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <mutex>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -27,19 +28,40 @@ struct SampledPoint {
     std::uint64_t hash, number;
 };
 
-/// The points whose hash ends with `zero_bits` bits of zero, in any order.
-std::vector<SampledPoint> sample_points(const Array& points, int zero_bits) {
+/// Chooses samples: in a tenth of the time of hash_of(), the same for equal coordinates, -0 and +0 being equal.
+template <class Coordinate>
+std::uint32_t sampling_key(const Coordinate* point) {
+    const auto bits = [&](std::size_t axis) {
+        const Coordinate coordinate = point[axis] + Coordinate{0}; // -0 becomes +0
+        if constexpr (sizeof(Coordinate) == sizeof(std::uint32_t)) {
+            return std::bit_cast<std::uint32_t>(coordinate);
+        } else {
+            const auto all = std::bit_cast<std::uint64_t>(coordinate);
+            return static_cast<std::uint32_t>(all) * 0x9E3779B1U ^ static_cast<std::uint32_t>(all >> 32);
+        }
+    };
+    const std::uint32_t sum = bits(0) * 0x85EBCA6BU + bits(1) * 0xC2B2AE35U + bits(2) * 0x27D4EB2FU;
+    const std::uint32_t mixed = (sum ^ sum >> 15) * 0x2C1B3C6DU;
+    return (mixed ^ mixed >> 12) * 0x297A2D39U;
+}
+
+/// One point of 2^one_in_bits, in any order, but all at one place or none.
+std::vector<SampledPoint> sample_points(const Array& points, int one_in_bits) {
     std::vector<SampledPoint> samples;
     std::mutex mutex;
     const core::PointReader reader(points);
-    core::parallel_ranges(points.tuples(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-        std::vector<SampledPoint> found;
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint64_t hash = core::hash_of(reader[i]);
-            if ((hash & ((std::uint64_t{1} << zero_bits) - 1)) == 0) found.push_back({hash, i});
+    points.visit([&]<class Coordinate>(std::span<const Coordinate> coordinates) {
+        if constexpr (std::is_floating_point_v<Coordinate>) {
+            core::parallel_ranges(points.tuples(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+                std::vector<SampledPoint> found;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const std::uint64_t key = sampling_key(coordinates.data() + 3 * i);
+                    if ((key << one_in_bits) >> 32 == 0) found.push_back({core::hash_of(reader[i]), i});
+                }
+                const std::lock_guard lock(mutex);
+                samples.insert(samples.end(), found.begin(), found.end());
+            });
         }
-        const std::lock_guard lock(mutex);
-        samples.insert(samples.end(), found.begin(), found.end());
     });
     return samples;
 }
@@ -47,7 +69,7 @@ std::vector<SampledPoint> sample_points(const Array& points, int zero_bits) {
 /// Samples whose hash an earlier one has.
 std::size_t count_repeated(const std::vector<SampledPoint>& samples) {
     const auto bits = static_cast<int>(std::bit_width(2 * samples.size() + 1));
-    std::vector<std::uint64_t> seen(std::size_t{1} << bits); // by the highest bits: the lowest are all 0
+    std::vector<std::uint64_t> seen(std::size_t{1} << bits);
     const std::size_t mask = seen.size() - 1;
     std::size_t count = 0, zeros = 0;
     for (const SampledPoint& sample : samples) {
@@ -68,10 +90,10 @@ bool few_repeat(const std::vector<SampledPoint>& samples) {
 }
 
 /// So many that a sample is not too large.
-int zero_bits_for(std::size_t points) {
-    int zero_bits = 0;
-    while ((points >> zero_bits) > max_sampled_points) ++zero_bits;
-    return zero_bits;
+int one_in_bits_for(std::size_t points) {
+    int bits = 0;
+    while ((points >> bits) > max_sampled_points) ++bits;
+    return bits;
 }
 
 /// Removes points that no cell uses.
@@ -115,17 +137,17 @@ bool is_contoured(std::uint8_t cell_type) noexcept { return core::is_contoured(c
 
 CoincidentPoints estimate_coincident_points(const Grid& grid) {
     if (grid.points.components() != 3 || grid.points.tuples() < 2) return {};
-    const int zero_bits = zero_bits_for(grid.points.tuples());
-    std::vector<SampledPoint> samples = sample_points(grid.points, zero_bits);
+    const int one_in_bits = one_in_bits_for(grid.points.tuples());
+    std::vector<SampledPoint> samples = sample_points(grid.points, one_in_bits);
     if (few_repeat(samples)) return {};
     keep_used(samples, grid);
     if (few_repeat(samples)) return {};
-    return {static_cast<std::uint64_t>(count_repeated(samples)) << zero_bits, zero_bits > 0};
+    return {static_cast<std::uint64_t>(count_repeated(samples)) << one_in_bits, one_in_bits > 0};
 }
 
 bool may_have_coincident_points(const Array& points) {
     if (points.components() != 3 || points.tuples() < 2) return false;
-    return !few_repeat(sample_points(points, zero_bits_for(points.tuples())));
+    return !few_repeat(sample_points(points, one_in_bits_for(points.tuples())));
 }
 
 } // namespace isotet
