@@ -161,12 +161,15 @@ public:
     /// The next call with so many isovalues extracts by this method, memory permitting.
     Method method(std::size_t isovalues = 1) const;
 
-    /// What a surface is expected to be and take, before it is asked for. Cost   a few milliseconds once a field
+    /// What a surface is expected to be and take, before it is asked for.
     struct Prediction {
         double triangles = 0;
         Estimate estimate;
     };
     Result<Prediction> predict(double isovalue) const;
+
+    /// What predictions are made of: of the cells that the session has, of a curved grid those between its corners.
+    Result<FieldSample> sample() const;
 
     /// The range of the field, as extraction sees it. Cost   a pass over the grid where nothing is packed, once a field
     /// Errors   as extract()

@@ -62,6 +62,7 @@ private:
     struct Range {
         double lower, upper, triangles;
     };
+    class Looker;
     std::vector<Range> cells_seen_; ///< with data at all corners and different values
     double cells_each_ = 0;         ///< of the grid, for each one looked at
     std::uint64_t points_ = 0, tets_ = 0;

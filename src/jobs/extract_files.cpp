@@ -123,12 +123,17 @@ Result<Contour> ExtractRun::start(ContourInput input) {
     numbers_.why = device_          ? "devices take packed grids"
                    : options.method ? "asked for"
                                     : fmt::format("{} surface{}", options.surfaces, options.surfaces == 1 ? "" : "s");
-    if (!device_ && job_.engine != EngineChoice::reference)
-        numbers_.predicted =
-            predict(job_, plan_, input, numbers_.cells, isovalues_together(options.surfaces / plan_.steps.size()));
     numbers_.process_bytes = peak_resident_memory().value_or(0);
     if (reset_peak_memory()) resident_before_ = resident_memory();
-    return Contour::create(std::move(input), options);
+    const bool linear = !has_cells_to_linearize(input.grid.cells); // else it is not known how many tets they become
+    const double kept =
+        static_cast<double>(input.grid.cells.count()) / static_cast<double>(std::max<std::size_t>(numbers_.cells, 1));
+    Result<Contour> contour = Contour::create(std::move(input), options);
+    if (contour && linear && !device_ && job_.engine != EngineChoice::reference)
+        if (const Result<FieldSample> sample = contour->sample())
+            numbers_.predicted =
+                predict(job_, plan_, *sample, kept, isovalues_together(options.surfaces / plan_.steps.size()));
+    return contour;
 }
 
 /// The piece, and the frame of the whole.

@@ -200,28 +200,22 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
     return fields;
 }
 
-std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
-                                std::size_t cells, std::size_t together) {
-    if (has_cells_to_linearize(input.grid.cells))
-        return std::nullopt; // of which it is not known how many tets they become
-    const Result<FieldSample> sample = FieldSample::create(input.grid, input.field, job.split_cells);
-    if (!sample) return std::nullopt; // an error that Contour::create() gives, too
+Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSample& sample, double kept,
+                 std::size_t together) {
     const std::vector<double> levels =
-        evenly_spaced_levels(sample->lower(), sample->upper(), std::max<std::uint64_t>(job.levels, 1));
+        evenly_spaced_levels(sample.lower(), sample.upper(), std::max<std::uint64_t>(job.levels, 1));
     const std::vector<double>& isovalues = job.isovalues.empty() ? levels : job.isovalues;
     double all = 0;
     Workload work;
     for (std::size_t i = 0; i < isovalues.size(); i += together) {
         double pass = 0;
         for (std::size_t k = i; k < std::min(i + together, isovalues.size()); ++k)
-            pass += sample->triangles(isovalues[k]);
+            pass += sample.triangles(isovalues[k]);
         all += pass;
         work.triangles_together = std::max(work.triangles_together, pass);
     }
-    work.points = sample->points();
-    const double kept =
-        static_cast<double>(input.grid.cells.count()) / static_cast<double>(std::max<std::size_t>(cells, 1));
-    work.tets = static_cast<std::uint64_t>(static_cast<double>(sample->tets()) / (kept > 0 ? kept : 1));
+    work.points = sample.points();
+    work.tets = static_cast<std::uint64_t>(static_cast<double>(sample.tets()) / (kept > 0 ? kept : 1));
     work.surfaces = static_cast<double>(isovalues.size() * plan.steps.size());
     work.gradients = job.normals == Normals::gradient;
     work.find_range = job.isovalues.empty();

@@ -40,13 +40,12 @@ struct StepFields {
 };
 Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, const Run& run);
 
-/// What all steps are expected to take, from a look at the first; nothing where the field cannot be
-/// contoured, or cells become linear ones first.
+/// What all steps are expected to take, from a look at the first.
 ///
-/// `cells`      of the file; the input may have active ones only
+/// `kept`       part of the file's cells that was looked at
 /// `together`   isovalues extracted in one pass
-std::optional<Estimate> predict(const ExtractJob& job, const ExtractPlan& plan, const ContourInput& input,
-                                std::size_t cells, std::size_t together);
+Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSample& sample, double kept,
+                 std::size_t together);
 
 /// Files that must not be each other: `output` and those of the caller.
 std::vector<std::string> with_others(const ExtractJob& job, const std::string& output);

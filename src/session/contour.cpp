@@ -289,6 +289,12 @@ Result<Contour::Prediction> Contour::predict(double isovalue) const {
     return prediction;
 }
 
+Result<FieldSample> Contour::sample() const {
+    if (!data_) return moved_from("the session");
+    const std::lock_guard lock(data_->mutex);
+    return data_->sample;
+}
+
 Result<FieldReport> Contour::field(const Run& run) {
     return core::guarded("looking at the field", [&]() -> Result<FieldReport> {
         if (!data_) return moved_from("the session");

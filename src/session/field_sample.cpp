@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -13,6 +14,7 @@
 #include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/guard.hpp"
+#include "core/parallel.hpp"
 #include "core/prefetch.hpp"
 #include "linear/curved_kinds.hpp"
 
@@ -73,6 +75,68 @@ void prefetch_values(const core::CellReader& cells, std::size_t cell, const Arra
 
 } // namespace
 
+/// Looks at cells, a batch after the other.
+class FieldSample::Looker {
+public:
+    Looker(const core::CellReader& cells, const Array& values, bool split_cells)
+        : cells_(cells), values_(values), whole_(!split_cells && !cells.only_tets()) {}
+
+    /// Cells and values lie anywhere in memory: those of the batch are asked for before the first is looked at.
+    void look_at(std::vector<std::uint64_t> batch) {
+        for (const std::uint64_t cell : batch)
+            if (cells_.first(cell) < cells_.connectivity_size()) cells_.prefetch(cell);
+        std::erase_if(batch, [&](std::uint64_t cell) { return !is_within(cells_, cell); });
+        for (const std::uint64_t cell : batch) prefetch_values(cells_, cell, values_);
+        for (const std::uint64_t cell : batch) look_at(cell);
+    }
+
+    std::vector<Range> seen; ///< as FieldSample::cells_seen_
+    double tets = 0;
+    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+
+private:
+    void look_at(std::uint64_t cell) {
+        if (is_made_linear(cells_, cell)) {
+            nodes_.clear();
+            for (std::uint64_t k = 0; k < cells_.corners(cell); ++k)
+                nodes_.push_back(cells_.corner(cells_.first(cell) + k));
+            look_at(nodes_, tets_of(nodes_.size()), triangles_of_active(nodes_.size()));
+        } else if (whole_) {
+            const core::WholeCell whole = cells_.whole(cell);
+            look_at(whole.kind, {whole.corners.data(), core::corner_count(whole.kind)});
+        } else {
+            for (const core::Tet& tet : cells_.tets(cell)) look_at(core::CellKind::tetrahedron, tet);
+        }
+    }
+
+    void look_at(core::CellKind kind, std::span<const std::uint64_t> corners) {
+        const auto which = static_cast<std::size_t>(kind);
+        look_at(corners, tets_like_a_cell[which], triangles_per_active_cell[which]);
+    }
+
+    void look_at(std::span<const std::uint64_t> corners, double like_tets, double triangles) {
+        tets += like_tets;
+        const double first = values_.at(corners[0]);
+        Range range{first, first, triangles};
+        bool data = true;
+        for (const std::uint64_t point : corners) {
+            const double value = values_.at(point);
+            data &= std::isfinite(value);
+            range.lower = std::min(range.lower, value);
+            range.upper = std::max(range.upper, value);
+        }
+        if (!data) return;
+        lower = std::min(lower, range.lower);
+        upper = std::max(upper, range.upper);
+        if (range.lower < range.upper) seen.push_back(range);
+    }
+
+    const core::CellReader& cells_;
+    const Array& values_;
+    bool whole_;
+    std::vector<std::uint64_t> nodes_;
+};
+
 Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& field, bool split_cells) {
     return core::guarded("looking at the field", [&]() -> Result<FieldSample> {
         const auto cells = core::CellReader::open(grid);
@@ -82,57 +146,26 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
                          fmt::format("field '{}' has {} values of {} components, but the grid has {} points and the "
                                      "contoured field must have 1 component",
                                      field.name, field.values.tuples(), field.values.components(), cells->points())};
-        FieldSample sample;
         const std::uint64_t count = cells->count(), looked_at = std::min(count, max_cells);
+        std::vector<Looker> lookers((looked_at + cells_at_once - 1) / cells_at_once,
+                                    Looker(*cells, field.values, split_cells));
+        core::parallel_each(lookers.size(), 1, [&](std::size_t i) {
+            std::vector<std::uint64_t> batch;
+            for (std::uint64_t k = i * cells_at_once; k < std::min(looked_at, (i + 1) * cells_at_once); ++k)
+                batch.push_back(looked_at == count ? k : drawn_cell(k, looked_at, count));
+            lookers[i].look_at(std::move(batch));
+        });
+
+        FieldSample sample;
         sample.points_ = cells->points();
         sample.lower_ = std::numeric_limits<double>::infinity();
         sample.upper_ = -sample.lower_;
         double tets = 0;
-        std::vector<std::uint64_t> nodes;
-        const auto look_at_cell = [&](std::uint64_t cell) {
-            const auto look_at = [&](std::span<const std::uint64_t> corners, double like_tets, double triangles) {
-                tets += like_tets;
-                const double first = field.values.at(corners[0]);
-                Range range{first, first, triangles};
-                bool data = true;
-                for (const std::uint64_t point : corners) {
-                    const double value = field.values.at(point);
-                    data &= std::isfinite(value);
-                    range.lower = std::min(range.lower, value);
-                    range.upper = std::max(range.upper, value);
-                }
-                if (!data) return;
-                sample.lower_ = std::min(sample.lower_, range.lower);
-                sample.upper_ = std::max(sample.upper_, range.upper);
-                if (range.lower < range.upper) sample.cells_seen_.push_back(range);
-            };
-            const auto look = [&](core::CellKind kind, std::span<const std::uint64_t> corners) {
-                const auto which = static_cast<std::size_t>(kind);
-                look_at(corners, tets_like_a_cell[which], triangles_per_active_cell[which]);
-            };
-            if (is_made_linear(*cells, cell)) {
-                nodes.clear();
-                for (std::uint64_t k = 0; k < cells->corners(cell); ++k)
-                    nodes.push_back(cells->corner(cells->first(cell) + k));
-                look_at(nodes, tets_of(nodes.size()), triangles_of_active(nodes.size()));
-            } else if (split_cells || cells->only_tets()) {
-                for (const core::Tet& tet : cells->tets(cell)) look(core::CellKind::tetrahedron, tet);
-            } else {
-                const core::WholeCell whole = cells->whole(cell);
-                look(whole.kind, {whole.corners.data(), core::corner_count(whole.kind)});
-            }
-        };
-        // Cells and values lie anywhere in memory: those of a batch are asked for before the first is looked at.
-        std::vector<std::uint64_t> batch;
-        for (std::uint64_t first = 0; first < looked_at; first += cells_at_once) {
-            batch.clear();
-            for (std::uint64_t i = first; i < std::min(looked_at, first + cells_at_once); ++i) {
-                batch.push_back(looked_at == count ? i : drawn_cell(i, looked_at, count));
-                if (cells->first(batch.back()) < cells->connectivity_size()) cells->prefetch(batch.back());
-            }
-            std::erase_if(batch, [&](std::uint64_t cell) { return !is_within(*cells, cell); });
-            for (const std::uint64_t cell : batch) prefetch_values(*cells, cell, field.values);
-            for (const std::uint64_t cell : batch) look_at_cell(cell);
+        for (const Looker& looker : lookers) {
+            sample.cells_seen_.insert(sample.cells_seen_.end(), looker.seen.begin(), looker.seen.end());
+            sample.lower_ = std::min(sample.lower_, looker.lower);
+            sample.upper_ = std::max(sample.upper_, looker.upper);
+            tets += looker.tets;
         }
         sample.cells_each_ = looked_at == 0 ? 0 : static_cast<double>(count) / static_cast<double>(looked_at);
         sample.tets_ = static_cast<std::uint64_t>(sample.cells_each_ * tets);
