@@ -105,20 +105,30 @@ struct Avx2 {
     template <core::CellKind kind>
     ISOTET_AVX2 static void cut_cells(const std::uint8_t* above, const core::StoredTet* words, std::size_t n,
                                       std::size_t first, CutCells& out) {
-        constexpr unsigned all = (1u << core::corner_count(kind)) - 1;
+        constexpr char all = static_cast<char>((1u << core::corner_count(kind)) - 1);
         const __m256i table = table_of(above);
         for (std::size_t i = 0; i < n; i += 4) {
             const __m256i corners =
                 _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words + 2 * i)); // what stands behind may be read
-            auto cases =
-                static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(look_up(table, corners), 7)));
-            for (std::size_t k = i; k < std::min(i + 4, n); ++k, cases >>= 8) {
-                const unsigned index = cases & all;
-                std::memcpy(&out.corners[out.count], words + 2 * k, 8);
-                out.cases[out.count] = static_cast<std::uint8_t>(index);
-                out.places[out.count] = static_cast<std::uint16_t>(first + 2 * k);
-                out.count += index - 1 < all - 1;
-            }
+            // A bit for each of four times eight corners: the cases.
+            const __m128i cases =
+                _mm_and_si128(_mm_cvtsi32_si128(_mm256_movemask_epi8(_mm256_slli_epi16(look_up(table, corners), 7))),
+                              _mm_set1_epi8(all));
+            const __m128i uncut =
+                _mm_or_si128(_mm_cmpeq_epi8(cases, _mm_setzero_si128()), _mm_cmpeq_epi8(cases, _mm_set1_epi8(all)));
+            unsigned is_cut = ~static_cast<unsigned>(_mm_movemask_epi8(uncut)) & 0xf;
+            if (n - i < 4) is_cut &= (1u << (n - i)) - 1;
+            const __m128i lanes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes_of[is_cut].data()));
+            const __m128i halves_of_lanes =
+                _mm_loadl_epi64(reinterpret_cast<const __m128i*>(lane_pairs_of[is_cut].data()));
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.corners.data() + out.count),
+                                _mm256_permutevar8x32_epi32(corners, _mm256_cvtepu8_epi32(halves_of_lanes)));
+            const int of_lanes = _mm_cvtsi128_si32(_mm_shuffle_epi8(cases, lanes));
+            std::memcpy(out.cases.data() + out.count, &of_lanes, sizeof of_lanes);
+            const __m128i place = _mm_add_epi16(_mm_slli_epi16(_mm_cvtepu8_epi16(lanes), 1),
+                                                _mm_set1_epi16(static_cast<short>(first + 2 * i)));
+            _mm_storel_epi64(reinterpret_cast<__m128i*>(out.places.data() + out.count), place);
+            out.count += static_cast<std::size_t>(_mm_popcnt_u32(is_cut));
         }
     }
 
@@ -213,6 +223,18 @@ private:
         for (std::size_t mask = 0; mask < 256; ++mask)
             for (std::uint8_t lane = 0, n = 0; lane < 8; ++lane)
                 if (mask >> lane & 1) lanes[mask][n++] = lane;
+        return lanes;
+    }();
+
+    /// For each mask of four lanes of eight bytes, those that it has, as lanes of four.
+    static constexpr auto lane_pairs_of = [] {
+        std::array<std::array<std::uint8_t, 8>, 16> lanes{};
+        for (std::size_t mask = 0; mask < 16; ++mask)
+            for (std::uint8_t lane = 0, n = 0; lane < 4; ++lane)
+                if (mask >> lane & 1) {
+                    lanes[mask][n++] = 2 * lane;
+                    lanes[mask][n++] = 2 * lane + 1;
+                }
         return lanes;
     }();
 
