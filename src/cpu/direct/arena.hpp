@@ -74,11 +74,10 @@ public:
     }
 
 private:
-    static constexpr std::size_t first_block = std::size_t{4} << 20, largest_block = std::size_t{4} << 20;
+    static constexpr std::size_t block_bytes = std::size_t{2} << 20; ///< a huge page, as an active filter keeps cells in
 
     void add_block(std::size_t bytes) {
-        const std::size_t grown = blocks_.empty() ? first_block : std::min(largest_block, 2 * blocks_.back().size());
-        const std::size_t size = std::max(bytes, grown);
+        const std::size_t size = std::max(bytes, block_bytes);
         budget_->take(size);
         blocks_.emplace_back(size);
         next_ = blocks_.back().data();
