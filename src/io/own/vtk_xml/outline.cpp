@@ -13,7 +13,8 @@
 namespace isotet::io::vtk_xml {
 namespace {
 
-constexpr std::size_t window_bytes = std::size_t{1} << 20;
+/// The first window has all tags of a file whose data are appended; the others are for text between tags.
+constexpr std::size_t first_window = std::size_t{1} << 16, later_windows = std::size_t{1} << 20;
 constexpr std::size_t max_bytes = std::size_t{64} << 20; ///< of tags
 
 /// Goes through the source window by window.
@@ -55,7 +56,8 @@ private:
             return false;
         }
         begin_ = position_;
-        const auto view = source_.view(begin_, std::min(window_bytes, source_.size() - begin_), scratch_);
+        const std::size_t most = begin_ == 0 ? first_window : later_windows;
+        const auto view = source_.view(begin_, std::min(most, source_.size() - begin_), scratch_);
         if (!view) error_ = view.error();
         else window_ = *view;
         return !error_;

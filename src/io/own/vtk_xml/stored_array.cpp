@@ -218,42 +218,61 @@ std::size_t StoredArray::bytes_of_block(std::size_t block) const {
     return static_cast<std::size_t>(std::min<std::uint64_t>(block_bytes_, stored_ - block * block_bytes_));
 }
 
+/// The stored bytes of compressed blocks; none of others.
+Result<std::string_view> StoredArray::packed_bytes(std::size_t begin, std::size_t end, Scratch& scratch) const {
+    if (packed_.empty()) return std::string_view();
+    const auto bytes = stream_.view(data_ + static_cast<std::size_t>(packed_[begin]),
+                                    static_cast<std::size_t>(packed_[end] - packed_[begin]), scratch);
+    return bytes ? bytes : in_array(bytes.error());
+}
+
 /// The first bytes of a block.
-Result<void> StoredArray::read_block(std::size_t block, std::span<std::byte> to) const {
+Result<void> StoredArray::read_block(const Block& block, std::span<std::byte> to) const {
     thread_local Scratch stored, values;
     const ScopeEnd trim([] {
         stored.trim();
         values.trim();
     });
     if (packed_.empty()) {
-        const std::size_t at = data_ + block * block_bytes_;
+        const std::size_t at = data_ + block.number * block_bytes_;
         if (!stream_.base64) return stream_.source.read(stream_.place.begin + at, to);
         const auto bytes = stream_.view(at, to.size(), stored);
         if (!bytes) return in_array(bytes.error());
         std::memcpy(to.data(), bytes->data(), to.size());
         return {};
     }
-    const auto bytes = stream_.view(data_ + static_cast<std::size_t>(packed_[block]),
-                                    static_cast<std::size_t>(packed_[block + 1] - packed_[block]), stored);
-    if (!bytes) return in_array(bytes.error());
-    const std::size_t size = bytes_of_block(block);
+    const std::size_t size = bytes_of_block(block.number);
     const auto whole = to.size() == size ? to : values.take(size);
-    if (!inflate(document_->codec, *bytes, whole))
-        return wrong(fmt::format("block {} of {} bytes of {} cannot be inflated to {} bytes", block, bytes->size(),
-                                 name_of(document_->codec), size));
+    if (!inflate(document_->codec, block.packed, whole))
+        return wrong(fmt::format("block {} of {} bytes of {} cannot be inflated to {} bytes", block.number,
+                                 block.packed.size(), name_of(document_->codec), size));
     if (to.size() < size) std::memcpy(to.data(), whole.data(), to.size());
     return {};
+}
+
+Result<void> StoredArray::read_first(std::span<std::byte> to) const {
+    Scratch stored;
+    const auto packed = packed_bytes(0, 1, stored);
+    return packed ? read_block({0, 0, to.size(), *packed}, to) : packed.error();
 }
 
 Result<void> StoredArray::for_blocks(const BlockWork& work) const {
     FirstError failed;
     const std::size_t group = std::max<std::size_t>(1, (std::size_t{1} << 18) / block_bytes_);
     core::parallel_pieces(blocks(), group, *progress_, [&](std::size_t begin, std::size_t end) {
+        thread_local Scratch stored; // work() starts no other tasks
+        const auto packed = packed_bytes(begin, end, stored);
+        if (!packed) return failed.add(begin, packed.error());
         for (std::size_t block = begin; block < end && !failed; ++block) {
             const std::uint64_t at = std::uint64_t{block} * block_bytes_;
             const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block_bytes_, needed_ - at));
-            if (auto done = work(block, at, size); !done) failed.add(block, done.error());
+            std::string_view of_block;
+            if (!packed_.empty())
+                of_block = packed->substr(static_cast<std::size_t>(packed_[block] - packed_[begin]),
+                                          static_cast<std::size_t>(packed_[block + 1] - packed_[block]));
+            if (auto done = work({block, at, size, of_block}); !done) failed.add(block, done.error());
         }
+        stored.trim();
         const std::size_t at = packed_.empty() ? end * block_bytes_ : static_cast<std::size_t>(packed_[end]);
         (*progress_)("read", std::min(1.0, static_cast<double>(stream_.place.begin + at) /
                                                static_cast<double>(document_->source.size())));
@@ -273,8 +292,7 @@ Result<void> StoredArray::decode(std::byte* to) const {
     }
     core::Buffer<std::byte> bits(array_.bits ? static_cast<std::size_t>(needed_) : 0);
     std::byte* const values = array_.bits ? bits.data() : to;
-    auto done = for_blocks(
-        [&](std::size_t block, std::uint64_t at, std::size_t size) { return read_block(block, {values + at, size}); });
+    auto done = for_blocks([&](const Block& block) { return read_block(block, {values + block.at, block.size}); });
     if (!done) return done;
     if (array_.bits) {
         for (std::uint64_t i = 0; i < scalars_; ++i) to[i] = (bits[i / 8] >> (7 - i % 8)) & std::byte{1};
@@ -293,45 +311,39 @@ bool StoredArray::has_blocks() const {
 }
 
 Result<void> StoredArray::each_block(const Work& work) const {
-    return for_blocks([&](std::size_t block, std::uint64_t at, std::size_t size) -> Result<void> {
+    return for_blocks([&](const Block& block) -> Result<void> {
         thread_local Scratch values;
-        const auto bytes = values.take(size);
+        const auto bytes = values.take(block.size);
         if (auto read = read_block(block, bytes); !read) return read;
-        work(at / size_of(array_.type), bytes);
+        work(block.at / size_of(array_.type), bytes);
         values.trim();
         return {};
     });
 }
 
 /// Whether a block, all of which is needed, ends with the checksum of what is expected.
-Result<bool> StoredArray::is_told_by_checksum(std::size_t block, std::size_t size, const Expect& expect) const {
-    if (packed_.empty() || size != bytes_of_block(block)) return false;
-    const std::uint64_t packed = packed_[block + 1] - packed_[block];
-    if (!has_checksum(document_->codec) || packed < checksum_bytes) return false;
-    thread_local Scratch stored, expected;
-    const auto end =
-        stream_.view(data_ + static_cast<std::size_t>(packed_[block + 1]) - checksum_bytes, checksum_bytes, stored);
-    if (!end) return in_array(end.error());
-    const auto values = expected.take(size);
-    expect(std::uint64_t{block} * block_bytes_ / size_of(array_.type), values);
-    const bool same = checksum_of(values) == *end;
+bool StoredArray::is_told_by_checksum(const Block& block, const Expect& expect) const {
+    if (block.size != bytes_of_block(block.number) || !has_checksum(document_->codec)) return false;
+    if (block.packed.size() < checksum_bytes) return false;
+    thread_local Scratch expected;
+    const auto values = expected.take(block.size);
+    expect(block.at / size_of(array_.type), values);
+    const bool same = checksum_of(values) == block.packed.substr(block.packed.size() - checksum_bytes);
     expected.trim();
     return same;
 }
 
 Result<bool> StoredArray::holds(const Expect& expect) const {
     std::atomic<bool> all = true;
-    auto done = for_blocks([&](std::size_t block, std::uint64_t at, std::size_t size) -> Result<void> {
-        if (!all.load(std::memory_order_relaxed)) return {};
-        const auto told = is_told_by_checksum(block, size, expect);
-        if (!told || *told) return told ? Result<void>() : told.error();
+    auto done = for_blocks([&](const Block& block) -> Result<void> {
+        if (!all.load(std::memory_order_relaxed) || is_told_by_checksum(block, expect)) return {};
         thread_local Scratch stored;
-        const auto bytes = stored.take(size);
+        const auto bytes = stored.take(block.size);
         if (auto read = read_block(block, bytes); !read) return read;
         alignas(8) std::array<std::byte, 1 << 14> expected; // few enough to stay in the cache
-        for (std::size_t begin = 0; begin < size; begin += expected.size()) {
-            const auto piece = std::span(expected).first(std::min(expected.size(), size - begin));
-            expect((at + begin) / size_of(array_.type), piece);
+        for (std::size_t begin = 0; begin < block.size; begin += expected.size()) {
+            const auto piece = std::span(expected).first(std::min(expected.size(), block.size - begin));
+            expect((block.at + begin) / size_of(array_.type), piece);
             if (std::memcmp(piece.data(), bytes.data() + begin, piece.size()) != 0) all = false;
         }
         stored.trim();

@@ -60,7 +60,7 @@ public:
     Result<void> each_block(const Work& work) const;
 
     /// Reads the first values, as stored.
-    Result<void> read_first(std::span<std::byte> to) const { return read_block(0, to); }
+    Result<void> read_first(std::span<std::byte> to) const;
 
     /// Whether every block holds what `expect(position of its first value, bytes to write)` writes. A block of zlib is compared by
     /// its checksum, without inflating it, and inflated only where that differs.
@@ -79,12 +79,20 @@ private:
     Error wrong(std::string_view what) const;
     Error in_array(const Error& error) const;
 
-    using BlockWork = std::function<Result<void>(std::size_t block, std::uint64_t at, std::size_t size)>;
+    /// A block of which the first `size` bytes of values, from `at` on, are needed.
+    struct Block {
+        std::size_t number;
+        std::uint64_t at;
+        std::size_t size;
+        std::string_view packed; ///< what becomes its values, of a compressed one
+    };
+    using BlockWork = std::function<Result<void>(const Block& block)>;
     Result<void> for_blocks(const BlockWork& work) const;
     std::size_t blocks() const;
     std::size_t bytes_of_block(std::size_t block) const;
-    Result<void> read_block(std::size_t block, std::span<std::byte> to) const;
-    Result<bool> is_told_by_checksum(std::size_t block, std::size_t size, const Expect& expect) const;
+    Result<std::string_view> packed_bytes(std::size_t begin, std::size_t end, Scratch& scratch) const;
+    Result<void> read_block(const Block& block, std::span<std::byte> to) const;
+    bool is_told_by_checksum(const Block& block, const Expect& expect) const;
 
     const Document* document_;
     DataArray array_;
