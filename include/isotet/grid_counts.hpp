@@ -31,7 +31,7 @@ struct CoincidentPoints {
 /// The sample is chosen by coordinates, so of the points at one place all are in it or none is.
 ///
 /// Guarantees   the same for any thread count; 0 where fewer than a thousandth of the points coincide
-/// Cost         one parallel pass over the points, of which 16,000 to 65,000 are sorted; another over the connectivity only
+/// Cost         one parallel pass over the points, about 65,000 of which are sorted; another over the connectivity only
 ///              where points coincide
 ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid);
 

@@ -44,24 +44,32 @@ std::size_t max_to_keep() {
 
 bool is_large(std::size_t bytes) { return own_mappings && bytes >= large_block; }
 
+/// Null when there is no room.
 std::byte* map_pages(std::size_t bytes) {
     void* const data = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (data == MAP_FAILED) throw std::bad_alloc();
-    return static_cast<std::byte*>(data);
+    return data == MAP_FAILED ? nullptr : static_cast<std::byte*>(data);
 }
 
-/// Maps whole pages, from a huge page's size on beginning at one. What is left over behind the last huge page stays in
-/// small ones, so that no more memory is used than was asked for.
+/// Pages that begin at a huge one, of which as many as fit are asked for; null when there is no room.
+std::byte* map_huge_pages(std::size_t bytes) {
+    std::byte* const begin = map_pages(bytes + huge_page);
+    if (!begin) return nullptr;
+    const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
+    if (before) munmap(begin, before);
+    if (before < huge_page) munmap(begin + before + bytes, huge_page - before);
+    madvise(begin + before, bytes, MADV_HUGEPAGE); // a wish: without huge pages everything works, slower
+    return begin + before;
+}
+
+/// Maps whole pages, from a huge page's size on beginning at one where there is room for that. What is left over behind
+/// the last huge page stays in small ones, so that no more memory is used than was asked for.
 Block map_block(std::size_t bytes) {
     const std::size_t size = round_up(bytes, page_size());
     if (size < bytes || size + huge_page < size) throw std::bad_alloc();
-    if (size < huge_page) return {map_pages(size), size};
-    std::byte* const begin = map_pages(size + huge_page);
-    const std::size_t before = (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
-    if (before) munmap(begin, before);
-    if (before < huge_page) munmap(begin + before + size, huge_page - before);
-    madvise(begin + before, size, MADV_HUGEPAGE); // a wish: without huge pages everything works, slower
-    return {begin + before, size};
+    std::byte* data = size < huge_page ? nullptr : map_huge_pages(size);
+    if (!data) data = map_pages(size);
+    if (!data) throw std::bad_alloc();
+    return {data, size};
 }
 
 /// Blocks given back, waiting for the next one who wants about as much; and what is in use.

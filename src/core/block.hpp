@@ -16,7 +16,8 @@ struct Block {
     std::size_t bytes = 0;
 };
 
-/// Guarantees   not cleared; aligned for every type, to a huge page when it holds one
+/// Guarantees   not cleared; aligned for every type; to a huge page when it holds one and
+///              where the address space has room
 /// Errors       throws std::bad_alloc
 /// Threads      safe from many threads
 ISOTET_API Block take_block(std::size_t bytes);

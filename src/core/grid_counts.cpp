@@ -19,7 +19,7 @@ namespace isotet {
 
 namespace {
 
-constexpr std::size_t max_points_for_all = std::size_t{1} << 16, max_sampled_points = std::size_t{1} << 15;
+constexpr std::size_t max_sampled_points = std::size_t{1} << 16;
 constexpr std::size_t coincident_one_in = 1000;
 
 using TypeHistogram = std::array<std::uint64_t, 256>;
@@ -89,10 +89,9 @@ bool few_repeat(const std::vector<SampledPoint>& samples) {
     return count_repeated(samples) <= samples.size() / coincident_one_in;
 }
 
-/// 0 for all points.
+/// So many that a sample is not too large.
 int one_in_bits_for(std::size_t points) {
-    if (points <= max_points_for_all) return 0;
-    int bits = 1;
+    int bits = 0;
     while ((points >> bits) > max_sampled_points) ++bits;
     return bits;
 }
