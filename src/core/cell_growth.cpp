@@ -53,23 +53,22 @@ public:
         for (std::size_t i = 0; i < corners_.size(); ++i) {
             std::array<std::uint32_t, 8>& corners = corners_[i].corners;
             const CellKind kind = corners_[i].kind();
-            bool repeats = false;
-            for (std::size_t k = 0; k < corner_count(kind); ++k) {
-                corners[k] = numbers_.number(corners[k]);
-                for (std::size_t l = 0; l < k; ++l) repeats |= corners[l] == corners[k];
-            }
+            for (std::size_t k = 0; k < corner_count(kind); ++k) corners[k] = numbers_.number(corners[k]);
             states_[i] = {kind, 0};
-            has_repeats_ |= repeats;
         }
         vertices_.resize(numbers_.points().size());
         places_.resize(vertices_.size(), outside);
         std::uint32_t sum = 0;
-        for (std::size_t i = 0; i < corners_.size(); ++i)
-            for_points(i, [&](std::uint32_t v) {
-                ++vertices_[v].listed;
-                ++states_[i].missing;
-                ++sum;
-            });
+        for (std::uint32_t i = 0; i < corners_.size(); ++i)
+            for (const std::uint32_t v : corners(i)) {
+                Vertex& vertex = vertices_[v];
+                const bool repeats = vertex.first == i + 1; // as yet the last cell that was seen here
+                has_repeats_ |= repeats;
+                vertex.first = i + 1;
+                vertex.listed += !repeats;
+                states_[i].missing += !repeats;
+                sum += !repeats;
+            }
         cells_of_ = Buffer<std::uint16_t>(sum);
         std::uint32_t first = 0;
         for (Vertex& vertex : vertices_) {
@@ -98,16 +97,20 @@ public:
 
 private:
     struct Vertex {
-        std::uint32_t first = 0, listed = 0; ///< its cells: `listed` from cells_of_[first] on
+        std::uint32_t first = 0, listed = 0; ///< its cells, ascending: `listed` from cells_of_[first] on
     };
     struct State {
         CellKind kind;
-        std::uint8_t missing; ///< points outside of the growing cluster; is_taken for a cell of a cluster
+        std::uint8_t missing; ///< points outside of the growing cluster; has_been_taken for a cell of a cluster
     };
-    static constexpr std::uint8_t is_taken = 255;
+    static constexpr std::uint8_t has_been_taken = 255;
+    bool is_taken(std::size_t cell) const { return states_[cell].missing == has_been_taken; }
 
     std::span<const std::uint32_t> corners(std::size_t cell) const {
         return {corners_[cell].corners.data(), corner_count(states_[cell].kind)};
+    }
+    std::span<const std::uint16_t> cells_of(std::uint32_t v) const {
+        return {cells_of_.data() + vertices_[v].first, vertices_[v].listed};
     }
     /// Calls f(point) for every point of a cell, once for one that is several corners.
     template <class F>
@@ -129,10 +132,10 @@ private:
     }
 
     /// Whether some cell beside the cluster is left, for which there is no room then.
-    bool touches_any() {
-        for (const std::uint32_t v : points_)
-            if (seed_of(vertices_[v]) != no_number) return true;
-        return false;
+    bool touches_any() const {
+        return std::ranges::any_of(points_, [&](std::uint32_t v) {
+            return std::ranges::any_of(cells_of(v), [&](std::uint16_t cell) { return !is_taken(cell); });
+        });
     }
 
     bool start(std::uint32_t cell) {
@@ -142,33 +145,31 @@ private:
     }
 
     std::uint32_t next_along_curve() {
-        while (next_ < corners_.size() && states_[next_].missing == is_taken) ++next_;
+        while (next_ < corners_.size() && is_taken(next_)) ++next_;
         return next_ == corners_.size() ? no_number : static_cast<std::uint32_t>(next_);
     }
 
-    /// The first cell along the curve of those of the point with the fewest cells left among `points`.
-    std::uint32_t beside(const std::vector<std::uint32_t>& points) {
+    /// The first cell along the curve of those of the point with the fewest cells left among `points`, of which none
+    /// is taken.
+    std::uint32_t beside(const std::vector<std::uint32_t>& points) const {
         std::uint32_t best = no_number;
-        for (const std::uint32_t v : points) {
-            drop_taken(vertices_[v]);
+        for (const std::uint32_t v : points)
             if (vertices_[v].listed && (best == no_number || vertices_[v].listed < vertices_[best].listed)) best = v;
-        }
-        return best == no_number ? no_number : seed_of(vertices_[best]);
-    }
-    std::uint32_t seed_of(Vertex& vertex) {
-        drop_taken(vertex);
-        std::uint32_t seed = no_number;
-        for (std::uint32_t i = 0; i < vertex.listed; ++i)
-            seed = std::min<std::uint32_t>(seed, cells_of_[vertex.first + i]);
-        return seed;
+        return best == no_number ? no_number : cells_of_[vertices_[best].first];
     }
 
-    /// Drops taken cells from a point's list for good.
-    void drop_taken(Vertex& vertex) {
+    /// Drops taken cells from a point's list for good, and tells the others that the point is outside again.
+    void leave(Vertex& vertex) {
         std::uint16_t* const list = cells_of_.data() + vertex.first;
-        for (std::uint32_t i = 0; i < vertex.listed;)
-            if (states_[list[i]].missing == is_taken) list[i] = list[--vertex.listed];
-            else ++i;
+        std::uint32_t kept = 0;
+        for (std::uint32_t i = 0; i < vertex.listed; ++i) {
+            const std::uint16_t cell = list[i];
+            const bool left = !is_taken(cell); // which cannot be predicted: no branch
+            list[kept] = cell;
+            kept += left;
+            states_[cell].missing += left;
+        }
+        vertex.listed = kept;
     }
 
     /// The points of a cell join. The cell is then complete, and taken.
@@ -183,7 +184,7 @@ private:
         for (std::uint32_t i = 0; i < vertex.listed; ++i) {
             const std::uint32_t cell = cells_of_[vertex.first + i];
             State& state = states_[cell];
-            if (state.missing == is_taken) continue;
+            if (state.missing == has_been_taken) continue;
             if (--state.missing == 0) take(cell);
             else queue_.push(cell, state.missing);
         }
@@ -195,15 +196,14 @@ private:
             return;
         }
         size_ += size;
-        states_[cell].missing = is_taken;
-        taken_.push_back(cell);
+        states_[cell].missing = has_been_taken;
+        taken_.push_back(static_cast<std::uint32_t>(states_[cell].kind) << 16 | cell);
     }
 
     /// `cell`, `word`   where the cluster's cells go; afterwards where the next one's do
     void finish_cluster(BlockClusters& out, std::size_t& cell, std::size_t& word) {
-        std::sort(taken_.begin(), taken_.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return states_[a].kind != states_[b].kind ? states_[a].kind < states_[b].kind : a < b;
-        });
+        std::ranges::sort(taken_); // by kind, then along the curve
+        for (std::uint32_t& taken : taken_) taken &= 0xffff;
         // A point that joined for a cell which was not taken any more is not in the cluster.
         for (const std::uint32_t v : points_) places_[v] = outside;
         for (const std::uint32_t taken : taken_)
@@ -230,9 +230,7 @@ private:
         // Forget what only this cluster knew: no cell that is left has a point inside.
         for (const std::uint32_t v : points_) {
             places_[v] = outside;
-            drop_taken(vertices_[v]);
-            for (std::uint32_t i = 0; i < vertices_[v].listed; ++i)
-                ++states_[cells_of_[vertices_[v].first + i]].missing;
+            leave(vertices_[v]);
         }
         queue_.clear();
         taken_.clear();
@@ -252,7 +250,7 @@ private:
     std::vector<std::uint8_t> places_; ///< of each vertex: whether it is in the growing cluster, in the end also where
     Buffer<std::uint16_t> cells_of_;
     CellQueue queue_;
-    std::vector<std::uint32_t> taken_; ///< cells of the growing cluster
+    std::vector<std::uint32_t> taken_; ///< cells of the growing cluster, before it is finished 2^16 * kind more
     std::size_t size_ = 0;             ///< of these, as tets count
     std::vector<std::uint32_t> points_, last_points_;
     std::size_t next_ = 0;
