@@ -79,6 +79,7 @@ public:
     /// larger that it was made for something else; with reuse, a piece of any.
     Block take(std::size_t bytes) {
         const std::lock_guard lock(mutex_);
+        make_room_for_one();
         const auto fits = [&](std::size_t size) {
             return size >= bytes && (reuses_ || size - bytes <= bytes / 4 || size / 4 >= bytes);
         };
@@ -86,15 +87,7 @@ public:
         for (auto block = blocks_.begin(); block != blocks_.end(); ++block)
             if (fits(block->bytes) && (best == blocks_.end() || block->bytes < best->bytes)) best = block;
         if (best == blocks_.end()) return {};
-        Block taken = *best;
-        const std::size_t piece = round_up(bytes, bytes < huge_page ? page_size() : huge_page);
-        if (taken.bytes > piece + std::max(large_block, bytes / 4)) {
-            taken.bytes = piece;
-            best->data = static_cast<std::byte*>(best->data) + piece;
-            best->bytes -= piece;
-        } else {
-            blocks_.erase(best);
-        }
+        const Block taken = cut_off(best, bytes);
         bytes_ -= taken.bytes;
         in_use_ += taken.bytes;
         return taken;
@@ -120,7 +113,7 @@ public:
         const std::lock_guard lock(mutex_);
         in_use_ -= block.bytes;
         if (!reuses_ && block.bytes > max_to_keep()) return false;
-        if (blocks_.size() == blocks_.capacity()) blocks_.reserve(2 * blocks_.size() + 16);
+        make_room_for_one();
         blocks_.push_back(block);
         bytes_ += block.bytes;
         let_go_of_too_many();
@@ -146,6 +139,35 @@ public:
     }
 
 private:
+    void make_room_for_one() {
+        if (blocks_.size() == blocks_.capacity()) blocks_.reserve(2 * blocks_.size() + 16);
+    }
+
+    /// Takes `bytes` and little more off a kept block. What is left begins at a huge page if the block does, but for what
+    /// lies between the piece and the next huge page.
+    Block cut_off(std::vector<Block>::iterator block, std::size_t bytes) {
+        const Block whole = *block;
+        std::size_t piece = round_up(bytes, page_size());
+        if (whole.bytes <= piece + std::max(large_block, bytes / 4)) {
+            blocks_.erase(block);
+            return whole;
+        }
+        auto* const begin = static_cast<std::byte*>(whole.data);
+        if (piece < huge_page) { // off the end
+            block->bytes -= piece;
+            return {begin + block->bytes, piece};
+        }
+        const std::size_t end = std::min(round_up(piece, huge_page), whole.bytes);
+        if (end - piece < large_block) piece = end;
+        if (end < whole.bytes) {
+            *block = {begin + end, whole.bytes - end};
+            if (piece < end) blocks_.insert(block, {begin + piece, end - piece});
+        } else {
+            *block = {begin + piece, end - piece};
+        }
+        return {begin, piece};
+    }
+
     void release(const Block& block) {
         munmap(block.data, block.bytes);
         bytes_ -= block.bytes;

@@ -65,6 +65,32 @@ TEST(Block, ManyGivenBackAreKeptOnlyUpToALimit) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) // whose allocator keeps nothing
+TEST(Block, MuchLargerThanWhatIsWantedIsCutUp) {
+    constexpr std::size_t huge_page = 2 * megabyte, quarter_megabyte = megabyte / 4;
+    drop_kept_blocks();
+    const Block first = take_block(64 * megabyte);
+    auto* const begin = static_cast<std::byte*>(first.data);
+    std::memset(begin, 1, first.bytes);
+    give_back(first);
+    std::vector<Block> pieces;
+    for (const std::size_t bytes : {300 * megabyte / 1024, 5 * megabyte / 2, 9 * megabyte + 1, megabyte}) {
+        const Block piece = take_block(bytes);
+        EXPECT_GE(static_cast<std::byte*>(piece.data), begin);
+        EXPECT_LE(static_cast<std::byte*>(piece.data) + piece.bytes, begin + first.bytes);
+        EXPECT_GE(piece.bytes, bytes);
+        EXPECT_LE(piece.bytes, bytes + quarter_megabyte);
+        if (bytes >= huge_page) {
+            EXPECT_EQ(reinterpret_cast<std::uintptr_t>(piece.data) % huge_page, 0u);
+        }
+        std::memset(piece.data, 2, piece.bytes);
+        pieces.push_back(piece);
+    }
+    give_back(pieces[1]);
+    EXPECT_EQ(take_block(5 * megabyte / 2).data, pieces[1].data) << "a piece given back fits the next of its size";
+    for (const Block& piece : pieces) give_back(piece);
+    EXPECT_EQ(drop_kept_blocks(), first.bytes);
+}
+
 TEST(BlockReuse, CutsUpWhatWasGivenBack) {
     drop_kept_blocks();
     const BlockReuse reuse;
