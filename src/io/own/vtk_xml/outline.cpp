@@ -13,7 +13,7 @@
 namespace isotet::io::vtk_xml {
 namespace {
 
-/// The first window has all tags of a file whose data are appended; the others are for text between tags.
+/// The first window mostly has all tags of a file whose data are appended; the others are for text between tags.
 constexpr std::size_t first_window = std::size_t{1} << 16, later_windows = std::size_t{1} << 20;
 constexpr std::size_t max_bytes = std::size_t{64} << 20; ///< of tags
 

@@ -24,7 +24,8 @@ namespace isotet::io::vtk_xml {
 namespace {
 
 constexpr std::size_t piece_bytes = std::size_t{3} << 18; ///< of values that are not compressed: whole groups of base64
-constexpr std::size_t many_bytes = std::size_t{64} << 20; ///< asking what is free takes longer than reading fewer
+constexpr std::size_t bytes_at_once = std::size_t{1} << 18; ///< that a thread reads, where blocks are smaller
+constexpr std::size_t many_bytes = std::size_t{64} << 20;   ///< asking what is free takes longer than reading fewer
 
 /// Base64 with line breaks, which VTK does not write, without them; nothing where there are none at its beginning.
 Result<std::shared_ptr<const std::string>> without_breaks(const ByteSource& source, Range place) {
@@ -256,29 +257,41 @@ Result<void> StoredArray::read_first(std::span<std::byte> to) const {
     return packed ? read_block({0, 0, to.size(), *packed}, to) : packed.error();
 }
 
-Result<void> StoredArray::for_blocks(const BlockWork& work) const {
+/// False when a call of work() needed no others.
+Result<bool> StoredArray::for_blocks(const BlockWork& work) const {
     FirstError failed;
-    const std::size_t group = std::max<std::size_t>(1, (std::size_t{1} << 18) / block_bytes_);
-    core::parallel_pieces(blocks(), group, *progress_, [&](std::size_t begin, std::size_t end) {
+    std::atomic<bool> needed = true;
+    const auto goes_on = [&] { return !failed && needed.load(std::memory_order_relaxed); };
+    const std::size_t per_task = std::max<std::size_t>(1, bytes_at_once / block_bytes_);
+    core::parallel_pieces(blocks(), per_task, *progress_, [&](std::size_t begin, std::size_t end) {
         thread_local Scratch stored; // work() starts no other tasks
-        const auto packed = packed_bytes(begin, end, stored);
-        if (!packed) return failed.add(begin, packed.error());
-        for (std::size_t block = begin; block < end && !failed; ++block) {
+        const ScopeEnd trim([] { stored.trim(); });
+        std::string_view packed; // of blocks from `first` to before `read`
+        for (std::size_t block = begin, first = begin, read = begin; block < end && goes_on(); ++block) {
+            if (block == read) {
+                first = read++;
+                while (read < end && !packed_.empty() && packed_[read + 1] - packed_[first] <= bytes_at_once) ++read;
+                const auto bytes = packed_bytes(first, read, stored);
+                if (!bytes) return failed.add(block, bytes.error());
+                packed = *bytes;
+            }
             const std::uint64_t at = std::uint64_t{block} * block_bytes_;
             const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block_bytes_, needed_ - at));
             std::string_view of_block;
             if (!packed_.empty())
-                of_block = packed->substr(static_cast<std::size_t>(packed_[block] - packed_[begin]),
-                                          static_cast<std::size_t>(packed_[block + 1] - packed_[block]));
-            if (auto done = work({block, at, size, of_block}); !done) failed.add(block, done.error());
+                of_block = packed.substr(static_cast<std::size_t>(packed_[block] - packed_[first]),
+                                         static_cast<std::size_t>(packed_[block + 1] - packed_[block]));
+            const auto done = work({block, at, size, of_block});
+            if (!done) failed.add(block, done.error());
+            else if (!*done) needed = false;
         }
-        stored.trim();
         const std::size_t at = packed_.empty() ? end * block_bytes_ : static_cast<std::size_t>(packed_[end]);
         (*progress_)("read", std::min(1.0, static_cast<double>(stream_.place.begin + at) /
                                                static_cast<double>(document_->source.size())));
     });
     if (progress_->cancelled()) return Pace::cancelled();
-    return failed.result();
+    if (const auto result = failed.result(); !result) return result.error();
+    return needed.load();
 }
 
 Result<void> StoredArray::decode(std::byte* to) const {
@@ -292,8 +305,11 @@ Result<void> StoredArray::decode(std::byte* to) const {
     }
     core::Buffer<std::byte> bits(array_.bits ? static_cast<std::size_t>(needed_) : 0);
     std::byte* const values = array_.bits ? bits.data() : to;
-    auto done = for_blocks([&](const Block& block) { return read_block(block, {values + block.at, block.size}); });
-    if (!done) return done;
+    const auto done = for_blocks([&](const Block& block) -> Result<bool> {
+        if (auto read = read_block(block, {values + block.at, block.size}); !read) return read.error();
+        return true;
+    });
+    if (!done) return done.error();
     if (array_.bits) {
         for (std::uint64_t i = 0; i < scalars_; ++i) to[i] = (bits[i / 8] >> (7 - i % 8)) & std::byte{1};
     } else if (document_->order != std::endian::native) {
@@ -311,14 +327,15 @@ bool StoredArray::has_blocks() const {
 }
 
 Result<void> StoredArray::each_block(const Work& work) const {
-    return for_blocks([&](const Block& block) -> Result<void> {
+    const auto done = for_blocks([&](const Block& block) -> Result<bool> {
         thread_local Scratch values;
         const auto bytes = values.take(block.size);
-        if (auto read = read_block(block, bytes); !read) return read;
+        if (auto read = read_block(block, bytes); !read) return read.error();
         work(block.at / size_of(array_.type), bytes);
         values.trim();
-        return {};
+        return true;
     });
+    return done ? Result<void>() : done.error();
 }
 
 /// Whether a block, all of which is needed, ends with the checksum of what is expected.
@@ -334,23 +351,21 @@ bool StoredArray::is_told_by_checksum(const Block& block, const Expect& expect) 
 }
 
 Result<bool> StoredArray::holds(const Expect& expect) const {
-    std::atomic<bool> all = true;
-    auto done = for_blocks([&](const Block& block) -> Result<void> {
-        if (!all.load(std::memory_order_relaxed) || is_told_by_checksum(block, expect)) return {};
+    return for_blocks([&](const Block& block) -> Result<bool> {
+        if (is_told_by_checksum(block, expect)) return true;
         thread_local Scratch stored;
         const auto bytes = stored.take(block.size);
-        if (auto read = read_block(block, bytes); !read) return read;
+        if (auto read = read_block(block, bytes); !read) return read.error();
+        bool same = true;
         alignas(8) std::array<std::byte, 1 << 14> expected; // few enough to stay in the cache
-        for (std::size_t begin = 0; begin < block.size; begin += expected.size()) {
+        for (std::size_t begin = 0; begin < block.size && same; begin += expected.size()) {
             const auto piece = std::span(expected).first(std::min(expected.size(), block.size - begin));
             expect((block.at + begin) / size_of(array_.type), piece);
-            if (std::memcmp(piece.data(), bytes.data() + begin, piece.size()) != 0) all = false;
+            same = std::memcmp(piece.data(), bytes.data() + begin, piece.size()) == 0;
         }
         stored.trim();
-        return {};
+        return same;
     });
-    if (!done) return done.error();
-    return all.load();
 }
 
 Result<Array> filled_array(ScalarType type, std::size_t tuples, std::size_t components, const Fill& fill) {

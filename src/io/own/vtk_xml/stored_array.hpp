@@ -49,7 +49,7 @@ public:
     ///
     /// `to`     room for them
     /// Errors   invalid_data: blocks that cannot be inflated, words that are no numbers; file, machine; cancelled
-    /// Cost     parallel by blocks; a block of memory a thread
+    /// Cost     parallel by blocks; a thread takes 256 KB or, where that is more, a block as it is stored and as it becomes
     Result<void> decode(std::byte* to) const;
 
     /// True where each_block() can be called: values are stored as this machine has them, whole ones in each block.
@@ -86,8 +86,9 @@ private:
         std::size_t size;
         std::string_view packed; ///< what becomes its values, of a compressed one
     };
-    using BlockWork = std::function<Result<void>(const Block& block)>;
-    Result<void> for_blocks(const BlockWork& work) const;
+    /// False: no other block is needed.
+    using BlockWork = std::function<Result<bool>(const Block& block)>;
+    Result<bool> for_blocks(const BlockWork& work) const;
     std::size_t blocks() const;
     std::size_t bytes_of_block(std::size_t block) const;
     Result<std::string_view> packed_bytes(std::size_t begin, std::size_t end, Scratch& scratch) const;
