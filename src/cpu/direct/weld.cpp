@@ -66,16 +66,18 @@ void sort_range(FoundEdge<Point>* edges, std::size_t count, std::uint64_t base, 
         return a.edge.lower != b.edge.lower ? a.edge.lower < b.edge.lower : a.edge.higher < b.edge.higher;
     };
     if (count < points / 16) return std::sort(edges, edges + count, comes_before);
-    // By lower end, counting; the few edges from one point then by insertion, unless they are not few.
+    // By lower end, counting; the few edges from one point then by insertion, where they are not few by sorting.
+    constexpr std::uint32_t few = 32;
     std::vector<std::uint32_t>& places = scratch.places;
     places.assign(points + 1, 0);
     std::uint32_t most = 0; // from one point
     for (std::size_t i = 0; i < count; ++i) most = std::max(most, ++places[edges[i].edge.lower - base + 1]);
-    if (most > 32) return std::sort(edges, edges + count, comes_before);
     for (std::size_t p = 0; p < points; ++p) places[p + 1] += places[p];
     if (scratch.edges.size() < count) scratch.edges.resize(count);
     FoundEdge<Point>* const by_lower = scratch.edges.data();
     for (std::size_t i = 0; i < count; ++i) by_lower[places[edges[i].edge.lower - base]++] = edges[i];
+    for (std::size_t p = 0, begin = 0; most > few && p < points; begin = places[p++]) // places are ends now
+        if (places[p] - begin > few) std::sort(by_lower + begin, by_lower + places[p], comes_before);
     for (std::size_t i = 0; i < count; ++i) {
         std::size_t to = i;
         for (; to > 0 && comes_before(by_lower[i], edges[to - 1]); --to) edges[to] = edges[to - 1];
