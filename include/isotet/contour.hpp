@@ -168,7 +168,8 @@ public:
     };
     Result<Prediction> predict(double isovalue) const;
 
-    /// What predictions are made of: of the cells that the session has, of a curved grid those between its corners.
+    /// What predictions are made of: a sample of the cells that the session has, of curved ones between their corners.
+    /// Errors   out_of_memory
     Result<FieldSample> sample() const;
 
     /// The range of the field, as extraction sees it. Cost   a pass over the grid where nothing is packed, once a field

@@ -290,9 +290,11 @@ Result<Contour::Prediction> Contour::predict(double isovalue) const {
 }
 
 Result<FieldSample> Contour::sample() const {
-    if (!data_) return moved_from("the session");
-    const std::lock_guard lock(data_->mutex);
-    return data_->sample;
+    return core::guarded("looking at the field", [&]() -> Result<FieldSample> {
+        if (!data_) return moved_from("the session");
+        const std::lock_guard lock(data_->mutex);
+        return data_->sample;
+    });
 }
 
 Result<FieldReport> Contour::field(const Run& run) {

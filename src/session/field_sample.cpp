@@ -14,7 +14,6 @@
 #include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/guard.hpp"
-#include "core/parallel.hpp"
 #include "core/prefetch.hpp"
 #include "linear/curved_kinds.hpp"
 
@@ -81,8 +80,9 @@ public:
     Looker(const core::CellReader& cells, const Array& values, bool split_cells)
         : cells_(cells), values_(values), whole_(!split_cells && !cells.only_tets()) {}
 
-    /// Cells and values lie anywhere in memory: those of the batch are asked for before the first is looked at.
-    void look_at(std::vector<std::uint64_t> batch) {
+    /// Cells and values lie anywhere in memory: those of the batch are asked for before the first is looked at. Broken ones
+    /// are removed.
+    void look_at(std::vector<std::uint64_t>& batch) {
         for (const std::uint64_t cell : batch)
             if (cells_.first(cell) < cells_.connectivity_size()) cells_.prefetch(cell);
         std::erase_if(batch, [&](std::uint64_t cell) { return !is_within(cells_, cell); });
@@ -147,28 +147,22 @@ Result<FieldSample> FieldSample::create(const Grid& grid, const PointField& fiel
                                      "contoured field must have 1 component",
                                      field.name, field.values.tuples(), field.values.components(), cells->points())};
         const std::uint64_t count = cells->count(), looked_at = std::min(count, max_cells);
-        std::vector<Looker> lookers((looked_at + cells_at_once - 1) / cells_at_once,
-                                    Looker(*cells, field.values, split_cells));
-        core::parallel_each(lookers.size(), 1, [&](std::size_t i) {
-            std::vector<std::uint64_t> batch;
-            for (std::uint64_t k = i * cells_at_once; k < std::min(looked_at, (i + 1) * cells_at_once); ++k)
-                batch.push_back(looked_at == count ? k : drawn_cell(k, looked_at, count));
-            lookers[i].look_at(std::move(batch));
-        });
+        Looker looker(*cells, field.values, split_cells);
+        std::vector<std::uint64_t> batch;
+        for (std::uint64_t first = 0; first < looked_at; first += cells_at_once) {
+            batch.clear();
+            for (std::uint64_t i = first; i < std::min(looked_at, first + cells_at_once); ++i)
+                batch.push_back(looked_at == count ? i : drawn_cell(i, looked_at, count));
+            looker.look_at(batch);
+        }
 
         FieldSample sample;
         sample.points_ = cells->points();
-        sample.lower_ = std::numeric_limits<double>::infinity();
-        sample.upper_ = -sample.lower_;
-        double tets = 0;
-        for (const Looker& looker : lookers) {
-            sample.cells_seen_.insert(sample.cells_seen_.end(), looker.seen.begin(), looker.seen.end());
-            sample.lower_ = std::min(sample.lower_, looker.lower);
-            sample.upper_ = std::max(sample.upper_, looker.upper);
-            tets += looker.tets;
-        }
+        sample.cells_seen_ = std::move(looker.seen);
+        sample.lower_ = looker.lower;
+        sample.upper_ = looker.upper;
         sample.cells_each_ = looked_at == 0 ? 0 : static_cast<double>(count) / static_cast<double>(looked_at);
-        sample.tets_ = static_cast<std::uint64_t>(sample.cells_each_ * tets);
+        sample.tets_ = static_cast<std::uint64_t>(sample.cells_each_ * looker.tets);
         if (cells->only_tets()) sample.tets_ = count;
         return sample;
     });
