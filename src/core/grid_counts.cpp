@@ -28,7 +28,7 @@ struct SampledPoint {
     std::uint64_t hash, number;
 };
 
-/// Chooses samples: in a tenth of the time of hash_of(), the same for equal coordinates, -0 and +0 being equal.
+/// Chooses samples; cheaper than hash_of(), and like it the same for equal coordinates, -0 and +0 being equal.
 template <class Coordinate>
 std::uint32_t sampling_key(const Coordinate* point) {
     const auto bits = [&](std::size_t axis) {

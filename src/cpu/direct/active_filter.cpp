@@ -14,6 +14,7 @@
 
 #include "core/buffer.hpp"
 #include "core/parallel.hpp"
+#include "cpu/direct/arena.hpp"
 #include "cpu/direct/side_sums.hpp"
 
 namespace isotet::cpu::direct {
@@ -73,7 +74,7 @@ private:
         std::vector<Run> runs;
 
         Point* room(std::size_t count) {
-            constexpr std::size_t block = (std::size_t{2} << 20) / sizeof(Point); // a huge page
+            constexpr std::size_t block = arena_block / sizeof(Point);
             if (left < count) {
                 blocks.emplace_back(block);
                 left = block;

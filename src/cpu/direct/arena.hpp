@@ -39,6 +39,9 @@ private:
     std::atomic<std::uint64_t> taken_{0}, free_{unknown};
 };
 
+/// A huge page. Blocks that one stage gives back then fit the next (core/block.hpp).
+constexpr std::size_t arena_block = std::size_t{2} << 20;
+
 /// One thread's memory, in blocks; given back as a whole.
 class BudgetedArena {
 public:
@@ -74,10 +77,8 @@ public:
     }
 
 private:
-    static constexpr std::size_t block_bytes = std::size_t{2} << 20; ///< a huge page, as an active filter keeps cells in
-
     void add_block(std::size_t bytes) {
-        const std::size_t size = std::max(bytes, block_bytes);
+        const std::size_t size = std::max(bytes, arena_block);
         budget_->take(size);
         blocks_.emplace_back(size);
         next_ = blocks_.back().data();

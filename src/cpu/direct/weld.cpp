@@ -76,8 +76,9 @@ void sort_range(FoundEdge<Point>* edges, std::size_t count, std::uint64_t base, 
     if (scratch.edges.size() < count) scratch.edges.resize(count);
     FoundEdge<Point>* const by_lower = scratch.edges.data();
     for (std::size_t i = 0; i < count; ++i) by_lower[places[edges[i].edge.lower - base]++] = edges[i];
-    for (std::size_t p = 0, begin = 0; most > few && p < points; begin = places[p++]) // places are ends now
-        if (places[p] - begin > few) std::sort(by_lower + begin, by_lower + places[p], comes_before);
+    if (most > few)
+        for (std::size_t p = 0, begin = 0; p < points; begin = places[p++]) // places are ends now
+            if (places[p] - begin > few) std::sort(by_lower + begin, by_lower + places[p], comes_before);
     for (std::size_t i = 0; i < count; ++i) {
         std::size_t to = i;
         for (; to > 0 && comes_before(by_lower[i], edges[to - 1]); --to) edges[to] = edges[to - 1];
