@@ -244,6 +244,8 @@ TEST(Contour, PredictsBeforeItExtracts) {
     const Grid grid = kuhn(24);
     Contour contour = Contour::create(input_of(grid), {.surfaces = 1000}).value();
     const auto before = contour.predict(0.1).value();
+    EXPECT_EQ(contour.sample().value().triangles(0.1), before.triangles);
+    EXPECT_EQ(contour.sample().value().points(), grid.points.tuples());
     const ContourResult result = contour.extract(0.1).value();
     const auto triangles = static_cast<double>(result.surfaces[0].surface.triangle_count());
     EXPECT_NEAR(before.triangles, triangles, 0.2 * triangles);
