@@ -62,13 +62,12 @@ std::byte* map_huge_pages(std::size_t bytes) {
 }
 
 /// Maps whole pages, from a huge page's size on beginning at one where there is room for that. What is left over behind
-/// the last huge page stays in small ones, so that no more memory is used than was asked for.
+/// the last huge page stays in small ones, so that no more memory is used than was asked for. No data when there is none.
 Block map_block(std::size_t bytes) {
     const std::size_t size = round_up(bytes, page_size());
-    if (size < bytes || size + huge_page < size) throw std::bad_alloc();
+    if (size < bytes || size + huge_page < size) return {};
     std::byte* data = size < huge_page ? nullptr : map_huge_pages(size);
     if (!data) data = map_pages(size);
-    if (!data) throw std::bad_alloc();
     return {data, size};
 }
 
@@ -93,7 +92,7 @@ public:
         return taken;
     }
 
-    /// A new block. With reuse, the oldest kept ones go where both together would raise the peak.
+    /// A new block. With reuse, the oldest kept ones go where both together would raise the peak; all go for lack of room.
     Block map(std::size_t bytes) {
         {
             const std::lock_guard lock(mutex_);
@@ -101,7 +100,9 @@ public:
             while (reuses_ && old < blocks_.size() && in_use_ + bytes_ + bytes > peak_) release(blocks_[old++]);
             forget(old);
         }
-        const Block block = map_block(bytes);
+        Block block = map_block(bytes);
+        if (!block.data && drop() > 0) block = map_block(bytes);
+        if (!block.data) throw std::bad_alloc();
         const std::lock_guard lock(mutex_);
         in_use_ += block.bytes;
         peak_ = std::max(peak_, in_use_ + bytes_);

@@ -2,10 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <new>
 #include <vector>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "core/block.hpp"
 #include "core/block_reuse.hpp"
@@ -112,6 +117,23 @@ TEST(BlockReuse, CutsUpWhatWasGivenBack) {
     }
     for (const Block& piece : pieces) give_back(piece);
     EXPECT_EQ(drop_kept_blocks(), first.bytes);
+}
+
+/// With room for neither 40 MB more nor less than the 32 MB kept.
+void take_the_place_of_kept_blocks() {
+    give_back(take_block(32 * megabyte));
+    std::ifstream pages("/proc/self/statm");
+    std::size_t mapped = 0;
+    pages >> mapped;
+    const rlimit limit{mapped * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + 16 * megabyte, RLIM_INFINITY};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) std::exit(9);
+    give_back(take_block(40 * megabyte));
+    std::exit(0);
+}
+
+TEST(BlockDeathTest, WithoutRoomTakesThePlaceOfKeptOnes) {
+    testing::FLAGS_gtest_death_test_style = "threadsafe";
+    EXPECT_EXIT(take_the_place_of_kept_blocks(), testing::ExitedWithCode(0), "");
 }
 
 TEST(BlockReuse, KeepsNothingThatWouldRaiseThePeak) {

@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/block.hpp"
 #include "core/buffer.hpp"
 #include "core/memory.hpp"
 
 namespace isotet::cpu::direct {
 
-/// What all arenas have taken, against what is free. It is asked how much that is once, and only when a lot is taken.
+/// What all arenas have taken, against what was free before. It is asked how much that is when a lot is taken, and again
+/// when that is all and blocks that are kept can be let go.
 class Budget {
 public:
     /// Thrown when there is not enough; nothing has been taken then.
@@ -24,16 +26,23 @@ public:
         const std::uint64_t before = taken_.fetch_add(bytes, std::memory_order_relaxed);
         if (before + bytes <= unasked) return;
         std::uint64_t free = free_.load(std::memory_order_relaxed);
-        if (free == unknown) {
-            free = core::free_memory() + before;
-            free_.store(free, std::memory_order_relaxed);
-        }
+        if (free == unknown) free = ask(before);
+        if (before + bytes > free && core::drop_kept_blocks() > 0) free = ask(before);
         if (before + bytes > free) throw Exceeded{};
     }
     void give_back(std::uint64_t bytes) { taken_.fetch_sub(bytes, std::memory_order_relaxed); }
     std::uint64_t taken() const { return taken_.load(std::memory_order_relaxed); }
 
+    /// Bytes that were free before arenas took any; known once Exceeded was thrown.
+    std::uint64_t free() const { return free_.load(std::memory_order_relaxed); }
+
 private:
+    std::uint64_t ask(std::uint64_t taken) {
+        const std::uint64_t free = core::free_memory() + taken;
+        free_.store(free, std::memory_order_relaxed);
+        return free;
+    }
+
     static constexpr std::uint64_t unasked = std::uint64_t{1} << 26;
     static constexpr std::uint64_t unknown = 0;
     std::atomic<std::uint64_t> taken_{0}, free_{unknown};

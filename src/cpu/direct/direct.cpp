@@ -159,7 +159,7 @@ private:
                 tets * (24 + 4 * (sizeof(ActiveEdge<Point>) + sizeof(FoundEdge<Point>) + 3 * sizeof(Real)));
             return Error{ErrorCode::out_of_memory,
                          fmt::format("extraction may need {} for {} active tets, but {} are free",
-                                     core::format_bytes(most), tets, core::format_bytes(core::free_memory()))};
+                                     core::format_bytes(most), tets, core::format_bytes(context.budget.free()))};
         }
         if (auto sound = core::check_cells(input_.grid, input_.cells, progress); !sound) return sound.error();
         return Error{ErrorCode::internal, "extraction found a broken cell that the check of cells does not find"};
