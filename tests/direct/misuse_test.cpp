@@ -201,6 +201,8 @@ void extract_with_little_memory(std::uint64_t side, std::uint64_t bytes) {
         std::exit(3);
     leave_memory(bytes);
     const auto result = extract_direct(grid, point_field(grid), std::vector<double>{2}, options, {.threads = 1});
+    const rlimit unlimited{RLIM_INFINITY, RLIM_INFINITY}; // sanitizers need memory at the end
+    setrlimit(RLIMIT_AS, &unlimited);
     if (result) std::exit(1);
     std::cerr << result.error().message << std::endl;
     std::exit(result.error().code == ErrorCode::out_of_memory ? 0 : 2);
