@@ -16,28 +16,41 @@ class LocalPoints {
 public:
     void find(const Packed& packed, std::size_t cluster) {
         const ClusterHeader& h = packed.headers[cluster];
+        wide_ = h.first_point + h.own_points > narrow_end; // ghost points have lower numbers
+        if (wide_) list(packed, cluster, wide_points_.data());
+        else list(packed, cluster, points_.data());
+    }
+    std::size_t ghost() const { return ghost_; } ///< how many; they come first
+    std::uint64_t operator[](std::size_t local) const { return wide_ ? wide_points_[local] : points_[local]; }
+
+private:
+    static constexpr std::uint64_t narrow_end = std::uint64_t{1} << 32;
+    static constexpr std::size_t at_once = 32;
+    static_assert(at_once <= 4 * slack_words);
+
+    template <class Point>
+    void list(const Packed& packed, std::size_t cluster, Point* out) {
+        const ClusterHeader& h = packed.headers[cluster];
         const ClusterLinks links = packed.cluster_links(cluster);
         // Many at once, without a branch a point: what is read and written too much is written again, or left alone.
         const std::uint8_t* const indices = links.ghost_points.data();
         std::size_t n = 0;
         for (const Neighbour& neighbour : links.neighbours) {
-            const std::uint64_t first = packed.headers[neighbour.cluster].first_point;
+            const auto first = static_cast<Point>(packed.headers[neighbour.cluster].first_point);
             for (std::size_t k = 0; k < neighbour.ghost_points; k += at_once)
-                for (std::size_t i = 0; i < at_once; ++i) points_[n + k + i] = first + indices[n + k + i];
+                for (std::size_t i = 0; i < at_once; ++i) out[n + k + i] = first + indices[n + k + i];
             n += neighbour.ghost_points;
         }
         ghost_ = n;
+        const auto first = static_cast<Point>(h.first_point);
         for (std::size_t k = 0; k < h.own_points; k += at_once)
-            for (std::size_t i = 0; i < at_once; ++i) points_[n + k + i] = h.first_point + k + i;
+            for (std::size_t i = 0; i < at_once; ++i) out[n + k + i] = first + static_cast<Point>(k + i);
     }
-    std::size_t ghost() const { return ghost_; } ///< how many; they come first
-    std::uint64_t operator[](std::size_t local) const { return points_[local]; }
 
-private:
-    static constexpr std::size_t at_once = 32;
-    static_assert(at_once <= 4 * slack_words);
-    std::array<std::uint64_t, max_cluster_points + at_once> points_;
+    std::array<std::uint32_t, max_cluster_points + at_once> points_;
+    std::array<std::uint64_t, max_cluster_points + at_once> wide_points_;
     std::size_t ghost_ = 0;
+    bool wide_ = false;
 };
 
 /// Stored values of all local points; returns their number.
