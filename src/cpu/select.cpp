@@ -1,11 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "core/parallel.hpp"
+#include "core/prefetch.hpp"
 #include "cpu/steps.hpp"
 
 namespace isotet::cpu {
@@ -14,46 +16,63 @@ namespace {
 
 constexpr std::size_t clusters_per_task = 1 << 12;
 
+/// A cluster whose range holds the isovalues [first, end).
+struct Hit {
+    std::uint32_t cluster, first, end, words; ///< words of each place's masks
+};
+
 /// What some clusters add to a selection.
 struct Sums {
     std::uint64_t places = 0, words = 0, tets = 0;
 };
 
-/// Calls f(cluster, first, end) for each cluster of a task whose range holds the isovalues [first, end) and no others.
-template <class Real, class F>
-void for_selected(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues, std::size_t task,
-                  F&& f) {
+/// Those of a task, and their sums.
+template <class Real>
+std::vector<Hit> find_hits(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues,
+                           std::size_t task, Sums& sums) {
     const auto& ranges = packed.as<Real>().ranges;
     constexpr auto value = &core::StoredIsovalue<Real>::value;
     const Real lowest = isovalues.front().value, highest = isovalues.back().value;
-    for (std::size_t c = task * clusters_per_task; c < std::min(packed.clusters(), (task + 1) * clusters_per_task);
-         ++c) {
-        const core::Range<Real> range = ranges[c];
-        if (!(range.lower <= highest && lowest <= range.upper)) continue;
-        const auto first = std::ranges::lower_bound(isovalues, range.lower, {}, value);
-        const auto end = std::ranges::upper_bound(first, isovalues.end(), range.upper, {}, value);
-        if (first != end)
-            f(c, static_cast<std::size_t>(first - isovalues.begin()),
-              static_cast<std::size_t>(end - isovalues.begin()));
+    // Which clusters are hit is as good as random: they are listed first, without a branch.
+    std::array<std::uint32_t, clusters_per_task + 1> near;
+    std::size_t count = 0;
+    const std::size_t begin = task * clusters_per_task, end = std::min(packed.clusters(), begin + clusters_per_task);
+    for (std::size_t c = begin; c < end; ++c) {
+        near[count] = static_cast<std::uint32_t>(c);
+        count += unsigned{ranges[c].lower <= highest} & unsigned{lowest <= ranges[c].upper};
     }
+    constexpr std::size_t ahead = 16;
+    std::vector<Hit> hits;
+    hits.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + ahead < count) core::prefetch(&packed.headers[near[i + ahead]]);
+        const core::Range<Real> range = ranges[near[i]];
+        const auto first = std::ranges::lower_bound(isovalues, range.lower, {}, value);
+        const auto last = std::ranges::upper_bound(first, isovalues.end(), range.upper, {}, value);
+        if (first == last) continue;
+        const core::ClusterHeader& h = packed.headers[near[i]];
+        const Hit hit{near[i], static_cast<std::uint32_t>(first - isovalues.begin()),
+                      static_cast<std::uint32_t>(last - isovalues.begin()),
+                      static_cast<std::uint32_t>(Masks::tied_words + core::words_of_bits(h.own_seams))};
+        const std::uint64_t places = hit.end - hit.first;
+        sums.places += places;
+        sums.words += places * hit.words;
+        sums.tets += places * h.like_tets();
+        hits.push_back(hit);
+    }
+    return hits;
 }
 
 } // namespace
 
 template <class Real>
 Result<Selection> select(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues) {
-    const auto words_of = [&](std::size_t c) {
-        return Masks::tied_words + core::words_of_bits(packed.headers[c].own_seams);
-    };
     const std::size_t tasks = (packed.clusters() + clusters_per_task - 1) / clusters_per_task;
     std::vector<Sums> before(tasks + 1);
+    std::vector<std::vector<Hit>> hits(tasks);
     core::parallel_each(tasks, 1, [&](std::size_t task) {
-        Sums sums;
-        for_selected(packed, isovalues, task, [&](std::size_t c, std::size_t first, std::size_t end) {
-            sums.places += end - first;
-            sums.words += (end - first) * words_of(c);
-            sums.tets += (end - first) * packed.headers[c].like_tets();
-        });
+        Sums sums; // not in place: those of other tasks stand in the same line of the cache
+        hits[task] = find_hits(packed, isovalues, task, sums);
         before[task + 1] = sums;
     });
     for (std::size_t task = 0; task < tasks; ++task) {
@@ -78,15 +97,14 @@ Result<Selection> select(const Packed& packed, std::span<const core::StoredIsova
     selection.tets = all.tets;
     core::parallel_each(tasks, 1, [&](std::size_t task) {
         Sums next = before[task];
-        for_selected(packed, isovalues, task, [&](std::size_t c, std::size_t first, std::size_t end) {
-            selection.base[c] = static_cast<std::uint32_t>(next.places - first);
-            const std::uint64_t words = words_of(c);
-            for (std::size_t k = first; k < end; ++k, ++next.places, next.words += words) {
-                selection.clusters[next.places] = static_cast<std::uint32_t>(c);
-                selection.isovalues[next.places] = static_cast<std::uint32_t>(k);
+        for (const Hit& hit : hits[task]) {
+            selection.base[hit.cluster] = static_cast<std::uint32_t>(next.places - hit.first);
+            for (std::uint32_t k = hit.first; k < hit.end; ++k, ++next.places, next.words += hit.words) {
+                selection.clusters[next.places] = hit.cluster;
+                selection.isovalues[next.places] = k;
                 selection.first_word[next.places] = next.words;
             }
-        });
+        }
     });
     return selection;
 }
