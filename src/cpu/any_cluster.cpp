@@ -43,6 +43,7 @@ public:
     const Record<Real>* cut(Start& count) {
         classify();
         cut_cells();
+        ask_further_ahead(cutting_, place_);
         s_.listed.clear();
         s_.shared.clear();
         s_.shared_keys.clear();
@@ -183,13 +184,17 @@ private:
     }
 
     void share_ghost_seams() {
-        const auto share = [&](VertexKey key, std::uint32_t neighbour, std::uint32_t index) {
-            if (!s_.used.has(key)) return;
-            const std::size_t owner = place_of(neighbour);
-            if (packed_.has_no_data[neighbour]) cutting_.masks.set_seam(owner, index);
-            s_.share(key, {static_cast<std::uint32_t>(owner), index});
-        };
-        s_.template for_crossed_ghost_seams<Simd>(links_, share);
+        const std::size_t crossed =
+            Simd::cross_seams(s_.above.data(), links_.ghost_seams, s_.crossed.data(), s_.ghost_keys.data());
+        const SharedVertex* const owned = s_.shared.end(); // and what is shared is moved down to there
+        Simd::find_owners(links_, s_.crossed.data(), cutting_.selection.base.data(), isovalue_number_, s_.shared.end());
+        for (std::size_t i = 0; i < crossed; ++i) {
+            if (!s_.used.has(s_.ghost_keys[i])) continue; // an end without data, whose owner may have no place
+            const SharedVertex vertex = owned[i];
+            if (packed_.has_no_data[cutting_.selection.clusters[vertex.owner]])
+                cutting_.masks.set_seam(vertex.owner, vertex.index);
+            s_.share(s_.ghost_keys[i], vertex);
+        }
     }
 
     void list_inner_edges() { s_.listed.grow(Simd::list_keys(s_.used, s_.listed.end())); }
@@ -197,13 +202,13 @@ private:
     const Record<Real>* write_record() {
         Record<Real>& record = begin_record(cutting_.wanted, triangles_, s_);
         record.lists_seams = false;
+        place_vertices<Cross>(s_);
         Cross::cross(s_.listed.data(), record.listed, s_.above.data(), s_.values.data(), isovalue_, s_.ends.data(),
                      s_.weights.data());
-        ask_for_positions(packed_, s_, record);
+        keep_vertices(packed_, s_, record);
         with_numbers(s_, record, [&](const auto* numbers, auto* corners) {
             write_triangles(s_, numbers, corners, record.has_tets ? record.tets() : nullptr);
         });
-        write_vertices<Cross>(packed_, s_, record);
         return &record;
     }
 

@@ -9,11 +9,11 @@ namespace isotet::cpu {
 #if defined(__x86_64__)
 // `work` is inlined into these with all that it calls, and so compiled for their instructions.
 template <class Work>
-[[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2"), gnu::flatten]] void with_avx512(const Work& work) {
+[[gnu::target("avx512f,avx512bw,avx512vl,bmi,bmi2,popcnt"), gnu::flatten]] void with_avx512(const Work& work) {
     work();
 }
 template <class Work>
-[[gnu::target("avx2,bmi,bmi2"), gnu::flatten]] void with_avx2(const Work& work) {
+[[gnu::target("avx2,bmi,bmi2,popcnt"), gnu::flatten]] void with_avx2(const Work& work) {
     work();
 }
 #endif

@@ -6,6 +6,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "core/parallel.hpp"
+#include "cpu/at_level.hpp"
 #include "cpu/cutting.hpp"
 #include "cpu/level.hpp"
 #include "cpu/prefetch.hpp"
@@ -14,7 +15,7 @@ namespace isotet::cpu {
 
 namespace {
 
-/// The points and values of clusters, and what those to come will need.
+/// The points and values of clusters; those of the next one are asked for.
 template <class Real>
 class Loader {
 public:
@@ -25,30 +26,21 @@ public:
         const std::size_t cluster = cutting_.selection.clusters[place];
         std::swap(s.local, s.next);
         if (s.next_cluster != cluster) s.local->find(cutting_.packed, cluster);
-        ask_ahead(place, s);
+        ask_for_next(place, s);
         core::load_values(cutting_.packed, cluster, *s.local, s.values.data());
         s.cluster = cluster;
     }
 
 private:
-    /// Asks for what the clusters to come will read, while this one is worked on.
-    void ask_ahead(std::size_t place, CutScratch<Real>& s) const {
-        const Packed& packed = cutting_.packed;
+    void ask_for_next(std::size_t place, CutScratch<Real>& s) const {
         const PlacesAhead ahead(cutting_.selection, place);
-        const auto cluster = [&](std::size_t i) { return cutting_.selection.clusters[ahead[i]]; };
-        if (ahead.has(2)) prefetch(&packed.headers[cluster(2)]);
-        if (ahead.has(1)) {
-            const core::ClusterHeader& h = packed.headers[cluster(1)];
-            prefetch_bytes(packed.links.data() + h.first_link, 4 * core::ClusterLinks::words(h));
-            prefetch_bytes(packed.cells.data() + h.first_word, sizeof(core::StoredTet) * h.words());
-            prefetch_bytes(packed.as<Real>().values.data() + h.first_point, sizeof(Real) * h.own_points);
-        }
-        if (ahead.has(0)) {
-            const Real* const values = packed.as<Real>().values.data();
-            s.next->find(packed, cluster(0));
-            for (std::size_t k = 0; k < s.next->ghost(); ++k) prefetch(values + (*s.next)[k]);
-            s.next_cluster = cluster(0);
-        }
+        if (!ahead.has(0)) return;
+        const Packed& packed = cutting_.packed;
+        const std::size_t cluster = cutting_.selection.clusters[ahead[0]];
+        s.next->find(packed, cluster);
+        s.next_cluster = cluster;
+        const Real* const values = packed.as<Real>().values.data();
+        for (std::size_t k = 0; k < s.next->ghost(); ++k) prefetch(values + (*s.next)[k]);
     }
 
     const Cutting<Real>& cutting_;
@@ -98,8 +90,12 @@ public:
                     .fetch_add(tied, std::memory_order_relaxed);
         }
         s.record_bytes += record->bytes();
-        if (keep_ == Keep::records) out_.records[place] = record;
-        else s.arena.clear();
+        if (keep_ == Keep::records) {
+            out_.records[place] = record;
+        } else {
+            s.unplaced = nullptr;
+            s.arena.clear();
+        }
     }
 
 private:
@@ -127,6 +123,7 @@ Counted<Real> count(const Packed& packed, const Wanted<Real>& wanted, const Sele
         if (progress.cancelled()) return;
         Memory& memory = *scratch.local();
         for (std::size_t place = begin; place < end; ++place) counter.count_place(place, memory);
+        place_vertices<Portable>(memory);
     });
     out.bytes = out.starts.bytes() + out.records.bytes();
     for (std::shared_ptr<Memory>& memory : scratch) {
@@ -151,8 +148,11 @@ template Counted<double> count<double>(const Packed&, const Wanted<double>&, con
 
 std::vector<Total> scan(const Selection& selection, const Masks& masks, std::size_t isovalues,
                         core::Buffer<Start>& starts) {
-    core::parallel_each(selection.size(), 1 << 12,
-                        [&](std::size_t place) { starts[place].vertex += masks.vertices(place); });
+    core::parallel_ranges(selection.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+        at_level([&] { // which has an instruction that counts bits
+            for (std::size_t place = begin; place < end; ++place) starts[place].vertex += masks.vertices(place);
+        });
+    });
     std::vector<Total> totals(isovalues);
     for (std::size_t place = 0; place < selection.size(); ++place) {
         Total& total = totals[selection.isovalues[place]];

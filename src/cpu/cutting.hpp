@@ -58,7 +58,7 @@ template <class Real>
 struct CutScratch {
     static constexpr std::size_t points = core::max_cluster_points;
     static constexpr std::size_t padded = max_vertices + 128; ///< SIMD code writes more than it counts
-    static constexpr std::size_t ghost_words = core::words_of_bits(points * (points - 1) / 2);
+    static constexpr std::size_t ghost_words = CrossedBefore::most / 64 + 1;
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
     std::size_t cluster = none, next_cluster = none;
@@ -72,35 +72,42 @@ struct CutScratch {
     CutCells cells;
     std::array<VertexKey, 4 * CutTets::room> keys;  ///< of the polygons of active cells, four each
     KeyTable used;                                  ///< empty between places
-    std::array<VertexKey, padded> ghost_keys;       ///< of ghost seams that are crossed
+    std::array<VertexKey, padded> ghost_keys;       ///< of ghost seams that are crossed; for any_cluster.cpp
     std::array<std::uint64_t, ghost_words> crossed; ///< a bit for each ghost seam
     ShortList<VertexKey, padded> listed;
     std::array<EndPair, padded> ends; ///< of listed vertices
     std::array<Real, padded> weights;
-    ShortList<SharedVertex, max_vertices> shared;
-    ShortList<VertexKey, max_vertices> shared_keys;
+    std::array<EndPositions<Real>, padded> end_positions; ///< of the vertices of `unplaced`
+    const Record<Real>* unplaced = nullptr;               ///< whose positions are still to be written
+    ShortList<SharedVertex, padded> shared;
+    ShortList<VertexKey, padded> shared_keys;
     std::array<std::uint16_t, points * points> numbers; ///< see with_numbers()
     Arena arena;
     std::size_t record_bytes = 0; ///< of all records made
 
-    /// Calls f(key, neighbour that owns it, its index among this one's own seams) for every ghost seam that is crossed.
-    template <class Simd, class F>
-    void for_crossed_ghost_seams(const core::ClusterLinks& links, const F& f) {
-        Simd::cross_seams(above.data(), links.ghost_seams, crossed.data(), ghost_keys.data());
-        const VertexKey* key = ghost_keys.data();
-        const core::Neighbour* neighbour = links.neighbours.data();
-        std::size_t end = links.ghost_seams.empty() ? 0 : neighbour->ghost_seams;
-        core::for_bits(crossed.data(), core::words_of_bits(links.ghost_seams.size()), [&](std::size_t k) {
-            while (k >= end) end += (++neighbour)->ghost_seams;
-            f(*key++, neighbour->cluster, links.seam_index(k));
-        });
-    }
     void share(VertexKey key, SharedVertex vertex) {
         used.take_out(key);
         shared.push_back(vertex);
         shared_keys.push_back(key);
     }
 };
+
+/// Asks for what the clusters after the next one will read. Called in the middle of a cluster's work: at its beginning the
+/// values of the next one are asked for, and only some dozens of requests can be under way.
+template <class Real>
+void ask_further_ahead(const Cutting<Real>& cutting, std::size_t place) {
+    const Packed& packed = cutting.packed;
+    const PlacesAhead ahead(cutting.selection, place);
+    const auto cluster = [&](std::size_t i) { return cutting.selection.clusters[ahead[i]]; };
+    if (ahead.has(2)) prefetch(&packed.headers[cluster(2)]);
+    if (ahead.has(1)) {
+        const core::ClusterHeader& h = packed.headers[cluster(1)];
+        prefetch_bytes(packed.links.data() + h.first_link, 4 * core::ClusterLinks::words(h));
+        prefetch_bytes(packed.cells.data() + h.first_word, sizeof(core::StoredTet) * h.words());
+        prefetch_bytes(packed.as<Real>().values.data() + h.first_point, sizeof(Real) * h.own_points);
+        prefetch(packed.group_ranges.data() + h.first_group);
+    }
+}
 
 /// Calls f(numbers, corners) with a table of local vertex numbers by key, and where the record has such numbers for the
 /// corners of triangles: bytes where they suffice, which are nearer in the cache.
@@ -135,27 +142,30 @@ Record<Real>& begin_record(const Wanted<Real>& wanted, std::size_t triangles, Cu
     return record;
 }
 
-/// Listed vertices, from scratch.ends and scratch.weights.
+/// Writes the positions that keep_vertices() left, before scratch.weights are written again.
 template <class Simd, class Real>
-void write_vertices(const Packed& packed, const CutScratch<Real>& s, Record<Real>& record) {
+void place_vertices(CutScratch<Real>& s) {
+    if (!s.unplaced) return;
+    Simd::place(s.end_positions.data(), s.weights.data(), s.unplaced->listed, s.unplaced->positions());
+    s.unplaced = nullptr;
+}
+
+/// Listed vertices, from scratch.ends and scratch.weights. Positions of their ends are only asked for: place_vertices(), a
+/// cluster later, finds them there.
+template <class Real>
+void keep_vertices(const Packed& packed, CutScratch<Real>& s, const Record<Real>& record) {
     if (record.has_ends) {
         std::copy_n(s.ends.data(), record.listed, record.ends());
         std::copy_n(s.weights.data(), record.listed, record.weights());
-    } else {
-        Simd::place(s.ends.data(), s.weights.data(), record.listed, *s.local, packed.as<Real>().positions.data(),
-                    record.positions());
+        return;
     }
-}
-
-/// So that they are there a little later, for write_vertices().
-template <class Real>
-void ask_for_positions(const Packed& packed, const CutScratch<Real>& s, const Record<Real>& record) {
-    if (record.has_ends) return;
     const Real* const positions = packed.as<Real>().positions.data();
     for (std::size_t i = 0; i < record.listed; ++i) {
-        prefetch(positions + 3 * (*s.local)[s.ends[i].below]);
-        prefetch(positions + 3 * (*s.local)[s.ends[i].above]);
+        s.end_positions[i] = {positions + 3 * (*s.local)[s.ends[i].below], positions + 3 * (*s.local)[s.ends[i].above]};
+        prefetch(s.end_positions[i].below);
+        prefetch(s.end_positions[i].above);
     }
+    s.unplaced = &record;
 }
 
 /// Counts a place and leaves a record of it; null when its cluster is not plain: nothing has been changed then.

@@ -129,7 +129,7 @@ private:
             vertex += masked.count;
         }
         if (record.has_ends) write_vertices({record.ends(), record.weights(), record.listed}, vertex, target, s);
-        else std::copy_n(record.positions(), 3u * record.listed, target.positions + 3 * vertex);
+        else Simd::copy(record.positions(), 3u * record.listed, target.positions + 3 * vertex);
 
         if (target.triangles)
             write_triangles<Simd>(record, vertex, s.numbers.data(), target.triangles + 3 * start.triangle);

@@ -14,18 +14,27 @@ namespace {
 
 using Scratch = CutScratch<float>;
 
+bool some_have_no_data(const Packed& packed, const core::ClusterLinks& links) {
+    unsigned some = 0;
+    for (const core::Neighbour& neighbour : links.neighbours) some |= packed.has_no_data[neighbour.cluster];
+    return some;
+}
+
 /// Own seams into `listed` and the mask, ghost ones into `shared`; what remains are inner edges.
 template <class Simd>
 void sort_out_seams(const Cutting<float>& cutting, const core::ClusterLinks& links, std::size_t place, Scratch& s) {
     s.listed.grow(Simd::cross_seams(s.above.data(), links.own_seams, cutting.masks.seams(place), s.listed.end()));
     for (const VertexKey key : s.listed) s.used.take_out(key);
 
-    const std::uint32_t isovalue = cutting.selection.isovalues[place];
-    s.for_crossed_ghost_seams<Simd>(links, [&](VertexKey key, std::uint32_t neighbour, std::uint32_t index) {
-        const std::size_t owner = cutting.selection.place(neighbour, isovalue);
-        s.share(key, {static_cast<std::uint32_t>(owner), index});
-        if (cutting.packed.has_no_data[neighbour]) cutting.masks.set_seam(owner, index);
-    });
+    s.shared_keys.grow(Simd::cross_seams(s.above.data(), links.ghost_seams, s.crossed.data(), s.shared_keys.end()));
+    for (const VertexKey key : s.shared_keys) s.used.take_out(key);
+    const Selection& selection = cutting.selection;
+    Simd::find_owners(links, s.crossed.data(), selection.base.data(), selection.isovalues[place], s.shared.end());
+    s.shared.grow(s.shared_keys.size());
+    if (some_have_no_data(cutting.packed, links))
+        for (const SharedVertex& vertex : s.shared)
+            if (cutting.packed.has_no_data[selection.clusters[vertex.owner]])
+                cutting.masks.set_seam(vertex.owner, vertex.index);
 }
 
 template <class Simd>
@@ -38,6 +47,7 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
         return nullptr;
     cut_all<Simd>(cutting.packed, cluster, isovalue.value, s, KeepAll());
     for (std::size_t i = 0; i < 4 * s.cut.count; ++i) s.used.use(s.keys[i]);
+    ask_further_ahead(cutting, place);
     std::size_t triangles = 0;
     for (std::size_t i = 0; i < s.cut.count; ++i) triangles += s.cut.triangles[i];
 
@@ -51,13 +61,13 @@ const Record<float>* cut_plain(const Cutting<float>& cutting, std::size_t place,
     if (s.listed.empty() && triangles == 0) return &nothing;
 
     Record<float>& record = begin_record(cutting.wanted, triangles, s);
+    place_vertices<Simd>(s);
     Simd::cross(s.listed.data(), record.listed, s.above.data(), s.values.data(), isovalue, s.ends.data(),
                 s.weights.data());
-    ask_for_positions(cutting.packed, s, record);
+    keep_vertices(cutting.packed, s, record);
     with_numbers(s, record, [&](const auto* numbers, auto* corners) {
         write_triangles(s, numbers, corners, record.has_tets ? record.tets() : nullptr);
     });
-    write_vertices<Simd>(cutting.packed, s, record);
     return &record;
 }
 

@@ -85,6 +85,11 @@ struct Avx2 {
         return count;
     }
 
+    ISOTET_AVX2 static void find_owners(const core::ClusterLinks& links, const std::uint64_t* crossed,
+                                        const std::uint32_t* base, std::uint32_t isovalue, SharedVertex* out) {
+        Portable::find_owners(links, crossed, base, isovalue, out);
+    }
+
     ISOTET_AVX2 static std::size_t list_keys(KeyTable& used, VertexKey* out) {
         return Portable::list_keys<Avx2>(used, out);
     }
@@ -179,18 +184,24 @@ struct Avx2 {
         }
     }
 
-    ISOTET_AVX2 static void place(const EndPair* ends, const float* weights, std::size_t n,
-                                  const core::LocalPoints& points, const float* positions, float* out) {
+    ISOTET_AVX2 static void place(const EndPositions<float>* ends, const float* weights, std::size_t n, float* out) {
         // The last position of all has nothing behind it: three numbers are loaded, not four.
         const __m128i three = _mm_setr_epi32(-1, -1, -1, 0);
         for (std::size_t i = 0; i < n; ++i, out += 3) {
-            const __m128 a = _mm_maskload_ps(positions + 3 * points[ends[i].below], three);
-            const __m128 b = _mm_maskload_ps(positions + 3 * points[ends[i].above], three);
+            const __m128 a = _mm_maskload_ps(ends[i].below, three);
+            const __m128 b = _mm_maskload_ps(ends[i].above, three);
             const __m128 t = _mm_set1_ps(weights[i]);
             const __m128 between = _mm_add_ps(a, _mm_mul_ps(t, _mm_sub_ps(b, a)));
             _mm_storeu_ps(out, _mm_blendv_ps(between, b, _mm_cmpeq_ps(t, _mm_set1_ps(1))));
         }
     }
+
+    ISOTET_AVX2 static void copy(const float* from, std::size_t n, float* to) {
+        std::size_t i = 0;
+        for (; i + 8 <= n; i += 8) _mm256_storeu_ps(to + i, _mm256_loadu_ps(from + i));
+        for (; i < n; ++i) to[i] = from[i];
+    }
+    ISOTET_AVX2 static void copy(const double* from, std::size_t n, double* to) { Portable::copy(from, n, to); }
 
     template <class Local, class Index>
     ISOTET_AVX2 static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first,
@@ -253,12 +264,13 @@ private:
     }
     /// Bits of the 128 sides in 16 bytes, twice.
     ISOTET_AVX2 static __m256i table_of(const std::uint8_t* above) {
-        std::uint32_t bits[4];
-        for (std::size_t k = 0; k < 4; ++k) {
-            const __m256i sides = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(above + 32 * k));
-            bits[k] = static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_slli_epi16(sides, 7)));
-        }
-        return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(bits)));
+        // In registers: what was stored in parts would have to be waited for.
+        return _mm256_broadcastsi128_si256(_mm_setr_epi32(sides_of_32(above), sides_of_32(above + 32),
+                                                          sides_of_32(above + 64), sides_of_32(above + 96)));
+    }
+    ISOTET_AVX2 static int sides_of_32(const std::uint8_t* above) {
+        const __m256i sides = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(above));
+        return _mm256_movemask_epi8(_mm256_slli_epi16(sides, 7));
     }
     /// Each byte of the result is 1 or 0, the table's bit for that byte of `indices`.
     ISOTET_AVX2 static __m256i look_up(__m256i table, __m256i indices) {

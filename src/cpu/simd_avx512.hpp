@@ -75,6 +75,31 @@ struct Avx512 {
         return static_cast<std::size_t>(out - begin);
     }
 
+    ISOTET_AVX512 static void find_owners(const core::ClusterLinks& links, const std::uint64_t* crossed,
+                                          const std::uint32_t* base, std::uint32_t isovalue, SharedVertex* out) {
+        if (links.wide) return Portable::find_owners(links, crossed, base, isovalue, out);
+        std::array<std::uint8_t, CrossedBefore::most + 64> indices; // of crossed seams
+        CrossedBefore crossed_before(crossed);
+        for (std::size_t word = 0; 64 * word < links.ghost_seams.size(); ++word) {
+            const __m512i all = _mm512_maskz_loadu_epi8(crossed[word], links.seam_indices + 64 * word);
+            _mm512_storeu_si512(&indices[crossed_before.add_word()], _mm512_maskz_compress_epi8(crossed[word], all));
+        }
+        // How many seams of a neighbour are crossed is as good as random, but rarely more than a register holds.
+        std::size_t seam = 0, first = 0;
+        for (const core::Neighbour& neighbour : links.neighbours) {
+            const __m512i owner = _mm512_set1_epi64(base[neighbour.cluster] + isovalue);
+            seam += neighbour.ghost_seams;
+            const std::size_t last = crossed_before[seam];
+            do {
+                const __m512i index =
+                    _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(&indices[first])));
+                _mm512_storeu_si512(out + first, _mm512_or_si512(owner, _mm512_slli_epi64(index, 32)));
+                first += 8;
+            } while (first < last);
+            first = last;
+        }
+    }
+
     ISOTET_AVX512 static std::size_t list_keys(KeyTable& used, VertexKey* out) {
         const VertexKey* const begin = out;
         const __m512i lanes = _mm512_loadu_si512(first_numbers.data()), zero = _mm512_setzero_si512();
@@ -157,17 +182,24 @@ struct Avx512 {
         }
     }
 
-    ISOTET_AVX512 static void place(const EndPair* ends, const float* weights, std::size_t n,
-                                    const core::LocalPoints& points, const float* positions, float* out) {
+    ISOTET_AVX512 static void place(const EndPositions<float>* ends, const float* weights, std::size_t n, float* out) {
         for (std::size_t i = 0; i < n; ++i, out += 3) {
             // The last position of all has nothing behind it: three numbers are loaded, not four.
-            const __m128 a = _mm_maskz_loadu_ps(7, positions + 3 * points[ends[i].below]);
-            const __m128 b = _mm_maskz_loadu_ps(7, positions + 3 * points[ends[i].above]);
+            const __m128 a = _mm_maskz_loadu_ps(7, ends[i].below);
+            const __m128 b = _mm_maskz_loadu_ps(7, ends[i].above);
             const __m128 t = _mm_set1_ps(weights[i]);
             const __m128 between = _mm_add_ps(a, _mm_mul_ps(t, _mm_sub_ps(b, a)));
             _mm_storeu_ps(out, _mm_mask_mov_ps(between, _mm_cmp_ps_mask(t, _mm_set1_ps(1), _CMP_EQ_OQ), b));
         }
     }
+
+    ISOTET_AVX512 static void copy(const float* from, std::size_t n, float* to) {
+        std::size_t i = 0;
+        for (; i + 16 <= n; i += 16) _mm512_storeu_ps(to + i, _mm512_loadu_ps(from + i));
+        const auto there = static_cast<__mmask16>((1u << (n - i)) - 1);
+        _mm512_mask_storeu_ps(to + i, there, _mm512_maskz_loadu_ps(there, from + i));
+    }
+    ISOTET_AVX512 static void copy(const double* from, std::size_t n, double* to) { Portable::copy(from, n, to); }
 
     template <class Local>
     ISOTET_AVX512 static void number(const Local* local, std::size_t n, std::size_t listed, std::uint64_t first,

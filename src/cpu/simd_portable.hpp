@@ -64,6 +64,12 @@ inline constexpr auto polygon_triangles = [] {
     return counts;
 }();
 
+/// Where the positions of an edge's ends are, 3 numbers each.
+template <class Real>
+struct EndPositions {
+    const Real *below, *above;
+};
+
 /// Edges of the polygons of active tets: lower local index * 128 + higher, four a tet.
 using VertexKey = std::uint16_t;
 
@@ -85,6 +91,32 @@ struct KeyTable {
 
     alignas(64) std::array<std::uint8_t, row_size * row_size> bytes{};
     alignas(64) std::array<std::uint8_t, part_count> parts{};
+};
+
+/// Of ghost seams, a bit for each that is crossed: how many there are before any of them.
+class CrossedBefore {
+public:
+    static constexpr std::size_t most = core::max_cluster_points * (core::max_cluster_points - 1) / 2;
+
+    explicit CrossedBefore(const std::uint64_t* crossed) : crossed_(crossed) { before_word_[0] = 0; }
+
+    /// Counts the next word; returns how many are before it.
+    std::size_t add_word() {
+        const std::uint32_t before = before_word_[words_];
+        before_word_[words_ + 1] = before + static_cast<std::uint32_t>(std::popcount(crossed_[words_]));
+        ++words_;
+        return before;
+    }
+    /// Of those in words that were added, and behind the last.
+    std::size_t operator[](std::size_t seam) const {
+        const std::uint64_t in_word = crossed_[seam / 64] & ((std::uint64_t{1} << seam % 64) - 1);
+        return before_word_[seam / 64] + static_cast<std::size_t>(std::popcount(in_word));
+    }
+
+private:
+    const std::uint64_t* crossed_;
+    std::size_t words_ = 0;
+    std::array<std::uint32_t, most / 64 + 2> before_word_;
 };
 
 struct Portable {
@@ -166,6 +198,18 @@ struct Portable {
         return count;
     }
 
+    /// The crossed ones of a cluster's ghost seams, with the places of their owners: base[neighbour] + isovalue. May write up
+    /// to 7 more.
+    static void find_owners(const core::ClusterLinks& links, const std::uint64_t* crossed, const std::uint32_t* base,
+                            std::uint32_t isovalue, SharedVertex* out) {
+        const core::Neighbour* neighbour = links.neighbours.data();
+        std::size_t end = links.ghost_seams.empty() ? 0 : neighbour->ghost_seams;
+        core::for_bits(crossed, core::words_of_bits(links.ghost_seams.size()), [&](std::size_t k) {
+            while (k >= end) end += (++neighbour)->ghost_seams;
+            *out++ = {base[neighbour->cluster] + isovalue, links.seam_index(k)};
+        });
+    }
+
     /// Writes the used keys, ascending, and empties the table. Returns how many there are. May write up to 64 more.
     static std::size_t list_keys(KeyTable& used, VertexKey* out) { return list_keys<Portable>(used, out); }
 
@@ -232,16 +276,17 @@ struct Portable {
         }
     }
 
-    /// Positions of vertices on edges, 3 numbers each. `positions` are those of packed points, `points` tells these of
-    /// local ones. May write one number more.
+    /// Positions of vertices on edges, 3 numbers each. May write one number more.
     template <class Real>
-    static void place(const EndPair* ends, const Real* weights, std::size_t n, const core::LocalPoints& points,
-                      const Real* positions, Real* out) {
-        for (std::size_t i = 0; i < n; ++i, out += 3) {
-            const Real* const a = positions + 3 * points[ends[i].below];
-            const Real* const b = positions + 3 * points[ends[i].above];
-            for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = core::interpolate(a[axis], b[axis], weights[i]);
-        }
+    static void place(const EndPositions<Real>* ends, const Real* weights, std::size_t n, Real* out) {
+        for (std::size_t i = 0; i < n; ++i, out += 3)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                out[axis] = core::interpolate(ends[i].below[axis], ends[i].above[axis], weights[i]);
+    }
+
+    template <class Real>
+    static void copy(const Real* from, std::size_t n, Real* to) {
+        std::copy_n(from, n, to);
     }
 
     /// Numbers of a surface's vertices from local ones: `first` + those below `listed`; `numbers` holds those of
