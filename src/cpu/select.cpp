@@ -26,7 +26,7 @@ struct Sums {
     std::uint64_t places = 0, words = 0, tets = 0;
 };
 
-/// Those of a task, and their sums.
+/// The clusters of a task that are hit, added up in `sums`.
 template <class Real>
 std::vector<Hit> find_hits(const Packed& packed, std::span<const core::StoredIsovalue<Real>> isovalues,
                            std::size_t task, Sums& sums) {

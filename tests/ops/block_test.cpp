@@ -119,7 +119,7 @@ TEST(BlockReuse, CutsUpWhatWasGivenBack) {
     EXPECT_EQ(drop_kept_blocks(), first.bytes);
 }
 
-/// With room for neither 40 MB more nor less than the 32 MB kept.
+/// Takes 40 MB where 32 are kept and there is room for 16 more.
 void take_the_place_of_kept_blocks() {
     give_back(take_block(32 * megabyte));
     std::ifstream pages("/proc/self/statm");
