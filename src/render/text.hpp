@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <isotet/picture.hpp>
+#include <isotet/result.hpp>
 
 namespace isotet::render {
 
