@@ -1,8 +1,13 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // PVTU and PVD: files that name other files, and what they must not name.
+#include <algorithm>
+
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <isotet/make.hpp>
 #include <isotet/read.hpp>
+#include <isotet/write.hpp>
 
 #include "vtk_readers/sample_grid.hpp"
 #include "support/temporary_folder.hpp"
@@ -68,7 +73,82 @@ TEST_F(IndexFiles, PvdSortsItsTimes) {
     options.step = 1;
     const auto second = read(path, options);
     ASSERT_TRUE(second) << second.error().message;
-    EXPECT_EQ(second->grid.cells.count(), 18u);
+    expect_sample(second);
+}
+
+/// Grids told apart by their number of tets.
+class Collections : public IndexFiles {
+protected:
+    Collections() {
+        for (const std::uint64_t side : {1, 2, 3})
+            EXPECT_TRUE(write_grid(make_grid({"kuhn", side, {"plane"}}).value(),
+                                   folder_.file("t" + std::to_string(side) + ".vtu")));
+    }
+    /// The tets of each time, and whether a note says that entries were replaced.
+    std::vector<std::size_t> tets(const std::string& entries, bool& replaced) {
+        const std::string path = folder_.write(
+            "run.pvd", "<VTKFile type=\"Collection\"><Collection>" + entries + "</Collection></VTKFile>");
+        std::vector<std::size_t> result;
+        const auto info = inspect(path);
+        EXPECT_TRUE(info && std::ranges::is_sorted(info->times));
+        for (std::size_t step = 0; info && step < info->times.size(); ++step) {
+            ReadOptions options;
+            options.step = step;
+            const auto grid = read(path, options);
+            EXPECT_TRUE(grid) << grid.error().message;
+            if (!grid) return {};
+            result.push_back(grid->grid.cells.count());
+            replaced = !grid->notes.empty() && grid->notes[0].find("replaced by a later one") != std::string::npos;
+        }
+        return result;
+    }
+};
+
+std::string entry(std::string_view time, std::string_view attributes, int side) {
+    return fmt::format("<DataSet timestep=\"{}\" {} file=\"t{}.vtu\"/>", time, attributes, side);
+}
+
+TEST_F(Collections, TakeTheLastEntryOfATimeGroupAndPart) {
+    using Tets = std::vector<std::size_t>;
+    const char* const part = "group=\"\" part=\"0\"";
+    bool replaced = false;
+    EXPECT_EQ(tets(entry("0", part, 1) + entry("0", part, 1) + entry("0.0", part, 1), replaced), Tets{6});
+    EXPECT_TRUE(replaced);
+    EXPECT_EQ(tets(entry("0.10", part, 2) + entry("1e-1", part, 1), replaced), Tets{6});
+    EXPECT_TRUE(replaced);
+    EXPECT_EQ(tets(entry("0", part, 1) + entry("1", part, 1) + entry("2", part, 1) + entry("1", part, 2) +
+                       entry("2", part, 2) + entry("3", part, 2),
+                   replaced),
+              (Tets{6, 48, 48, 48}));
+    EXPECT_TRUE(replaced);
+    EXPECT_EQ(tets(entry("0", "part=\"0\"", 1) + entry("0", "part=\"1\"", 2), replaced), Tets{54});
+    EXPECT_FALSE(replaced);
+    EXPECT_EQ(tets(entry("0", "group=\"a\" part=\"0\"", 1) + entry("0", "group=\"b\" part=\"0\"", 2), replaced), Tets{54});
+    EXPECT_FALSE(replaced);
+}
+
+TEST_F(Collections, WithoutPartsHaveFurtherFilesOrARestartedRun) {
+    using Tets = std::vector<std::size_t>;
+    bool replaced = false;
+    EXPECT_EQ(tets(entry("0", "", 1) + entry("0", "", 2) + entry("1", "", 3), replaced), (Tets{54, 162}));
+    EXPECT_FALSE(replaced);
+    EXPECT_EQ(tets(entry("0", "", 1) + entry("0", "", 1), replaced), Tets{6});
+    EXPECT_TRUE(replaced);
+    EXPECT_EQ(tets(entry("0", "", 1) + entry("1", "", 1) + entry("0", "", 2) + entry("1", "", 3), replaced),
+              (Tets{48, 162}));
+    EXPECT_TRUE(replaced);
+}
+
+TEST_F(Collections, SeriesTakeTheLastFileOfATime) {
+    const std::string path = folder_.write("run.vtu.series", R"({"file-series-version": "1.0", "files": [
+        {"name": "t1.vtu", "time": 0}, {"name": "t1.vtu", "time": 1}, {"name": "t2.vtu", "time": 1.0}]})");
+    ReadOptions options;
+    options.step = 1;
+    const auto second = read(path, options);
+    ASSERT_TRUE(second) << second.error().message;
+    EXPECT_EQ(second->grid.cells.count(), 48u);
+    EXPECT_EQ(second->info.times.size(), 2u);
+    EXPECT_EQ(second->notes.at(0), "1 of 3 files of the series is replaced by a later one of the same time");
 }
 
 TEST_F(IndexFiles, OutsideOfTheFolderIsRefusedUnlessAllowed) {

@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 
 constexpr const char* version_key = "file-series-version";
 
-Result<NamesByTime> entries(const std::string& path, std::string_view text) {
+/// Of several files of one time the last counts, as where a run was restarted.
+Result<NamesByTime> entries(const std::string& path, std::string_view text, std::vector<std::string>& notes) {
     const Json series = Json::parse(text, nullptr, false);
     if (series.is_discarded()) return broken(path, "this is not JSON");
     const auto files = series.is_object() ? series.find("files") : series.end();
@@ -29,18 +30,24 @@ Result<NamesByTime> entries(const std::string& path, std::string_view text) {
         const auto time = file.find("time");
         if (time == file.end() || !time->is_number())
             return broken(path, fmt::format("the entry \"{}\" has no number as its \"time\"", escaped(name)));
-        names[time->get<double>()].push_back(name);
+        names[time->get<double>()] = {name};
     }
+    if (const std::size_t replaced = files->size() - names.size(); replaced > 0)
+        notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time", replaced,
+                                    files->size(), replaced == 1 ? "is" : "are"));
     return names;
 }
 
 Result<Loaded> load(const std::string& path, const ReadOptions& options, Depth depth, const Progress& progress) {
     const auto file = WholeFile::read(path, progress);
     if (!file) return file.error();
-    const auto names = entries(path, file->text());
+    std::vector<std::string> notes;
+    const auto names = entries(path, file->text(), notes);
     if (!names) return names.error();
     auto loaded = load_times(path, *names, options, depth, progress);
-    if (loaded) loaded->info.format = "series";
+    if (!loaded) return loaded;
+    loaded->info.format = "series";
+    loaded->notes.insert(loaded->notes.begin(), notes.begin(), notes.end());
     return loaded;
 }
 
