@@ -51,6 +51,13 @@ struct RegionName {
     std::string name;
 };
 
+/// Something of a file that is not read, though the rest is.
+struct LeftOut {
+    std::string what;   ///< its kind: "point field", "cell field", "section", "block"
+    std::string name;   ///< in the file
+    std::string reason; ///< completes "is left out: ", such as "its type is 'Foo', which is not known"
+};
+
 /// What a file holds.
 struct FileInfo {
     std::string format;
@@ -61,6 +68,7 @@ struct FileInfo {
     std::vector<BlockInfo> blocks; ///< empty where the format has none that can be chosen; regions are listed when
                                    ///< some were chosen and read
     std::vector<RegionName> regions; ///< names of physical groups of volumes (Gmsh); not always all numbers have one
+    std::vector<LeftOut> left_out;   ///< ReadResult::notes tell it, too
 };
 
 /// Only the cells that direct extraction of some isovalues needs (active_cells.hpp).

@@ -41,11 +41,41 @@ namespace {
 
 const char* adjective(Association association) { return association == Association::point ? "point" : "cell"; }
 
+/// "point fields 'a' and 'b' are left out: ...": one sentence for each kind and reason.
+void say_left_out(ReadResult& result) {
+    const std::vector<LeftOut>& items = result.info.left_out;
+    std::vector<bool> said(items.size());
+    for (std::size_t first = 0; first < items.size(); ++first) {
+        if (said[first]) continue;
+        std::vector<std::string> names;
+        for (std::size_t i = first; i < items.size(); ++i) {
+            if (items[i].what != items[first].what || items[i].reason != items[first].reason) continue;
+            names.push_back(in_quotes(items[i].name));
+            said[i] = true;
+        }
+        result.notes.push_back(fmt::format("{}{} {} {} left out: {}", items[first].what, names.size() == 1 ? "" : "s",
+                                           fmt::join(names, ", "), names.size() == 1 ? "is" : "are",
+                                           items[first].reason));
+    }
+}
+
+/// Why a field is not read; empty where nothing is known about it.
+std::string reason_left_out(const FileInfo& info, std::string_view what, const std::string& name) {
+    for (const LeftOut& item : info.left_out)
+        if (item.name == name && item.what == what) return item.reason;
+    return {};
+}
+
 /// Every name asked for must be in the file, and what is in the file must have come back.
 Result<void> check_names(const std::vector<std::string>& asked, Association association, const ReadResult& result) {
     const auto& read = association == Association::point ? result.grid.point_fields : result.grid.cell_fields;
     for (const std::string& name : asked) {
         if (std::any_of(read.begin(), read.end(), [&](const Field& field) { return field.name == name; })) continue;
+        if (const std::string reason =
+                reason_left_out(result.info, fmt::format("{} field", adjective(association)), name);
+            !reason.empty())
+            return Error{ErrorCode::invalid_data, fmt::format("{} field {} cannot be read: {}", adjective(association),
+                                                              in_quotes(name), reason)};
         std::vector<std::string> names;
         bool in_file = false;
         for (const FieldInfo& field : result.info.fields) {
@@ -153,6 +183,7 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     const ReadOptions& all = *extended;
     auto result = (*reader)->read(path, all, progress);
     if (!result) return result;
+    say_left_out(*result);
     if (auto known = check_blocks(result->info, options); !known) return known.error();
     if (const auto step = choose_step(result->info, options); !step) return step.error();
     if (all.point_fields) {

@@ -130,6 +130,9 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
 }
 
 Error GridSource::no_such_field(const std::string& name) const {
+    for (const LeftOut& item : info_.left_out)
+        if (item.name == name && item.what.ends_with("field"))
+            return {ErrorCode::invalid_data, fmt::format("{} '{}' cannot be read: {}", item.what, name, item.reason)};
     std::vector<std::string> all;
     for (const FieldInfo& field : info_.fields)
         if (std::ranges::find(all, field.name) == all.end()) all.push_back(field.name);

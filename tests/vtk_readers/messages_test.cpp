@@ -18,6 +18,7 @@ ReadResult made_result() {
     result.info.fields = {{"p", Association::point, ScalarType::float32, 1}};
     result.info.times = {0.5, 1.5};
     result.info.blocks = {{10, "steel", "element block", 1}};
+    result.info.left_out = {{"point field", "q", "its type is 'Foo'"}};
     result.step = 1;
     result.notes = {"a note"};
     result.grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 3);

@@ -17,8 +17,15 @@ void announce(FileInfo& info, FieldInfo field) {
     info.fields.push_back(std::move(field));
 }
 
+void leave_out(FileInfo& info, LeftOut item) {
+    for (const LeftOut& known : info.left_out)
+        if (known.what == item.what && known.name == item.name && known.reason == item.reason) return;
+    info.left_out.push_back(std::move(item));
+}
+
 void append(Loaded& whole, Loaded part) {
     for (FieldInfo& field : part.info.fields) announce(whole.info, std::move(field));
+    for (LeftOut& item : part.info.left_out) leave_out(whole.info, std::move(item));
     std::ranges::move(part.info.files, std::back_inserter(whole.info.files));
     std::ranges::move(part.pieces, std::back_inserter(whole.pieces));
     std::ranges::move(part.notes, std::back_inserter(whole.notes));

@@ -42,6 +42,9 @@ enum class Depth { description, arrays };
 /// Adds a field to the description unless it is there.
 ISOTET_API void announce(FileInfo& info, FieldInfo field);
 
+/// Adds to FileInfo::left_out unless it is there with the same reason; read() makes notes of it.
+ISOTET_API void leave_out(FileInfo& info, LeftOut item);
+
 /// Makes the pieces of `part` further ones of `whole`, with its fields, files and notes.
 void append(Loaded& whole, Loaded part);
 

@@ -20,7 +20,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint64_t magic = 0x3230795f74657469; // "iteT_y02", and the byte order with it
+constexpr std::uint64_t magic = 0x3330795f74657469; // "itet_y03", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -101,6 +101,11 @@ public:
             out_.text(block.kind);
             out_.number(block.cells);
         });
+        out_.list(info.left_out, [&](const LeftOut& item) {
+            out_.text(item.what);
+            out_.text(item.name);
+            out_.text(item.reason);
+        });
     }
     void describe(ReadResult& result) {
         describe(result.info);
@@ -175,6 +180,12 @@ public:
             block.name = in_.text();
             block.kind = in_.text();
             block.cells = in_.number<std::uint64_t>();
+        });
+        in_.list([&] {
+            LeftOut& item = result.left_out.emplace_back();
+            item.what = in_.text();
+            item.name = in_.text();
+            item.reason = in_.text();
         });
         return result;
     }
