@@ -20,7 +20,8 @@ namespace isotet {
 ISOTET_API Result<Surface> boundary_of(const PackedGrid& packed, const Run& run = {});
 
 /// The boundary of a grid that is not packed: all faces that its tets, repeated ones aside, do not use equally often in
-/// both directions. Polyhedra are taken as linearize() makes them. Triangles face outwards; a face that is used more than
+/// both directions: each tetrahedron upright, each other cell as a whole, so a twisted or folded one has no boundary inside.
+/// Polyhedra are taken as linearize() makes them. Triangles face outwards; a face that is used more than
 /// once too often stands there once. Positions
 /// are the grid's, in its type; both edge ends of a vertex are its point.
 ///

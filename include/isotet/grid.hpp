@@ -82,8 +82,8 @@ struct GridReport {
     // Counted only with SurveyOptions::faces.
     std::size_t repeated_tets = 0;    ///< tets with the same four corners as an earlier one; packing keeps the first
     std::size_t duplicate_points = 0; ///< used points with the coordinates of a used point of a lower number
-    std::size_t boundary_faces = 0;   ///< faces that the tets do not use equally often in both directions, repeated
-                                      ///< tets aside
+    std::size_t boundary_faces = 0;   ///< faces that one cell has: tets, those of a twisted cell turned as the cell,
+                                      ///< do not use them equally often in both directions, repeated ones aside
     std::size_t quads_on_triangles =
         0; ///< quadrilateral faces that meet triangular ones of other cells: where cells are
            ///< not split, the surface may be open there

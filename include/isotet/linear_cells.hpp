@@ -155,6 +155,8 @@ ISOTET_API Result<std::vector<double>> relative_volumes(const Grid& grid, const 
 ///   any other       pyramids on its quadrilaterals and tets on its triangles, around a derived point: the mean of its
 ///                   corners, moved where it does not see all faces. Larger faces are cut into triangles, from the lowest
 ///                   point number, or by ears where that would be thin or fold: by the face alone, so neighbours agree
+///                   no point sees all faces: types 210 (tetrahedron) and 214 (pyramid), which are stored in the order of
+///                   their corners, inside out or not
 ///   open            left out: type 0 (empty), without corners
 ///
 /// Where some cells are quadratic, all cells become tets, each edge with a node bisected once, and cells that cannot be

@@ -102,7 +102,8 @@ public:
             if (part.kind == CellKind::tetrahedron) {
                 add_tet({v[0], v[1], v[2], v[3]});
             } else if (wants(corners_of(part))) {
-                if (core::turn_of(part, [&](std::size_t k) { return points_[v[k]]; }).is_mirrored())
+                if (!core::is_ordered(cells_.type(cell)) &&
+                    core::turn_of(part, [&](std::size_t k) { return points_[v[k]]; }).is_mirrored())
                     part.corners = core::mirrored(part.kind, v);
                 f(part);
             }

@@ -135,7 +135,9 @@ public:
         if (whole) out_.balance += sign;
         if (is_repeated) return false;
         if (whole && sign == 0) out_.flat.push_back(place);
-        const bool mirrored = out_.orientation.add(sign, whole, origin.cell_negative());
+        bool mirrored = false;
+        if (origin.is_ordered()) out_.orientation.add_ordered(sign);
+        else mirrored = out_.orientation.add(sign, whole, origin.cell_negative());
         ranks = tet.stored(mirrored != tet.odd);
         ++out_.kinds[0];
         return true;
@@ -156,7 +158,7 @@ public:
             turn_of(user, [&](std::size_t corner) { return points_.coordinates[cell.corners[corner]]; });
         out_.orientation.twisted += turned.is_twisted();
         out_.orientation.flat += turned.is_flat();
-        if (turned.is_mirrored()) cell.corners = mirrored(kind, cell.corners);
+        if (turned.is_mirrored() && !origin.is_ordered()) cell.corners = mirrored(kind, cell.corners);
         ++out_.kinds[static_cast<std::size_t>(kind)];
         return true;
     }

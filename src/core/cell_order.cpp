@@ -120,13 +120,19 @@ private:
     std::size_t arrived_ = 0;
 };
 
+CellOrigin origin_of(const PointReader& points, const CellReader& cells, std::size_t cell, const CellTets& tets) {
+    const std::uint8_t type = cells.type(cell);
+    if (is_ordered(type)) return CellOrigin::make_ordered(cell);
+    return CellOrigin::make(cell, !Orienter::is_whole(type) && Orienter::six_volumes(points, tets) < 0);
+}
+
 void deal_out(const PointReader& points, const CellReader& cells, std::size_t begin, std::size_t end,
               const Buffer<std::uint32_t>& rank_of, RankedBuckets<RankedTet>::Writer& writer) {
     Dealer<RankedTet> dealer(rank_of, writer);
     cells.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
-        const bool cell_negative =
-            !cells.only_tets() && !Orienter::is_whole(cells.type(cell)) && Orienter::six_volumes(points, pieces) < 0;
-        for (const Tet& corners : pieces) dealer.put(corners, CellOrigin::make(cell, cell_negative));
+        CellOrigin origin = CellOrigin::make(cell, false);
+        if (!cells.only_tets()) origin = origin_of(points, cells, cell, pieces);
+        for (const Tet& corners : pieces) dealer.put(corners, origin);
     });
 }
 
@@ -136,11 +142,10 @@ void deal_out(const PointReader& points, const CellReader& cells, std::size_t be
     for (std::size_t cell = begin; cell < end; ++cell) {
         if (!is_contoured(cells.type(cell))) continue;
         const NativeParts parts = native_parts(cells.whole(cell));
-        const bool negative = parts.count && parts.cells[0].kind == CellKind::tetrahedron &&
-                              !Orienter::is_whole(cells.type(cell)) &&
-                              Orienter::six_volumes(points, cells.tets(cell)) < 0;
-        for (const WholeCell& part : parts)
-            dealer.put({part.corners.data(), corner_count(part.kind)}, CellOrigin::make(cell, negative));
+        CellOrigin origin = is_ordered(cells.type(cell)) ? CellOrigin::make_ordered(cell) : CellOrigin::make(cell, false);
+        if (parts.count && parts.cells[0].kind == CellKind::tetrahedron)
+            origin = origin_of(points, cells, cell, cells.tets(cell));
+        for (const WholeCell& part : parts) dealer.put({part.corners.data(), corner_count(part.kind)}, origin);
     }
 }
 

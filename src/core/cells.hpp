@@ -16,8 +16,18 @@
 
 namespace isotet::core {
 
+/// Types of which VTK has none: parts of a polyhedron that are stored with their corners in the order given, inside out or
+/// not, so that the surface stays closed where the polyhedron cannot be split into upright ones.
+constexpr std::uint8_t ordered_tetrahedron = 210, ordered_pyramid = 214;
+
+constexpr bool is_ordered(std::uint8_t vtk_type) {
+    return vtk_type == ordered_tetrahedron || vtk_type == ordered_pyramid;
+}
+
 /// Nothing for types that are not contoured.
 constexpr std::optional<CellKind> kind_of(std::uint8_t vtk_type) {
+    if (is_ordered(vtk_type))
+        return vtk_type == ordered_pyramid ? CellKind::pyramid : CellKind::tetrahedron;
     switch (static_cast<CellType>(vtk_type)) {
     case CellType::tetrahedron: return CellKind::tetrahedron;
     case CellType::voxel:

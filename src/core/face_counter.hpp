@@ -18,7 +18,8 @@
 
 namespace isotet::core {
 
-/// A tet by its corners in ascending order, with one bit beside: which way round they are.
+/// A tet by its corners in ascending order, with two bits beside: which way round they are, and whether its cell is of an
+/// ordered type (cells.hpp).
 template <class Point>
 class AscendingTet {
 public:
@@ -40,11 +41,18 @@ public:
         out.corners_[0] |= mirrored ? flag : Point{0};
         return out;
     }
+    AscendingTet of_ordered_cell() const {
+        AscendingTet out = *this;
+        out.corners_[1] |= flag;
+        return out;
+    }
     std::array<Point, 4> corners() const {
-        return {static_cast<Point>(corners_[0] & ~flag), corners_[1], corners_[2], corners_[3]};
+        return {static_cast<Point>(corners_[0] & ~flag), static_cast<Point>(corners_[1] & ~flag), corners_[2],
+                corners_[3]};
     }
     /// Whether the ascending order is the mirror image of the stored form.
     bool mirrored() const { return corners_[0] & flag; }
+    bool is_ordered() const { return corners_[1] & flag; }
 
     /// Every point number is below this.
     static constexpr std::uint64_t max_points = std::uint64_t{1} << (std::numeric_limits<Point>::digits - 1);
@@ -144,11 +152,12 @@ public:
             const std::array<Point, 4> p = tets[i].corners();
             const bool lowest_is_here = is_here(p[0]), second_is_here = is_here(p[1]);
             const std::size_t different = tets_.size();
-            tets_[p];
-            if (tets_.size() == different) {
-                counts.repeated += lowest_is_here;
-                continue;
-            }
+            SeenTet& seen = tets_[p];
+            const bool repeats = tets_.size() == different;
+            counts.repeated += lowest_is_here && repeats;
+            const bool turned_over = tets[i].is_ordered() && !seen.turned[tets[i].mirrored()];
+            seen.turned[tets[i].mirrored()] = true;
+            if (repeats && !turned_over) continue;
             // The outward faces of an upright tet are 1 2 3, 0 3 2, 0 1 3 and 0 2 1.
             const Balance sign = tets[i].mirrored() ? -1 : 1;
             if (second_is_here) use({p[1], p[2], p[3]}, sign, counts);
@@ -172,8 +181,10 @@ private:
     static constexpr std::size_t tets_between_looks = 1 << 16;
     using Balance = std::make_signed_t<Point>;
 
+    /// Parts of one polyhedron may be the same tet, one of them inside out: both count.
     struct SeenTet {
         std::array<Point, 4> key{};
+        std::array<bool, 2> turned{}; ///< whether it was seen as it stands, and mirrored
     };
     struct Face {
         std::array<Point, 3> key{};

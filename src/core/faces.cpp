@@ -89,9 +89,7 @@ private:
         FaceSums sums(cells_.points());
         parallel_pieces(cells_.count(), min_chunk, progress_, [&](std::size_t begin, std::size_t end) {
             FaceSums::Adder<Point> adder(sums);
-            for_tets(begin, end, [&](const Tet& tet, const auto& is_mirrored) {
-                adder.add(AscendingTet<Point>::make(tet, is_mirrored()));
-            });
+            for_tets(begin, end, [&](const Tet&, const auto& make) { adder.add(make()); });
         });
         const double points = static_cast<double>(cells_.points() - survey_.unused);
         const double tets_of_a_point = 2 * static_cast<double>(survey_.tets) / points;
@@ -148,39 +146,44 @@ private:
     /// Deals the tets of the cells [begin, end) that belong into the buckets [first, last).
     template <class Dealer>
     void deal(std::size_t begin, std::size_t end, std::size_t first, std::size_t last, Dealer& dealer) const {
-        for_tets(begin, end, [&](const Tet& tet, const auto& is_mirrored) {
+        for_tets(begin, end, [&](const Tet& tet, const auto& make) {
             const auto [lowest, second] = two_lowest(tet);
             const std::size_t a = buckets_.of(lowest), b = buckets_.of(second);
             const bool in_a = first <= a && a < last && is_counted(lowest);
             const bool in_b = first <= b && b < last && is_counted(second);
-            const auto make = [&] { return AscendingTet<Point>::make(tet, is_mirrored()); };
             if (in_a && in_b) dealer.put(a - first, b - first, make);
             else if (in_a) dealer.put(a - first, make);
             else if (in_b) dealer.put(b - first, make);
         });
     }
 
-    /// Calls use(tet, is_mirrored) for the tets of the cells [begin, end); is_mirrored() says whether its stored form is.
+    /// Calls use(tet, make) for the tets of the cells [begin, end); make() gives the tet as it is counted.
     template <class Use>
     void for_tets(std::size_t begin, std::size_t end, const Use& use) const {
         cells_.for_cells(begin, end, [&](std::size_t cell, const CellTets& pieces) {
-            const bool whole = Orienter::is_whole(cells_.type(cell));
             std::optional<bool> cell_mirrored;
-            if (whole) cell_mirrored = survey_.mostly_negative();
+            if (is_ordered(cells_.type(cell))) cell_mirrored = false;
             const auto is_cell_mirrored = [&] {
                 if (!cell_mirrored) cell_mirrored = Orienter::six_volumes(points_, pieces) < 0;
                 return *cell_mirrored;
             };
-            for (const Tet& tet : pieces) use(tet, [&] { return is_mirrored(tet, whole, is_cell_mirrored); });
+            const bool whole = Orienter::is_whole(cells_.type(cell));
+            for (const Tet& tet : pieces)
+                use(tet, [&] {
+                    const auto made = AscendingTet<Point>::make(tet, is_mirrored(tet, whole, is_cell_mirrored));
+                    return is_ordered(cells_.type(cell)) ? made.of_ordered_cell() : made;
+                });
         });
     }
 
-    /// Whether the tet's stored form is mirrored. Where all are alike, the answer for all of them is as good.
+    /// Whether a tet is mirrored as it is stored, and a piece as its cell is: a twisted cell has no faces inside. Where all
+    /// are alike, the answer for all of them is as good.
     template <class IsCellMirrored>
     bool is_mirrored(const Tet& tet, bool whole, const IsCellMirrored& is_cell_mirrored) const {
         if (survey_.all_alike()) return false;
+        if (!whole) return is_cell_mirrored();
         Orienter::Counts ignored;
-        return ignored.add(points_.orientation(tet), whole, is_cell_mirrored());
+        return ignored.add(points_.orientation(tet), whole, survey_.mostly_negative());
     }
 
     static std::pair<std::uint64_t, std::uint64_t> two_lowest(const Tet& t) {

@@ -133,7 +133,9 @@ std::map<std::uint8_t, std::uint64_t> count_cells_by_type(const Cells& cells) {
     return counts;
 }
 
-bool is_contoured(std::uint8_t cell_type) noexcept { return core::is_contoured(cell_type); }
+bool is_contoured(std::uint8_t cell_type) noexcept {
+    return core::is_contoured(cell_type) && !core::is_ordered(cell_type);
+}
 
 CoincidentPoints estimate_coincident_points(const Grid& grid) {
     if (grid.points.components() != 3 || grid.points.tuples() < 2) return {};

@@ -65,7 +65,8 @@ std::array<Corner, 4> canonical(std::array<Corner, 4> t) {
 /// Gives the tets of cells their stored form.
 ///
 /// A tet of negative volume (exact sign on the user's coordinates) is mirrored. A flat tet keeps the orientation of the
-/// file; it is mirrored when most tetrahedra of the grid are, and a flat piece of a split cell when its cell is.
+/// file; it is mirrored when most tetrahedra of the grid are, and a flat piece of a split cell when its cell is. Tets of
+/// ordered types (cells.hpp) stay as they are.
 class Orienter {
 public:
     Orienter(const Array& points, bool mostly_negative) : points_(points), mostly_negative_(mostly_negative) {}
@@ -83,6 +84,8 @@ public:
             else if ((sign < 0) != mirrored) ++twisted;
             return sign < 0 || (sign == 0 && mirrored);
         }
+        /// Counts one that stays as it is, whatever its sign.
+        void add_ordered(int sign) { add(sign, false, false); }
         /// Tetrahedra whose sign is not that of most, and twisted pieces.
         std::uint64_t inverted(bool mostly_negative) const { return (mostly_negative ? upright : negative) + twisted; }
 
@@ -100,6 +103,10 @@ public:
     }
     /// Of a tet to which a cell with these tets has collapsed, or of one of them.
     Tet stored(std::uint8_t cell_type, const CellTets& cell, Tet t, Counts& counts) const {
+        if (is_ordered(cell_type)) {
+            counts.add_ordered(points_.orientation(t));
+            return canonical(t);
+        }
         const bool whole = is_whole(cell_type);
         const bool mirrored = whole ? mostly_negative_ : six_volumes(points_, cell) < 0;
         if (counts.add(points_.orientation(t), whole, mirrored)) std::swap(t[2], t[3]);

@@ -40,10 +40,12 @@ struct CellOrigin {
     std::uint64_t value;
 
     static CellOrigin make(std::uint64_t cell, bool cell_negative) {
-        return {cell << 1 | std::uint64_t{cell_negative}};
+        return {cell << 2 | std::uint64_t{cell_negative}};
     }
-    std::uint64_t cell() const { return value >> 1; }
+    static CellOrigin make_ordered(std::uint64_t cell) { return {cell << 2 | 2}; }
+    std::uint64_t cell() const { return value >> 2; }
     bool cell_negative() const { return value & 1; }
+    bool is_ordered() const { return value & 2; } ///< the cell's corners stay in their order
 };
 
 } // namespace isotet::core

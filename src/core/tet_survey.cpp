@@ -31,12 +31,16 @@ void add_cells(const CellReader& cells, const PointReader& points, std::size_t b
         out.by_type[type] += typed;
         out.tets += static_cast<std::uint64_t>(tets.count);
         out.collapsed += static_cast<std::uint64_t>(tets.collapsed);
-        const bool whole = Orienter::is_whole(type);
+        const bool whole = Orienter::is_whole(type), ordered = is_ordered(type);
         const bool cell_mirrored = !whole && Orienter::six_volumes(points, tets) < 0;
         for (const Tet& tet : tets) {
             for (const std::uint64_t corner : tet)
                 std::atomic_ref<std::uint8_t>(used[corner]).store(1, std::memory_order_relaxed);
             const int sign = points.orientation(tet);
+            if (ordered) {
+                out.orientation.add_ordered(sign);
+                continue;
+            }
             out.orientation.add(sign, whole, cell_mirrored);
             out.mirrored += sign < 0;
         }

@@ -32,14 +32,15 @@ public:
         Centre out;
         out.weights.assign(points_.size(), 1 / static_cast<double>(points_.size()));
         mean_ = place_of(out.weights);
-        if (sees_all(rounded(mean_))) return out;
+        if (accept(rounded(mean_), out)) return out;
         for (const double depth : {1e-2, 1e-4}) {
             const auto moved = weights_of(moved_inside(depth));
-            if (!moved || !sees_all(rounded(place_of(*moved)))) continue;
+            if (!moved || !accept(rounded(place_of(*moved)), out)) continue;
             out.weights = *moved;
             out.moved = true;
             return out;
         }
+        out.place = rounded(mean_);
         out.folded = true;
         return out;
     }
@@ -67,11 +68,18 @@ private:
         return !(dot(normal, normal) > thinnest * longest * longest);
     }
 
-    bool sees_all(const Point& place) const {
-        return std::ranges::all_of(triangles_, [&](const OutwardTriangle& t) {
+    /// False when the tet over a triangle with an area is not upright.
+    bool accept(const Point& place, Centre& out) const {
+        bool sees_all = true;
+        for (const OutwardTriangle& t : triangles_) {
             const Point a = places_[t[0]], b = places_[t[1]], c = places_[t[2]];
-            return core::orientation_sign(a, c, b, place) > 0 || is_thin(a, b, c);
-        });
+            if (core::orientation_sign(a, c, b, place) > 0) continue;
+            if (!is_thin(a, b, c)) return false;
+            sees_all = false;
+        }
+        out.place = place;
+        out.sees_all = sees_all;
+        return true;
     }
 
     /// From the mean over the worst wall to `depth` times the cell's size behind it, again and again.

@@ -16,8 +16,10 @@ using OutwardTriangle = std::array<std::uint64_t, 3>;
 
 struct Centre {
     std::vector<double> weights; ///< of the cell's points, in their order; the sum is 1
+    core::Point place{};         ///< as it is stored
     bool moved = false;          ///< not the mean of the points
     bool folded = false;         ///< the mean of the points, and it does not see all triangles
+    bool sees_all = false;       ///< the tets over all triangles are upright, those without an area, too
 };
 
 /// The mean of the points; where a tet between it and a triangle would not be upright, a point moved towards the inner side

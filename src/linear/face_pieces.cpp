@@ -14,6 +14,9 @@ namespace {
 constexpr std::size_t max_ear_points = 64; // ears cost the cube
 constexpr double least_share = 1e-9;       // of the face's area, for a triangle with an area
 constexpr double least_quality = 0.1;      // of a fan's triangle: twice its area over the square of its longest edge
+// Hanging points lie on lines of the face but for rounding, of six digits in text. An ear that such a point touches would
+// leave a triangle without an area. Shares of the face's area, the smaller ones where no ear is left by the larger.
+constexpr std::array<double, 3> rim_shares = {1e-3, 1e-9, 0};
 
 /// A face in the making: its points, and areas along its normal.
 class FaceCutter {
@@ -89,22 +92,31 @@ private:
                          core::squared_distance(places_[c], places_[a])});
     }
 
-    bool holds_a_point(const std::vector<std::uint32_t>& left, std::uint32_t a, std::uint32_t b,
-                       std::uint32_t c) const {
-        return std::ranges::any_of(left, [&](std::uint32_t p) {
-            return p != a && p != b && p != c && area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
+    /// Inside, on the rim, or outside of it by so little that no side of the triangle gets more than `rim` with it.
+    bool holds_a_point(const std::vector<std::uint32_t>& left, const std::array<std::uint32_t, 3>& ear,
+                       double rim) const {
+        const auto [a, b, c] = ear;
+        return std::ranges::any_of(left, [&, a = a, b = b, c = c](std::uint32_t p) {
+            return p != a && p != b && p != c && area(a, b, p) >= -rim && area(b, c, p) >= -rim &&
+                   area(c, a, p) >= -rim;
         });
     }
 
     /// The position of the tip of the best-shaped ear; the number of points where there is none.
     std::size_t best_ear(const std::vector<std::uint32_t>& left) const {
+        std::size_t best = left.size();
+        for (std::size_t i = 0; best == left.size() && i < rim_shares.size(); ++i)
+            best = best_ear(left, rim_shares[i] * dot(normal_, normal_));
+        return best;
+    }
+    std::size_t best_ear(const std::vector<std::uint32_t>& left, double rim) const {
         const std::size_t n = left.size();
         std::size_t best = n;
         double best_quality = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint32_t a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
             const double shape = quality(a, b, c);
-            if (shape > best_quality && !holds_a_point(left, a, b, c)) {
+            if (shape > best_quality && !holds_a_point(left, {a, b, c}, rim)) {
                 best = i;
                 best_quality = shape;
             }

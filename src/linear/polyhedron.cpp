@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "linear/polyhedron.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -19,6 +20,16 @@ constexpr std::uint8_t vtk_type_of(core::CellKind kind) {
     case core::CellKind::hexahedron: break;
     }
     return static_cast<std::uint8_t>(CellType::hexahedron);
+}
+
+PieceKey key_of(const OutwardPiece& piece, std::uint32_t number) {
+    std::array<std::uint64_t, 4> around = piece.corners;
+    const auto end = around.begin() + piece.count;
+    std::rotate(around.begin(), std::min_element(around.begin(), end), end);
+    const bool forward = around[1] < *(end - 1);
+    if (!forward) std::swap(around[1], *(end - 1));
+    if (piece.count == 3) around[3] = around[2];
+    return {around, number, forward};
 }
 
 } // namespace
@@ -51,7 +62,6 @@ bool PolyhedronSplitter::keep_known_shape(std::size_t cell, Parts& out) {
 
 void PolyhedronSplitter::cut_faces() {
     pieces_.clear();
-    triangles_.clear();
     for (std::size_t face = 0; face < shell_.face_count(); ++face) {
         const auto loop = shell_.loop(face);
         loop_pieces_.clear();
@@ -62,20 +72,59 @@ void PolyhedronSplitter::cut_faces() {
             for (std::uint32_t i = 0; i < piece.count; ++i) outward.corners[i] = loop[piece.corners[i]];
             auto& [a, b, c, d] = outward.corners;
             if (shell_.is_inward(face)) std::swap(b, piece.count == 4 ? d : c); // the diagonal stays
-            triangles_.push_back({a, b, c});
-            if (piece.count == 4) triangles_.push_back({a, c, d});
         }
     }
 }
 
+/// Two faces that share more than an edge may both have a piece on the same corners. Cells over these are the same but for
+/// their sign, so both are left out: what is behind the two faces meets there.
+void PolyhedronSplitter::cancel_pieces() {
+    keys_.clear();
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) keys_.push_back(key_of(pieces_[i], i));
+    std::ranges::sort(keys_);
+    const auto same = [](const PieceKey& a, const PieceKey& b) { return a.around == b.around; };
+    if (std::ranges::adjacent_find(keys_, same) == keys_.end()) return;
+    for (std::size_t i = 1; i < keys_.size(); ++i) {
+        OutwardPiece &before = pieces_[keys_[i - 1].piece], &piece = pieces_[keys_[i].piece];
+        if (before.count && same(keys_[i - 1], keys_[i]) && keys_[i - 1].forward != keys_[i].forward)
+            before.count = piece.count = 0;
+    }
+    std::erase_if(pieces_, [](const OutwardPiece& piece) { return piece.count == 0; });
+}
+
+/// Whether a piece may be inside out as it is stored: as the centre sees it, or a pyramid by its other diagonal.
+bool PolyhedronSplitter::keeps_order(const OutwardPiece& piece, const Centre& centre) const {
+    if (!centre.sees_all) return true;
+    const auto& [a, b, c, d] = piece.corners;
+    if (piece.count == 3 || std::min(a, c) < std::min(b, d)) return false; // the diagonal that the centre has seen
+    return core::orientation_sign(points_[a], points_[d], points_[b], centre.place) <= 0 ||
+           core::orientation_sign(points_[b], points_[d], points_[c], centre.place) <= 0;
+}
+
 void PolyhedronSplitter::split_around_centre(std::size_t cell, Parts& out) {
     cut_faces();
+    cancel_pieces();
+    if (pieces_.empty()) {
+        ++out.report.open;
+        return out.add_cell(0, {}, cell);
+    }
+    triangles_.clear();
+    for (const auto& [corners, count] : pieces_) {
+        const auto& [a, b, c, d] = corners;
+        triangles_.push_back({a, b, c});
+        if (count == 4) triangles_.push_back({a, c, d});
+    }
     const Centre centre = find_centre(shell_.points(), triangles_, points_, single_);
     const std::uint64_t apex = out.add_point(shell_.points(), centre.weights);
-    for (const auto& [corners, count] : pieces_) { // which are the bases: seen from inside
-        const auto& [a, b, c, d] = corners;
-        if (count == 4) out.add_cell(static_cast<std::uint8_t>(CellType::pyramid), std::array{a, d, c, b, apex}, cell);
-        else out.add_cell(static_cast<std::uint8_t>(CellType::tetrahedron), std::array{a, c, b, apex}, cell);
+    for (const OutwardPiece& piece : pieces_) { // which are the bases: seen from inside
+        const auto& [a, b, c, d] = piece.corners;
+        const bool ordered = keeps_order(piece, centre);
+        if (piece.count == 4)
+            out.add_cell(ordered ? core::ordered_pyramid : static_cast<std::uint8_t>(CellType::pyramid),
+                         std::array{a, d, c, b, apex}, cell);
+        else
+            out.add_cell(ordered ? core::ordered_tetrahedron : static_cast<std::uint8_t>(CellType::tetrahedron),
+                         std::array{a, c, b, apex}, cell);
     }
     out.report.cells += pieces_.size();
     ++out.report.centred;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,16 @@ namespace isotet::linear {
 struct OutwardPiece {
     std::array<std::uint64_t, 4> corners;
     std::uint32_t count;
+};
+
+/// A piece by its corners around, the lowest first, then the lower of the two beside it; a triangle ends with its third
+/// once more.
+struct PieceKey {
+    std::array<std::uint64_t, 4> around;
+    std::uint32_t piece;
+    bool forward; ///< whether the piece has them in this direction
+
+    friend auto operator<=>(const PieceKey&, const PieceKey&) = default;
 };
 
 /// Splits polyhedra, one after another, and keeps its memory between them. Borrows all it is given.
@@ -42,6 +53,8 @@ private:
     std::optional<core::WholeCell> find_known_shape(std::size_t cell);
     bool keep_known_shape(std::size_t cell, Parts& out);
     void cut_faces();
+    void cancel_pieces();
+    bool keeps_order(const OutwardPiece& piece, const Centre& centre) const;
     void split_around_centre(std::size_t cell, Parts& out);
 
     const core::CellReader& cells_;
@@ -52,6 +65,7 @@ private:
     Shell shell_;
     std::vector<LoopPiece> loop_pieces_; ///< of one face
     std::vector<OutwardPiece> pieces_;   ///< of all faces
+    std::vector<PieceKey> keys_;         ///< of these
     std::vector<OutwardTriangle> triangles_;
     std::vector<std::uint64_t> listed_;
 };

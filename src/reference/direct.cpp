@@ -64,7 +64,8 @@ std::vector<UserCell> native_cells(const ops::DirectInput& input) {
                 out.push_back({part.kind, {stored.begin(), stored.end()}, cell});
                 continue;
             }
-            if (core::turn_of(part, [&](std::size_t k) { return points[part.corners[k]]; }).is_mirrored())
+            if (!core::is_ordered(cells.type(cell)) &&
+                core::turn_of(part, [&](std::size_t k) { return points[part.corners[k]]; }).is_mirrored())
                 part.corners = core::mirrored(part.kind, part.corners);
             out.push_back(
                 {part.kind, {part.corners.begin(), part.corners.begin() + core::corner_count(part.kind)}, cell});

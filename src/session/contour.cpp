@@ -93,7 +93,7 @@ Result<Contour> Contour::create(ContourInput given, const ContourOptions& option
 }
 
 bool Contour::contours(std::uint8_t vtk_type) noexcept {
-    return core::is_contoured(vtk_type) || core::is_polyhedral(vtk_type);
+    return (core::is_contoured(vtk_type) && !core::is_ordered(vtk_type)) || core::is_polyhedral(vtk_type);
 }
 
 Contour::Contour(std::unique_ptr<Data> data) : data_(std::move(data)) {}

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/reference.hpp>
 
 #include "support/small_grid.hpp"
 #include "support/surface_sets.hpp"

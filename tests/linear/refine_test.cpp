@@ -4,6 +4,7 @@
 
 #include <isotet/boundary.hpp>
 #include <isotet/check.hpp>
+#include <isotet/contour.hpp>
 #include <isotet/extract_direct.hpp>
 #include <isotet/refine.hpp>
 

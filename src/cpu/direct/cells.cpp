@@ -210,6 +210,7 @@ private:
             for (std::size_t k = 0; k < 4; ++k) above += context_.sides[tet[k]] & side::above;
             if (watched)
                 for (std::size_t k = 0; k < 4; ++k) context_.sides.saw(tet[k]);
+            if (above % 4 != 0 && core::is_ordered(cells_.type(cell))) cutter_.expect_ordered();
             if (above % 4 != 0)
                 cutter_.add_tet({static_cast<Point>(tet[0]), static_cast<Point>(tet[1]), static_cast<Point>(tet[2]),
                                  static_cast<Point>(tet[3])},

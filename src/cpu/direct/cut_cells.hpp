@@ -55,7 +55,8 @@ void Cutter<Point>::cut_cells() {
         if (seen & side::no_data) continue;
         std::array<core::Point, 8> places;
         for (std::size_t k = 0; k < core::corner_count(cell.kind); ++k) places[k] = points_[cell.corners[k]];
-        if (core::is_mirrored(cell.kind, cell.corners,
+        if (!core::is_ordered(context_.input.cells.type(first_cell_ + cells_[i])) &&
+            core::is_mirrored(cell.kind, cell.corners,
                               [&](std::size_t k) -> const core::Point& { return places[k]; })) {
             index = mirrored_case(cell.kind, index);
             cell.corners = core::mirrored(cell.kind, cell.corners);

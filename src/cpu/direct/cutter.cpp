@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "core/case_table.hpp"
 #include "cpu/at_level.hpp"
@@ -84,6 +85,9 @@ void Cutter<Point>::cut() {
         }
         codes_[i] = seen & (side::tied | side::no_data) ? tet_code::special : 0;
     }
+    if (std::exchange(has_ordered_, false))
+        for (std::size_t i = 0; i < count; ++i)
+            if (is_ordered(i)) codes_[i] |= tet_code::unsure;
     const auto sort_and_sign = [&](const auto* coordinates) {
         at_level([&] {
             sort_corners(sorted_, codes_, count);
@@ -152,9 +156,12 @@ unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<ActiveEdge<P
         is_tied[k] = flags & side::tied;
     }
     if (code & tet_code::unsure) {
-        const int sign = points_.orientation({corner[0], corner[1], corner[2], corner[3]});
-        const bool negative = sign < 0 || (sign == 0 && is_mirrored_flat(tet));
-        code = static_cast<std::uint8_t>((code & tet_code::case_mask) | (negative ? tet_code::negative : 0));
+        const auto is_negative = [&] {
+            if (is_ordered(tet)) return is_odd(tet);
+            const int sign = points_.orientation({corner[0], corner[1], corner[2], corner[3]});
+            return sign < 0 || (sign == 0 && is_mirrored_flat(tet));
+        };
+        code = static_cast<std::uint8_t>((code & tet_code::case_mask) | (is_negative() ? tet_code::negative : 0));
     }
     const SortedPolygon& p = sorted_polygons[code & (tet_code::case_mask | tet_code::negative)];
     for (std::size_t k = 0; k < 4; ++k) {
@@ -173,13 +180,25 @@ unsigned Cutter<Point>::unusual_polygon(std::size_t tet, std::array<ActiveEdge<P
     return 1;
 }
 
+template <class Point>
+bool Cutter<Point>::is_ordered(std::size_t tet) const {
+    return core::is_ordered(context_.input.cells.type(first_cell_ + cells_[tet]));
+}
+
+/// Whether the order of the file is an odd permutation of the ascending one.
+template <class Point>
+bool Cutter<Point>::is_odd(std::size_t tet) const {
+    bool odd = false;
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = a + 1; b < 4; ++b) odd ^= corners_[a][tet] > corners_[b][tet];
+    return odd;
+}
+
 /// Whether the stored form of a flat tet, which keeps the order of the file or mirrors it, has its last two corners
 /// exchanged.
 template <class Point>
 bool Cutter<Point>::is_mirrored_flat(std::size_t tet) {
-    bool odd = false; // the order of the file, against ascending
-    for (std::size_t a = 0; a < 4; ++a)
-        for (std::size_t b = a + 1; b < 4; ++b) odd ^= corners_[a][tet] > corners_[b][tet];
+    const bool odd = is_odd(tet);
     const core::CellReader& reader = context_.input.cells;
     const std::uint64_t cell = first_cell_ + cells_[tet];
     if (core::Orienter::is_whole(reader.type(cell))) {

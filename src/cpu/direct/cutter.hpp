@@ -170,6 +170,8 @@ public:
         if (pending_cells_) cut_cells();
         add(corners, cell);
     }
+    /// Tells that some tets that will be added are of ordered types.
+    void expect_ordered() { has_ordered_ = true; }
 
 private:
     static constexpr std::size_t batch = 256;
@@ -178,6 +180,8 @@ private:
     void cut_cells();
     std::uint32_t keep_found(const EdgeNumbers<Point>& numbers);
     unsigned unusual_polygon(std::size_t tet, std::array<ActiveEdge<Point>, 4>& polygon);
+    bool is_ordered(std::size_t tet) const;
+    bool is_odd(std::size_t tet) const;
     bool is_mirrored_flat(std::size_t tet);
     bool is_coarse(std::size_t tet) const;
     bool is_coarse(const NativeCell<Point>& cell) const;
@@ -201,6 +205,7 @@ private:
                                                                  ///< ascending
     alignas(64) std::array<std::uint8_t, batch> codes_;
     std::array<std::uint32_t, batch> cells_;
+    bool has_ordered_ = false; ///< the batch may have tets of ordered types
 
     // The batch of other cells; while there are any, there are no tets.
     std::size_t pending_cells_ = 0;
