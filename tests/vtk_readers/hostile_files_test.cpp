@@ -142,7 +142,7 @@ TEST_F(HostileXdmf, ReferencesAreWrittenAsPaths) {
     const auto referring = [&](const std::string& query) {
         return folder_.write("a.xdmf", "<Xdmf><Domain><Grid Reference='" + query + "'/></Domain></Xdmf>");
     };
-    for (const char* query : {"//*[//*[//*[//*]]]", "//*//*//*//*//Grid", "//*|//*"})
+    for (const char* query : {"//*[//*[//*[//*]]]", "//*//*//*//*//Grid", "//a|//a|//a|//a|//a|//a|//a|//a|//*"})
         expect_error(referring(query), {"refers to nothing"});
 }
 

@@ -1,246 +1,154 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// XDMF 2 and 3: unstructured uniform grids, in collections over time and space.
-#include <optional>
+// XDMF 2 and 3: the grids of a time step, one for each mesh.
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
-#include "io/reader.hpp"
-#include "io/own/text_scanner.hpp"
+#include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
+#include "io/reader.hpp"
 #include "io/vtk/loaders.hpp"
 #include "io/vtk/vtk_log.hpp"
-#include "io/vtk/xdmf_data.hpp"
+#include "io/vtk/xdmf_blocks.hpp"
+#include "io/vtk/xdmf_fields.hpp"
+#include "io/vtk/xdmf_same_cells.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-struct Element {
-    std::string_view name;
-    int code;          ///< in mixed topologies
-    std::uint8_t type; ///< VTK's
-    unsigned corners;  ///< 0: stated before them
-};
-constexpr Element elements[] = {
-    {"Polyvertex", 1, 2, 0},        {"Polyline", 2, 4, 0},
-    {"Polygon", 3, 7, 0},           {"Triangle", 4, 5, 3},
-    {"Quadrilateral", 5, 9, 4},     {"Tetrahedron", 6, 10, 4},
-    {"Pyramid", 7, 14, 5},          {"Wedge", 8, 13, 6},
-    {"Hexahedron", 9, 12, 8},       {"Edge_3", 34, 21, 3},
-    {"Quadrilateral_9", 35, 28, 9}, {"Triangle_6", 36, 22, 6},
-    {"Quadrilateral_8", 37, 23, 8}, {"Tetrahedron_10", 38, 24, 10},
-    {"Tet_10", 38, 24, 10},         {"Pyramid_13", 39, 27, 13},
-    {"Wedge_15", 40, 26, 15},       {"Wedge_18", 41, 32, 18},
-    {"Hexahedron_20", 48, 25, 20},  {"Hex_20", 48, 25, 20},
-    {"Hexahedron_27", 50, 29, 27},
-};
-
-std::string_view attribute(pugi::xml_node node, const char* name, const char* older_name) {
-    const pugi::xml_attribute stated = node.attribute(name);
-    return stated ? stated.as_string() : node.attribute(older_name).as_string();
-}
-
-class GridLoader {
+class XdmfLoader {
 public:
-    GridLoader(const std::string& path, const XdmfDocument& document, const ReadOptions& options, Depth depth,
-               Loaded& loaded)
-        : path_(path),
-          document_(document),
-          data_(path, document, options.allow_outside),
-          options_(options),
-          depth_(depth),
-          loaded_(loaded) {}
+    XdmfLoader(const XdmfFile& file, const XdmfSteps& steps, const ReadOptions& options, Depth depth)
+        : file_(file), steps_(steps), options_(options), depth_(depth), fields_(file_, options) {}
 
-    Result<void> load(pugi::xml_node grid) {
-        piece_.name = fmt::format("{} {}", path_, grid.attribute("Name").as_string());
-        const pugi::xml_node geometry = document_.resolve(grid.child("Geometry")),
-                             topology = document_.resolve(grid.child("Topology"));
-        if (!geometry || !topology)
-            return broken(path_, fmt::format("grid \"{}\" lacks Geometry or Topology", name(grid)));
-        if (auto read = read_points(geometry); !read) return read;
-        if (auto read = read_cells(topology); !read) return read;
-        for (const pugi::xml_node stated : grid.children("Attribute")) {
-            const pugi::xml_node field = document_.resolve(stated);
-            if (!field) return broken(path_, "an Attribute refers to nothing");
-            if (auto read = read_field(field); !read) return read;
-        }
-        if (depth_ == Depth::arrays) loaded_.pieces.push_back(std::move(piece_));
-        return {};
+    Result<Loaded> load() {
+        for (const LeftOut& item : steps_.left_out) leave_out(loaded_.info, item);
+        for (const XdmfStep& step : steps_.steps)
+            if (step.time) loaded_.info.times.push_back(*step.time);
+        if (loaded_.info.times.size() != steps_.steps.size()) loaded_.info.times.clear();
+        const auto step = choose_step(loaded_.info, depth_ == Depth::arrays ? options_ : ReadOptions());
+        if (!step) return step.error();
+        loaded_.step = *step;
+        auto blocks = blocks_of(file_, steps_, steps_.steps[loaded_.step]);
+        if (!blocks) return blocks.error();
+        blocks_ = std::move(blocks->blocks);
+        for (LeftOut& item : blocks->left_out) leave_out(loaded_.info, std::move(item));
+        if (auto announced = announce_blocks(); !announced) return announced.error();
+        if (auto read = read_blocks(); !read) return read.error();
+        announce_other_steps();
+        return std::move(loaded_);
     }
 
 private:
-    static std::string name(pugi::xml_node node) { return escaped(node.attribute("Name").as_string()); }
-
-    Result<void> read_points(pugi::xml_node geometry) {
-        const std::string_view type = attribute(geometry, "GeometryType", "Type");
-        const bool flat = same_word(type, "XY");
-        if (!type.empty() && !same_word(type, "XYZ") && !flat)
-            return broken(path_, fmt::format("geometry of type \"{}\" is not read: XYZ and XY are", escaped(type)));
-        auto values = data_.read(geometry.child("DataItem"), depth_);
-        if (!values) return values.error();
-        const std::uint64_t axes = flat ? 2 : 3;
-        if (values->count() % axes != 0)
-            return broken(path_, fmt::format("{} coordinates are no multiple of {}", values->count(), axes));
-        points_ = values->count() / axes;
-        if (depth_ == Depth::description) return {};
-        if (!is_floating(values->values.type()) || flat) piece_.grid.points = in_space(values->values, axes);
-        else piece_.grid.points = with_components(values->values, 3);
-        return {};
-    }
-    static Array with_components(const Array& values, std::size_t components) {
-        auto owner = std::make_shared<Array>(values);
-        return Array(values.type(), values.data(), values.size() / components, components, owner);
-    }
-    static Array in_space(const Array& values, std::uint64_t axes) {
-        std::vector<double> places(values.size() / axes * 3, 0.0);
-        for (std::size_t i = 0; i < values.size(); ++i) places[i / axes * 3 + i % axes] = values.at(i);
-        return Array::own(std::move(places), 3);
-    }
-
-    Result<void> read_cells(pugi::xml_node topology) {
-        const std::string_view type = attribute(topology, "TopologyType", "Type");
-        const std::string_view stated = attribute(topology, "NumberOfElements", "Dimensions");
-        std::uint64_t count = 0;
-        const bool counted = parse_number(stated, count);
-        auto values = data_.read(topology.child("DataItem"), depth_);
-        if (!values) return values.error();
-        if (depth_ == Depth::arrays && topology.attribute("BaseOffset").as_llong() != 0)
-            return broken(path_, "a topology with a BaseOffset is not read");
-        if (same_word(type, "Mixed")) {
-            if (!counted) return broken(path_, "a mixed topology does not state its NumberOfElements");
-            cells_ = count;
-            return depth_ == Depth::description ? Result<void>() : mixed_cells(values->values, count);
-        }
-        const Element* element = nullptr;
-        for (const Element& known : elements)
-            if (same_word(known.name, type)) element = &known;
-        if (!element) return broken(path_, fmt::format("topology of type \"{}\" is not read", escaped(type)));
-        const std::uint64_t corners =
-            element->corners != 0 ? element->corners : topology.attribute("NodesPerElement").as_uint();
-        if (corners == 0 || values->count() % corners != 0)
-            return broken(path_, fmt::format("{} corners of cells are no multiple of {}", values->count(), corners));
-        cells_ = values->count() / corners;
-        if (counted && count != cells_)
-            return broken(path_, fmt::format("{} elements are stated, {} are there", count, cells_));
-        if (depth_ == Depth::arrays) uniform_cells(*element, corners, values->values);
-        return {};
-    }
-    void uniform_cells(const Element& element, std::uint64_t corners, const Array& values) {
-        Cells& cells = piece_.grid.cells;
-        cells.connectivity = as_indices(values);
-        if (element.type >= 10 && element.type <= 14) {
-            cells.uniform_type = static_cast<CellType>(element.type);
-            return;
-        }
-        std::vector<std::int64_t> offsets(cells_ + 1);
-        for (std::uint64_t i = 0; i <= cells_; ++i) offsets[i] = static_cast<std::int64_t>(i * corners);
-        cells.offsets = Array::own(std::move(offsets));
-        cells.types = Array::own(std::vector<std::uint8_t>(cells_, element.type));
-    }
-    /// Some writers store indices as floating-point numbers, others in 8 or 16 bits.
-    static Array as_indices(const Array& values) {
-        if (!is_floating(values.type()) && size_of(values.type()) >= 4) return values;
-        std::vector<std::int64_t> indices(values.size());
-        values.visit([&](auto from) {
-            for (std::size_t i = 0; i < from.size(); ++i) {
-                const auto value = static_cast<double>(from[i]);
-                indices[i] =
-                    value >= 0 && value < 9e15 && value == static_cast<double>(static_cast<std::int64_t>(value))
-                        ? static_cast<std::int64_t>(value)
-                        : -1;
+    /// Of several meshes.
+    Result<void> announce_blocks() {
+        if (blocks_.size() > 1)
+            for (std::size_t i = 0; i < blocks_.size(); ++i) {
+                const auto mesh = described(blocks_[i].geometry, blocks_[i].topology);
+                if (!mesh) return mesh.error();
+                loaded_.info.blocks.push_back({static_cast<std::int64_t>(i + 1), blocks_[i].name, "grid", mesh->cells});
             }
-        });
-        return Array::own(std::move(indices));
-    }
-    /// Code of the cell type, for some types the number of corners, then the corners.
-    Result<void> mixed_cells(const Array& values, std::uint64_t count) {
-        if (count > values.size())
-            return broken(path_,
-                          fmt::format("{} mixed elements are stated, but there are {} numbers", count, values.size()));
-        const Array indices = as_indices(values);
-        std::vector<std::int64_t> connectivity, offsets{0};
-        std::vector<std::uint8_t> types;
-        return indices.visit([&](auto numbers) -> Result<void> {
-            std::size_t at = 0;
-            for (std::uint64_t cell = 0; cell < count; ++cell) {
-                const Element* element = nullptr;
-                for (const Element& known : elements)
-                    if (at < numbers.size() && static_cast<std::int64_t>(numbers[at]) == known.code) element = &known;
-                if (!element)
-                    return broken(path_,
-                                  fmt::format("element {} of a mixed topology, at number {}, has no type that is known",
-                                              cell, at));
-                ++at;
-                std::uint64_t corners = element->corners;
-                if (corners == 0 && at < numbers.size()) corners = static_cast<std::uint64_t>(numbers[at++]);
-                if (corners > numbers.size() - at)
-                    return broken(path_,
-                                  fmt::format("element {} of a mixed topology ends after its last number", cell));
-                for (std::uint64_t c = 0; c < corners; ++c)
-                    connectivity.push_back(static_cast<std::int64_t>(numbers[at++]));
-                offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-                types.push_back(element->type);
-            }
-            Cells& cells = piece_.grid.cells;
-            cells.connectivity = Array::own(std::move(connectivity));
-            cells.offsets = Array::own(std::move(offsets));
-            cells.types = Array::own(std::move(types));
-            return {};
-        });
-    }
-
-    Result<void> read_field(pugi::xml_node field) {
-        const std::string field_name = field.attribute("Name").as_string();
-        const std::string_view center = field.attribute("Center").as_string("Node");
-        const bool on_points = same_word(center, "Node");
-        if (!on_points && !same_word(center, "Cell")) return {}; // of the whole grid, of faces, of edges
-        const Association association = on_points ? Association::point : Association::cell;
-        const std::uint64_t tuples = on_points ? points_ : cells_;
-        const bool want = depth_ == Depth::arrays && wanted(options_, association, field_name);
-        auto values = data_.read(field.child("DataItem"), want ? Depth::arrays : Depth::description);
-        if (!values) return values.error();
-        if (tuples == 0 || values->count() % tuples != 0 || values->count() == 0)
-            return tuples == 0 ? Result<void>()
-                               : Result<void>(broken(path_, fmt::format("attribute \"{}\" has {} values for {} {}",
-                                                                        escaped(field_name), values->count(), tuples,
-                                                                        on_points ? "points" : "cells")));
-        const std::uint64_t components = values->count() / tuples;
-        announce(loaded_.info, {field_name, association, values->values.type(), components});
-        if (!want) return {};
-        auto& fields = on_points ? piece_.grid.point_fields : piece_.grid.cell_fields;
-        fields.push_back({field_name, with_components(values->values, components)});
+        auto chosen = chosen_blocks(loaded_.info.blocks, options_);
+        if (!chosen) return chosen.error();
+        chosen_ = blocks_.size() > 1 ? *std::move(chosen) : std::vector<bool>(blocks_.size(), true);
         return {};
     }
+    Result<XdmfMesh> described(pugi::xml_node geometry, pugi::xml_node topology) const {
+        std::vector<std::string> notes;
+        return read_mesh(file_, geometry, topology, Depth::description, notes);
+    }
 
-    const std::string& path_;
-    const XdmfDocument& document_;
-    XdmfData data_;
+    Result<void> read_blocks() {
+        std::vector<NamedPiece> pieces;
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            const bool whole = depth_ == Depth::arrays && chosen_[i];
+            auto grid = read_block(blocks_[i], whole ? Depth::arrays : Depth::description);
+            if (!grid) return grid.error();
+            if (whole) {
+                NamedPiece& piece = pieces.emplace_back(Piece(), blocks_[i].name, blocks_[i].points);
+                piece.piece.name = fmt::format("{} {}", file_.path, blocks_[i].name);
+                piece.piece.grid = *std::move(grid);
+            }
+            report_progress(static_cast<double>(i + 1) / static_cast<double>(blocks_.size()));
+        }
+        take_fields_of_same_cells(pieces, loaded_.notes);
+        for (NamedPiece& piece : pieces) loaded_.pieces.push_back(std::move(piece.piece));
+        return {};
+    }
+    Result<Grid> read_block(const XdmfBlock& block, Depth depth) {
+        auto mesh = read_mesh(file_, block.geometry, block.topology, depth, loaded_.notes);
+        if (!mesh) return mesh.error();
+        const auto time = steps_.steps[loaded_.step].time;
+        for (const pugi::xml_node grid : block.grids)
+            for (const XdmfField& field : fields_of(file_.document, grid, time)) {
+                if (auto read = fields_.read(field, *mesh, depth, loaded_); !read) return read.error();
+                announced_.insert(key_of(field));
+            }
+        return std::move(mesh->grid);
+    }
+
+    /// Fields that only other steps have.
+    void announce_other_steps() {
+        std::vector<bool> seen(steps_.grids.size(), false);
+        std::vector<std::string> missing;
+        for (std::size_t s = 0; s < steps_.steps.size(); ++s)
+            for (const std::uint32_t number : steps_.steps[s].grids) {
+                if (seen[number]) continue;
+                seen[number] = true;
+                for (const XdmfField& field :
+                     fields_of(file_.document, steps_.grids[number].node, steps_.steps[s].time)) {
+                    if (!announced_.insert(key_of(field)).second) continue;
+                    if (announce_field(steps_.grids[number].node, field) && field.association &&
+                        wanted(options_, *field.association, field.name))
+                        missing.push_back(fmt::format("\"{}\" (step {} has)", escaped(field.name), s));
+                }
+            }
+        if (!missing.empty() && depth_ == Depth::arrays)
+            loaded_.notes.push_back(
+                fmt::format("step {} has no values of {}", loaded_.step, fmt::join(missing, ", ")));
+    }
+    /// False where it is not read in its step either.
+    bool announce_field(pugi::xml_node grid, const XdmfField& field) {
+        const pugi::xml_node geometry = file_.document.resolve(file_.document.child(grid, "Geometry")),
+                             topology = file_.document.resolve(file_.document.child(grid, "Topology"));
+        if (!geometry || !topology || (is_flat(topology) && !is_flat(blocks_.front().topology)))
+            return false;
+        auto mesh = described(geometry, topology);
+        if (!mesh) return true; // an error where that step is read
+        Loaded other;
+        if (!fields_.read(field, *mesh, Depth::description, other)) return false;
+        for (FieldInfo& found : other.info.fields) announce(loaded_.info, std::move(found));
+        for (LeftOut& item : other.info.left_out) leave_out(loaded_.info, std::move(item));
+        return !other.info.fields.empty();
+    }
+    static std::string key_of(const XdmfField& field) {
+        const int place = !field.association ? 2 : *field.association == Association::point ? 0 : 1;
+        return fmt::format("{} {}", place, field.name);
+    }
+
+    const XdmfFile file_;
+    const XdmfSteps& steps_;
     const ReadOptions& options_;
     Depth depth_;
-    Loaded& loaded_;
-    Piece piece_;
-    std::uint64_t points_ = 0, cells_ = 0;
+    XdmfFieldReader fields_;
+    std::vector<XdmfBlock> blocks_;
+    std::vector<bool> chosen_;
+    std::set<std::string> announced_;
+    Loaded loaded_;
 };
 
 } // namespace
 
 Result<Loaded> load_xdmf(const std::string& path, const ReadOptions& options, Depth depth) {
-    auto document = XdmfDocument::open(path);
+    const auto document = XdmfDocument::open(path, options.allow_outside);
     if (!document) return document.error();
-    Loaded loaded;
-    for (const XdmfStep& step : document->steps())
-        if (step.has_time) loaded.info.times.push_back(step.time);
-    if (loaded.info.times.size() != document->steps().size()) loaded.info.times.clear();
-    auto step = choose_step(loaded.info, depth == Depth::arrays ? options : ReadOptions());
-    if (!step) return step.error();
-    loaded.step = *step;
-    const auto& grids = document->steps()[loaded.step].grids;
-    for (std::size_t i = 0; i < grids.size(); ++i) {
-        GridLoader grid(path, *document, options, depth, loaded);
-        if (auto read = grid.load(grids[i]); !read) return read.error();
-        report_progress(static_cast<double>(i + 1) / static_cast<double>(grids.size()));
-    }
-    if (depth == Depth::arrays && loaded.pieces.empty()) return broken(path, "its time step has no grid");
-    return loaded;
+    const XdmfData data(*document, options.allow_outside);
+    const auto steps = sort_by_time(path, *document, data);
+    if (!steps) return steps.error();
+    return XdmfLoader({path, *document, data}, *steps, options, depth).load();
 }
 
 } // namespace isotet::io::vtk

@@ -1,21 +1,24 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "io/own/text_scanner.hpp"
 #include "io/own/escape.hpp"
+#include "io/own/index_file.hpp"
 #include "io/own/loaded.hpp"
 #include "io/vtk/mapped_file.hpp"
 #include "io/vtk/xdmf_document.hpp"
+#include "io/vtk/xdmf_pointer.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-constexpr int deepest = 16; ///< collections in collections, references to references
-constexpr std::size_t max_visited = 1000000;
+constexpr int deepest = 16; ///< references to references, includes of includes
 
 /// <!ENTITY name "text"> of the DOCTYPE. Their text is taken as it is: an entity in an entity, with which a small file
 /// could become a huge one, stays unreplaced.
@@ -39,7 +42,8 @@ constexpr std::size_t max_growth = 16 << 20; ///< bytes that entities may add
 
 /// Nothing when entities make far more of the text than it is.
 std::optional<std::string> without_entities(std::string_view text) {
-    const auto root = std::min(text.find("<Xdmf"), text.size());
+    const auto stated = text.find("<Xdmf");
+    const auto root = stated == std::string_view::npos ? 0 : stated; // a file that is included may begin otherwise
     const auto known = entities(text.substr(0, root));
     std::string result;
     result.reserve(text.size());
@@ -63,42 +67,21 @@ std::optional<std::string> without_entities(std::string_view text) {
     return result;
 }
 
-constexpr std::size_t max_queries = 10000;
+constexpr std::size_t max_queries = 10000, max_files = 100, max_included = 1000000;
 
-/// A path as references are written, which goes over the document once at most: //Grid[@Name="a"]/Topology[1].
-bool is_simple(std::string_view query) {
-    const auto steps = query.find("//");
-    if (query.size() > 1000 ||
-        (steps != std::string_view::npos && query.find("//", steps + 2) != std::string_view::npos))
-        return false;
-    bool inside = false;
-    for (const char c : query) {
-        if (c == '|' || (c == '[' && inside) || (c == '/' && inside)) return false;
-        if (c == '[') inside = true;
-        if (c == ']') inside = false;
-    }
-    return true;
+bool is_include(pugi::xml_node node) {
+    const std::string_view name = node.name();
+    const auto colon = name.rfind(':');
+    return node.type() == pugi::node_element &&
+           (colon == std::string_view::npos ? name : name.substr(colon + 1)) == "include";
 }
 
-std::optional<double> time_of(pugi::xml_node grid) {
-    double value = 0;
-    const pugi::xml_node time = grid.child("Time");
-    if (time && parse_number(time.attribute("Value").as_string(), value)) return value;
-    return std::nullopt;
-}
-
-/// The times that a temporal collection lists for its grids: TimeType List or HyperSlab (start, step, count).
-std::vector<double> listed_times(pugi::xml_node collection, std::size_t count) {
-    const pugi::xml_node time = collection.child("Time");
-    std::vector<double> values;
-    TextScanner scanner(time.child("DataItem") ? time.child("DataItem").text().as_string() : time.text().as_string());
-    for (double value = 0; scanner.number(value);) values.push_back(value);
-    if (same_word(time.attribute("TimeType").as_string(), "HyperSlab") && values.size() == 3) {
-        const double start = values[0], step = values[1];
-        values.clear();
-        for (std::size_t i = 0; i < count; ++i) values.push_back(start + static_cast<double>(i) * step);
-    }
-    return values;
+/// An include as messages name it.
+std::string include_text(pugi::xml_node include) {
+    const std::string_view href = include.attribute("href").as_string(),
+                           xpointer = include.attribute("xpointer").as_string();
+    return fmt::format("an xi:include ({}{}{})", escaped(href.substr(0, 80)), href.empty() || xpointer.empty() ? "" : ", ",
+                       escaped(xpointer.substr(0, 120)));
 }
 
 } // namespace
@@ -107,98 +90,170 @@ bool same_word(std::string_view a, std::string_view b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return (x | 32) == (y | 32); });
 }
 
-Result<XdmfDocument> XdmfDocument::open(const std::string& path) {
-    auto file = MappedFile::open(path);
-    if (!file) return file.error();
+std::string text_of(pugi::xml_node node) {
+    std::string text;
+    for (const pugi::xml_node part : node.children())
+        if (part.type() == pugi::node_pcdata || part.type() == pugi::node_cdata) text += part.value();
+    const auto begin = std::find_if_not(text.begin(), text.end(), is_space);
+    text.erase(text.begin(), begin);
+    while (!text.empty() && is_space(text.back())) text.pop_back();
+    return text;
+}
+
+Result<XdmfDocument> XdmfDocument::open(const std::string& path, bool allow_outside) {
     XdmfDocument result;
-    result.path_ = path;
-    const auto text = without_entities(file->text());
-    if (!text) return broken(path, fmt::format("its entities add more than {} bytes to it", max_growth));
-    const auto parsed = result.document_.load_buffer(text->data(), text->size());
-    if (!parsed) return broken(path, fmt::format("broken XML near byte {}: {}", parsed.offset, parsed.description()));
-    if (result.document_.select_node("//*[local-name()='include']"))
-        return broken(path, "it includes other XML files, which is not read: only HDF5 and binary files are");
-    const pugi::xml_node domain = result.document_.child("Xdmf").child("Domain");
-    if (!domain) return broken(path, "there is no Domain in its Xdmf element");
-    if (auto gathered = result.gather(domain, 0); !gathered) return gathered.error();
-    if (result.steps_.empty()) return broken(path, "its Domain has no grid");
+    result.allow_outside_ = allow_outside;
+    if (auto opened = result.open_file(path); !opened) return opened.error();
+    for (std::size_t i = 0; i < result.files_.size(); ++i)
+        if (auto followed = result.follow_includes(*result.files_[i]); !followed) return followed.error();
+    if (result.domains().empty()) return broken(path, "there is no Domain in its Xdmf element");
     return result;
+}
+
+Result<const XdmfDocument::File*> XdmfDocument::open_file(const std::string& path) {
+    auto mapped = MappedFile::open(path);
+    if (!mapped) return mapped.error();
+    auto file = std::make_unique<File>();
+    file->path = path;
+    const auto text = without_entities(mapped->text());
+    if (!text) return broken(path, fmt::format("its entities add more than {} bytes to it", max_growth));
+    const auto parsed = file->xml.load_buffer(text->data(), text->size());
+    if (!parsed) return broken(path, fmt::format("broken XML near byte {}: {}", parsed.offset, parsed.description()));
+    return files_.emplace_back(std::move(file)).get();
+}
+
+Result<void> XdmfDocument::follow_includes(const File& file) {
+    Result<void> result;
+    file.xml.find_node([&](const pugi::xml_node& node) {
+        if (!is_include(node)) return false;
+        const auto elements = included(file, node, 0);
+        if (!elements) result = elements.error();
+        else by_include_.emplace(node.internal_object(), *elements);
+        return !result;
+    });
+    return result;
+}
+
+Result<const XdmfDocument::Elements*> XdmfDocument::included(const File& file, pugi::xml_node include, int depth) {
+    const auto wrong = [&](std::string_view what) {
+        return broken(file.path, fmt::format("{} {}", include_text(include), what));
+    };
+    if (depth > deepest) return wrong("leads to includes without end");
+    const std::string key = fmt::format("{}\n{}\n{}", file.path, include.attribute("href").as_string(),
+                                        include.attribute("xpointer").as_string());
+    auto known = inclusions_.find(key);
+    if (known == inclusions_.end()) {
+        if (inclusions_.size() == max_queries)
+            return wrong(fmt::format("is one of more than {} different ones", max_queries));
+        const auto elements = selected(file, include);
+        if (!elements) return elements.error();
+        if (elements->empty()) return wrong("names no element");
+        Elements flat;
+        for (const pugi::xml_node element : *elements) {
+            if (!is_include(element)) {
+                flat.push_back(element);
+                continue;
+            }
+            const File* const other = file_with(element);
+            const auto further = included(*other, element, depth + 1);
+            if (!further) return further.error();
+            flat.insert(flat.end(), (*further)->begin(), (*further)->end());
+            if (flat.size() > max_included) return wrong(fmt::format("includes more than {} elements", max_included));
+        }
+        known = inclusions_.emplace(key, std::move(flat)).first;
+    }
+    for (const pugi::xml_node element : known->second)
+        for (pugi::xml_node around = include.parent(); around; around = around.parent())
+            if (around == element) return wrong("includes the element that it is in");
+    return &known->second;
+}
+
+Result<XdmfDocument::Elements> XdmfDocument::selected(const File& file, pugi::xml_node include) {
+    const std::string_view href = include.attribute("href").as_string(),
+                           xpointer = include.attribute("xpointer").as_string();
+    if (same_word(include.attribute("parse").as_string("xml"), "text"))
+        return broken(file.path, fmt::format("{} includes text, which is not read: XML is", include_text(include)));
+    const auto mark = std::min(href.find('#'), href.size());
+    const auto from = file_named(file, href.substr(0, mark));
+    if (!from) return from.error();
+    if (!xpointer.empty()) return elements_at((*from)->xml, xpointer);
+    if (mark < href.size()) return elements_at((*from)->xml, href.substr(mark + 1));
+    const pugi::xml_node root = (*from)->xml.document_element();
+    if (std::string_view(root.name()) != "Xdmf") return Elements{root};
+    Elements grids; // a whole file stands for what is in it
+    for (const pugi::xml_node domain : root.children("Domain"))
+        for (const pugi::xml_node element : domain.children())
+            if (element.type() == pugi::node_element) grids.push_back(element);
+    return grids;
+}
+
+Result<const XdmfDocument::File*> XdmfDocument::file_named(const File& file, std::string_view name) {
+    if (name.empty()) return &file;
+    std::error_code error;
+    const auto beside = std::filesystem::path(file.path).parent_path() / std::filesystem::path(name);
+    for (const auto& known : files_)
+        if (std::filesystem::equivalent(beside, known->path, error)) return known.get();
+    const auto path = named_file(file.path, name, allow_outside_);
+    if (!path) return path.error();
+    if (files_.size() == max_files) return broken(file.path, fmt::format("it includes more than {} files", max_files));
+    return open_file(*path);
+}
+
+const XdmfDocument::File* XdmfDocument::file_with(pugi::xml_node node) const {
+    const pugi::xml_node root = node.root();
+    for (const auto& file : files_)
+        if (file->xml == root) return file.get();
+    return files_.front().get();
+}
+
+const std::string& XdmfDocument::file_of(pugi::xml_node node) const { return file_with(node)->path; }
+
+std::vector<pugi::xml_node> XdmfDocument::domains() const {
+    std::vector<pugi::xml_node> found;
+    for (const pugi::xml_node root : children(files_.front()->xml, "Xdmf"))
+        for (const pugi::xml_node domain : children(root, "Domain")) found.push_back(domain);
+    return found;
+}
+
+std::vector<pugi::xml_node> XdmfDocument::children(pugi::xml_node parent, std::string_view name) const {
+    std::vector<pugi::xml_node> found;
+    for (const pugi::xml_node child : parent.children()) {
+        if (name == child.name()) found.push_back(child);
+        const auto elements = is_include(child) ? by_include_.find(child.internal_object()) : by_include_.end();
+        if (elements == by_include_.end()) continue;
+        for (const pugi::xml_node element : *elements->second)
+            if (name == element.name()) found.push_back(element);
+    }
+    return found;
+}
+
+pugi::xml_node XdmfDocument::child(pugi::xml_node parent, std::string_view name) const {
+    for (const pugi::xml_node child : parent.children()) {
+        if (name == child.name()) return child;
+        const auto elements = is_include(child) ? by_include_.find(child.internal_object()) : by_include_.end();
+        if (elements == by_include_.end()) continue;
+        for (const pugi::xml_node element : *elements->second)
+            if (name == element.name()) return element;
+    }
+    return {};
 }
 
 pugi::xml_node XdmfDocument::resolve(pugi::xml_node node) const {
     for (int depth = 0; depth < deepest && node; ++depth) {
         const std::string_view reference = node.attribute("Reference").as_string();
         if (reference.empty()) return node;
-        std::string_view query = same_word(reference, "XML") ? std::string_view(node.text().as_string()) : reference;
-        while (!query.empty() && is_space(query.front())) query.remove_prefix(1);
-        while (!query.empty() && is_space(query.back())) query.remove_suffix(1);
-        if (!is_simple(query)) return {};
-        const auto known = found_.find(query);
+        const std::string path = same_word(reference, "XML") ? text_of(node) : std::string(reference);
+        const File* const file = file_with(node);
+        const std::string key = file == files_.front().get() ? path : fmt::format("{}\n{}", file->path, path);
+        const auto known = found_.find(key);
         if (known != found_.end()) {
             node = known->second;
             continue;
         }
         if (found_.size() == max_queries) return {};
-        try {
-            node = document_.select_node(std::string(query).c_str()).node();
-        } catch (const pugi::xpath_exception&) { // not an XPath
-            return {};
-        }
-        found_.emplace(query, node);
-    }
-    return {};
-}
-
-Result<void> XdmfDocument::gather(pugi::xml_node parent, int depth) {
-    if (depth > deepest) return broken(path_, fmt::format("grids are nested more than {} deep", deepest));
-    if (++visited_ > max_visited) return broken(path_, "its grids refer to each other without end");
-    for (const pugi::xml_node stated : parent.children("Grid")) {
-        const pugi::xml_node grid = resolve(stated);
-        if (!grid)
-            return broken(path_,
-                          fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
-        const std::string_view type = grid.attribute("GridType").as_string("Uniform");
-        const std::string_view collection = grid.attribute("CollectionType").as_string("Spatial");
-        if (same_word(type, "Collection") && same_word(collection, "Temporal")) {
-            if (auto gathered = gather_temporal(grid, depth + 1); !gathered) return gathered;
-        } else if (same_word(type, "Collection") || same_word(type, "Tree")) {
-            if (auto gathered = gather(grid, depth + 1); !gathered) return gathered;
-        } else if (same_word(type, "Uniform")) {
-            if (steps_.empty()) steps_.emplace_back();
-            if (const auto time = time_of(grid); time && !steps_.back().has_time) {
-                steps_.back().time = *time;
-                steps_.back().has_time = true;
-            }
-            steps_.back().grids.push_back(grid);
-        } else {
-            return broken(path_,
-                          fmt::format("grid type \"{}\" is not one of Uniform, Collection, Tree", escaped(type)));
-        }
-    }
-    return {};
-}
-
-/// Each child is a step of its own.
-Result<void> XdmfDocument::gather_temporal(pugi::xml_node collection, int depth) {
-    const auto children = collection.children("Grid");
-    const auto times =
-        listed_times(collection, static_cast<std::size_t>(std::distance(children.begin(), children.end())));
-    std::size_t index = 0;
-    for (const pugi::xml_node stated : children) {
-        const pugi::xml_node grid = resolve(stated);
-        if (!grid)
-            return broken(path_,
-                          fmt::format("grid \"{}\" refers to nothing", escaped(stated.attribute("Name").as_string())));
-        XdmfStep& step = steps_.emplace_back();
-        const auto own = time_of(grid);
-        step.has_time = true;
-        step.time = own ? *own : index < times.size() ? times[index] : static_cast<double>(index);
-        ++index;
-        if (same_word(grid.attribute("GridType").as_string("Uniform"), "Uniform")) {
-            step.grids.push_back(grid);
-            continue;
-        }
-        if (auto gathered = gather(grid, depth + 1); !gathered) return gathered;
+        const auto elements = elements_on_path(file->xml, path);
+        node = elements.empty() ? pugi::xml_node() : elements.front();
+        found_.emplace(key, node);
     }
     return {};
 }

@@ -94,9 +94,9 @@ struct ImagePoints {
     std::array<double, 9> matrix{1, 0, 0, 0, 1, 0, 0, 0, 1};
     std::array<double, 3> origin{};
 };
-Result<Array> points_of(const GridSize& size, const ImagePoints& image);
+ISOTET_API Result<Array> points_of(const GridSize& size, const ImagePoints& image);
 /// From coordinates along each axis.
-Result<Array> points_of(const GridSize& size, const std::array<std::vector<double>, 3>& ticks);
+ISOTET_API Result<Array> points_of(const GridSize& size, const std::array<std::vector<double>, 3>& ticks);
 
 /// The hexahedra of a box, and a note that says so.
 ISOTET_API Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes);
