@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// Where the nodes of cells of any degree stand in a cell: the orders of VTK's Lagrange cells and of Gmsh.
+// Where the nodes of cells of any degree stand in a cell: the orders of VTK's Lagrange cells, of Gmsh and of CGNS.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace isotet::core {
 /// at (0, 0, p), each of the first two has such a sum with the third.
 using LatticePlace = std::array<std::uint16_t, 3>;
 
-enum class NodeOrder : std::uint8_t { vtk, gmsh };
+enum class NodeOrder : std::uint8_t { vtk, gmsh, cgns };
 
 inline constexpr unsigned max_degree = 10;
 
@@ -27,6 +27,9 @@ inline constexpr unsigned max_degree = 10;
 /// inside of the base row by row, as of a quadrilateral 0123; of the triangles 014, 124, 234, 304, as of Lagrange
 /// triangles; the inside layer by layer from the base, row by row.
 ISOTET_API std::vector<LatticePlace> nodes_of_degree(CellKind kind, unsigned degree, NodeOrder order);
+
+/// For each node in VTK's order its position in another one.
+ISOTET_API std::vector<std::uint16_t> positions_in(NodeOrder order, CellKind kind, unsigned degree);
 
 /// Their number.
 constexpr std::uint64_t node_count(CellKind kind, std::uint64_t degree) {

@@ -81,7 +81,7 @@ TEST_P(CgnsWithoutAnArray, IsAnErrorOrTheSameGrid) {
     const std::vector<std::string> expected = digest(sound->grid);
     const TemporaryFolder folder;
     std::vector<std::string> errors;
-    int files = 0;
+    int files = 0, fields_left_out = 0;
     for (const std::string& name : arrays_in(whole)) {
         const std::string path =
             folder.file("changed" + std::to_string(files++) + ".cgns"); // readers may hold the last one
@@ -91,7 +91,13 @@ TEST_P(CgnsWithoutAnArray, IsAnErrorOrTheSameGrid) {
         H5Fclose(file);
         const auto result = read(path);
         if (result) {
-            EXPECT_EQ(digest(result->grid), expected) << name;
+            if (result->info.left_out.empty()) {
+                EXPECT_EQ(digest(result->grid), expected) << name;
+                continue;
+            }
+            ASSERT_EQ(result->notes.size(), 1u) << name;
+            EXPECT_EQ(result->notes[0].find("point field 'wallDistance' is left out: "), 0u) << result->notes[0];
+            ++fields_left_out;
             continue;
         }
         errors.push_back(name + ": " + result.error().message);
@@ -102,7 +108,7 @@ TEST_P(CgnsWithoutAnArray, IsAnErrorOrTheSameGrid) {
         EXPECT_TRUE(std::ranges::any_of(errors, [&](const std::string& error) {
             return error.find(needed) != std::string::npos;
         })) << needed;
-    EXPECT_GE(errors.size(), 5u) << "and the fields";
+    EXPECT_EQ(fields_left_out, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, CgnsWithoutAnArray, testing::Values(Change::removed, Change::halved, Change::shortened));

@@ -150,6 +150,26 @@ TEST(QuadraticFiles, OfVtkhdfHaveTheirNodesWhereVtkPutsThem) {
     }
 }
 
+/// Places as Gmsh 4.15 writes these elements.
+TEST(NodesOfDegree, OfCgnsStandWhereCgnsPutsThem) {
+    using enum core::CellKind;
+    const auto at = [](core::CellKind kind, unsigned degree, std::size_t node) {
+        return core::nodes_of_degree(kind, degree, core::NodeOrder::cgns)[node - 1];
+    };
+    using Place = core::LatticePlace;
+    EXPECT_EQ(at(tetrahedron, 3, 13), (Place{2, 0, 1}));
+    EXPECT_EQ(at(tetrahedron, 3, 18), (Place{1, 0, 1}));
+    EXPECT_EQ(at(tetrahedron, 4, 32), (Place{0, 2, 1}));
+    EXPECT_EQ(at(hexahedron, 3, 13), (Place{2, 3, 0}));
+    EXPECT_EQ(at(hexahedron, 3, 49), (Place{0, 2, 1}));
+    EXPECT_EQ(at(hexahedron, 3, 60), (Place{1, 2, 1}));
+    EXPECT_EQ(at(hexahedron, 4, 48), (Place{3, 2, 0}));
+    EXPECT_EQ(at(hexahedron, 4, 84), (Place{0, 1, 2}));
+    EXPECT_EQ(at(hexahedron, 4, 111), (Place{3, 2, 2}));
+    EXPECT_EQ(at(wedge, 3, 13), (Place{0, 0, 1}));
+    EXPECT_EQ(at(wedge, 3, 36), (Place{0, 1, 2})) << "as VTK 9.7 takes PENTA_40";
+}
+
 TEST(NodesOfDegree, StandWhereVtkPutsThem) {
     using enum core::CellKind;
     for (int degree = 1; degree <= 7; ++degree) {

@@ -41,12 +41,7 @@ std::vector<ReorderedType> reordered_types() {
 
 /// For each node in VTK's order its position in Gmsh's.
 std::vector<std::uint16_t> order_of(const ReorderedType& type) {
-    const auto gmsh = core::nodes_of_degree(type.kind, type.degree, core::NodeOrder::gmsh);
-    std::map<core::LatticePlace, std::uint16_t> position;
-    for (std::size_t i = 0; i < gmsh.size(); ++i) position[gmsh[i]] = static_cast<std::uint16_t>(i);
-    std::vector<std::uint16_t> out;
-    for (const core::LatticePlace& place : core::nodes_of_degree(type.kind, type.degree, core::NodeOrder::vtk))
-        out.push_back(position.at(place));
+    std::vector<std::uint16_t> out = core::positions_in(core::NodeOrder::gmsh, type.kind, type.degree);
     out.resize(type.nodes);
     return out;
 }

@@ -1,138 +1,171 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// CGNS in ADF or HDF5; zones are pieces. VTK glues VelocityX, VelocityY and VelocityZ into Velocity; here they come
-// apart again, so that fields have the names of the file.
+// CGNS in ADF or HDF5, through the tree of nodes that the library in VTK reads; zones are pieces.
 #include <algorithm>
-#include <array>
+#include <map>
 
-#include <fmt/core.h>
-#include <vtkCGNSReader.h>
-#include <vtkNew.h>
+#include <fmt/format.h>
 
 #include "io/own/block_choice.hpp"
 #include "io/own/escape.hpp"
-#include "io/vtk/cgns_faces.hpp"
+#include "io/own/vtk_xml/load.hpp"
+#include "io/reader.hpp"
+#include "io/vtk/cgns_solutions.hpp"
+#include "io/vtk/cgns_zone.hpp"
 #include "io/vtk/hdf5_walk.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/vtk/loaders.hpp"
-#include "io/vtk/unset_memory.hpp"
-#include "io/vtk/vtk_load.hpp"
 #include "io/vtk/vtk_log.hpp"
 
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::array<char, 3> axes = {'X', 'Y', 'Z'};
+struct CgnsBase {
+    std::string name;
+    std::vector<double> times;
+    std::vector<std::vector<std::string>> zones; ///< those of each step; empty: all at all steps
+};
 
-/// Arrays in CGNS are scalar: whatever has components was glued.
-bool is_glued(std::size_t components) { return components == 2 || components == 3; }
-
-/// With every name its names with an axis, and without: what VTK has to read so that the wanted names can be had.
-ReadOptions with_glued_names(ReadOptions options) {
-    for (auto* names : {&options.point_fields, &options.cell_fields}) {
-        if (!*names) continue;
-        const std::vector<std::string> asked = **names;
-        for (const std::string& name : asked)
-            for (const char axis : axes)
-                if (name.size() > 1 && name.back() == axis) (*names)->push_back(name.substr(0, name.size() - 1));
+void read_steps(const CgnsTree& tree, const CgnsNode& iterative, CgnsBase& base) {
+    constexpr std::size_t letters_of_name = 32;
+    const std::vector<CgnsNode> parts = tree.children(iterative);
+    if (const auto node = child_named(parts, "TimeValues"))
+        if (const auto times = tree.numbers(*node))
+            times->visit([&](auto values) { base.times.assign(values.begin(), values.end()); });
+    const auto pointers = child_named(parts, "ZonePointers");
+    if (!pointers || base.times.empty()) return;
+    const std::vector<std::string> names = tree.texts(*pointers, letters_of_name);
+    const std::size_t most = names.size() / base.times.size();
+    if (most == 0 || most * base.times.size() != names.size()) return;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i % most == 0) base.zones.emplace_back();
+        if (!names[i].empty() && names[i] != "Null") base.zones.back().push_back(names[i]);
     }
-    return options;
 }
 
-Array component(const Array& values, std::size_t which) {
-    return values.visit([&](auto from) {
-        std::vector<std::remove_const_t<typename decltype(from)::value_type>> to(values.tuples());
-        for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[i * values.components() + which];
-        return Array::own(std::move(to));
-    });
+std::vector<CgnsBase> bases_of(const CgnsTree& tree) {
+    std::vector<CgnsBase> bases;
+    for (const CgnsNode& node : tree.children(tree.root())) {
+        if (node.label != "CGNSBase_t") continue;
+        CgnsBase& base = bases.emplace_back();
+        base.name = node.name;
+        if (const auto iterative = child_labelled(tree.children(node), "BaseIterativeData_t"))
+            read_steps(tree, *iterative, base);
+    }
+    return bases;
 }
 
-std::vector<Field> unglued(std::vector<Field> fields, const ReadOptions& options, Association association) {
-    std::vector<Field> result;
-    for (Field& field : fields) {
-        if (!is_glued(field.values.components())) {
-            if (wanted(options, association, field.name)) result.push_back(std::move(field));
-            continue;
+class CgnsFile {
+public:
+    CgnsFile(const std::string& path, const CgnsTree& tree) : path_(path), tree_(tree), bases_(bases_of(tree)) {}
+
+    Result<Loaded> load(const ReadOptions& options, Depth depth);
+
+private:
+    Result<void> describe(Loaded& loaded);
+    Result<Piece> read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
+                            Loaded& loaded) const;
+    bool is_there(const CgnsZone& zone, std::size_t step) const;
+    std::size_t step_of(const CgnsZone& zone, std::size_t step) const {
+        return std::min(step, std::max<std::size_t>(bases_[zone.base].times.size(), 1) - 1);
+    }
+    Error wrong(const CgnsZone& zone, const Error& error) const {
+        if (error.code != ErrorCode::invalid_data || error.message.starts_with(escaped(path_))) return error;
+        return broken(path_, fmt::format("zone \"{}\": {}", escaped(zone.name), error.message));
+    }
+
+    const std::string& path_;
+    const CgnsTree& tree_;
+    std::vector<CgnsBase> bases_;
+    std::vector<CgnsZone> zones_;
+    std::vector<CgnsSolutions> solutions_;
+};
+
+Result<void> CgnsFile::describe(Loaded& loaded) {
+    auto zones = cgns_zones(tree_, path_);
+    if (!zones) return zones.error();
+    zones_ = *std::move(zones);
+    if (zones_.empty()) return broken(path_, "it has no zones");
+    for (const CgnsBase& base : bases_)
+        if (loaded.info.times.empty()) loaded.info.times = base.times;
+    for (const CgnsZone& zone : zones_) {
+        CgnsCounts counts;
+        if (zone.is_structured) {
+            counts.cells = zone.points.size() == 3 ? zone.cells[0] * zone.cells[1] * zone.cells[2] : 0;
+        } else {
+            const auto found = count_cgns_cells(tree_, zone);
+            if (!found) return wrong(zone, found.error());
+            counts = *found;
         }
-        for (std::size_t i = 0; i < field.values.components(); ++i)
-            if (const std::string name = field.name + axes[i]; wanted(options, association, name))
-                result.push_back({name, component(field.values, i)});
-    }
-    return result;
-}
-
-std::vector<FieldInfo> unglued(const std::vector<FieldInfo>& fields) {
-    std::vector<FieldInfo> result;
-    for (const FieldInfo& field : fields) {
-        if (!is_glued(field.components)) result.push_back(field);
-        else
-            for (std::size_t i = 0; i < field.components; ++i)
-                result.push_back({field.name + axes[i], field.association, field.type, 1});
-    }
-    return result;
-}
-
-/// Bases are grids of their own, often in the same place: without a choice only the first is read.
-void choose_bases(vtkCGNSReader& reader, const ReadOptions& options, Depth depth, std::vector<std::string>& notes) {
-    reader.EnableAllBases();
-    const int count = reader.GetNumberOfBaseArrays();
-    if (count < 2 || depth == Depth::description || !options.blocks.empty()) return;
-    for (int i = 1; i < count; ++i) reader.SetBaseArrayStatus(reader.GetBaseArrayName(i), 0);
-    std::string others;
-    for (int i = 1; i < count; ++i) others += (i > 1 ? ", '" : "'") + escaped(reader.GetBaseArrayName(i)) + "'";
-    notes.push_back(fmt::format("only the first of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
-                                count, escaped(reader.GetBaseArrayName(0)), others));
-}
-
-/// VTK takes PYRA_14 for its pyramid of 13 nodes, and does not know PYRA_13, the only element of so many nodes. With the node
-/// in the base it is a Lagrange pyramid.
-void name_pyramids(Cells& cells) {
-    constexpr std::uint8_t empty = 0, pyramid_13 = 27, lagrange_pyramid = 74;
-    if (cells.types.empty()) return;
-    const auto types = cells.types.as<std::uint8_t>();
-    const auto may_be_pyramid = [&](std::uint8_t type) { return type == empty || type == pyramid_13; };
-    if (std::ranges::none_of(types, may_be_pyramid)) return;
-    std::vector<std::uint8_t> named(types.begin(), types.end());
-    for (std::size_t cell = 0; cell < named.size(); ++cell) {
-        if (!may_be_pyramid(named[cell])) continue;
-        const double nodes = cells.offsets.at(cell + 1) - cells.offsets.at(cell);
-        if (nodes == 13) named[cell] = pyramid_13;
-        else if (nodes == 14 && named[cell] == pyramid_13) named[cell] = lagrange_pyramid;
-    }
-    cells.types = Array::own(std::move(named));
-}
-
-bool has_polygons(const std::vector<CgnsFaceZone>& zones) {
-    return std::ranges::any_of(zones, [](const CgnsFaceZone& zone) { return !zone.cells.types.empty(); });
-}
-
-/// Switches a cell array off.
-void leave_to_us(vtkCGNSReader& reader, int array, FileInfo& info) {
-    const std::string name = reader.GetCellArrayName(array);
-    reader.SetCellArrayStatus(name.c_str(), 0);
-    announce(info, {name, Association::cell, ScalarType::float64, 1});
-}
-
-/// VTK makes polygons of cells that only their faces tell of, and refuses fields on these cells: both are put in here.
-Result<void> replace_polygons(const std::string& path, const std::vector<CgnsFaceZone>& zones,
-                              const ReadOptions& options, Loaded& loaded) {
-    if (!has_polygons(zones)) return {};
-    const auto chosen = chosen_blocks(loaded.info.blocks, options);
-    if (!chosen) return chosen.error();
-    std::size_t next = 0;
-    for (std::size_t block = 0; block < loaded.info.blocks.size(); ++block) {
-        BlockInfo& info = loaded.info.blocks[block];
-        const auto zone = std::ranges::find(zones, info.name, &CgnsFaceZone::name);
-        const bool replaced = zone != zones.end() && !zone->cells.types.empty();
-        if (replaced) info.cells = zone->cells.count();
-        if (!(*chosen)[block] || next >= loaded.pieces.size()) continue;
-        Piece& piece = loaded.pieces[next++];
-        if (replaced) piece.grid.cells = zone->cells;
-        auto fields = cgns_cell_fields(path, info.name, loaded.step, loaded.info.times.size());
-        if (!fields) return fields.error();
-        std::erase_if(*fields, [&](const Field& field) { return !wanted(options, Association::cell, field.name); });
-        piece.grid.cell_fields = *std::move(fields);
+        loaded.info.blocks.push_back(
+            {static_cast<std::int64_t>(loaded.info.blocks.size() + 1), zone.name, "zone", counts.cells});
+        solutions_.emplace_back(tree_, zone, bases_[zone.base].times.size(), counts);
+        solutions_.back().announce(loaded.info);
     }
     return {};
+}
+
+bool CgnsFile::is_there(const CgnsZone& zone, std::size_t step) const {
+    const CgnsBase& base = bases_[zone.base];
+    if (base.zones.empty()) return true;
+    const auto& names = base.zones[step_of(zone, step)];
+    const auto is_named = [&](const std::vector<std::string>& at) {
+        return std::ranges::find(at, zone.node.name) != at.end();
+    };
+    return is_named(names) || std::ranges::none_of(base.zones, is_named);
+}
+
+Result<Piece> CgnsFile::read_zone(std::size_t at, const ReadOptions& options, std::size_t step,
+                                  Loaded& loaded) const {
+    const CgnsZone& zone = zones_[at];
+    const CgnsSolutions& solutions = solutions_[at];
+    Piece piece;
+    piece.name = zone.name;
+    auto points = cgns_points(tree_, zone, solutions.coordinates_at(step_of(zone, step)));
+    if (!points) return wrong(zone, points.error());
+    piece.grid.points = *std::move(points);
+    CgnsCells cells;
+    if (zone.is_structured) {
+        std::vector<std::uint64_t> size = zone.points;
+        size.resize(3, 1);
+        auto hexahedra = vtk_xml::hexahedra_of({size[0], size[1], size[2]}, loaded.notes);
+        if (!hexahedra) return hexahedra.error();
+        piece.grid.cells = *std::move(hexahedra);
+    } else {
+        auto read = cgns_cells(tree_, zone, loaded.notes);
+        if (!read) return wrong(zone, read.error());
+        cells = *std::move(read);
+        piece.grid.cells = cells.cells;
+    }
+    solutions.read(options, step_of(zone, step), cells, piece.grid, loaded.info);
+    return piece;
+}
+
+Result<Loaded> CgnsFile::load(const ReadOptions& options, Depth depth) {
+    Loaded loaded;
+    if (auto done = describe(loaded); !done) return done.error();
+    const auto chosen = chosen_blocks(loaded.info.blocks, options);
+    if (!chosen) return chosen.error();
+    if (depth == Depth::description) return loaded;
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
+    if (bases_.size() > 1 && options.blocks.empty()) {
+        std::vector<std::string> others;
+        for (std::size_t i = 1; i < bases_.size(); ++i) others.push_back("'" + escaped(bases_[i].name) + "'");
+        loaded.notes.push_back(
+            fmt::format("only the first of {} bases is read, '{}': --block NAME (ReadOptions::blocks) reads {}",
+                        bases_.size(), escaped(bases_[0].name), fmt::join(others, ", ")));
+    }
+    for (std::size_t i = 0; i < zones_.size(); ++i) {
+        // Bases are grids of their own, often in the same place: without a choice only the first is read.
+        if (!(*chosen)[i] || (options.blocks.empty() && zones_[i].base > 0) || !is_there(zones_[i], *step)) continue;
+        auto piece = read_zone(i, options, *step, loaded);
+        if (!piece) return piece.error();
+        loaded.pieces.push_back(*std::move(piece));
+        report_progress(static_cast<double>(i + 1) / static_cast<double>(zones_.size()));
+    }
+    if (loaded.pieces.empty()) return broken(path_, "no zone of it is a grid at this step");
+    return loaded;
 }
 
 } // namespace
@@ -141,36 +174,9 @@ Result<Loaded> load_cgns(const std::string& path, const ReadOptions& options, De
     if (auto complete = check_hdf5_length(path); !complete) return complete.error();
     if (auto complete = check_adf_length(path); !complete) return complete.error();
     if (auto names = check_hdf5_names(path, options.allow_outside); !names) return names.error();
-    const auto face_zones = check_cgns_faces(path);
-    if (!face_zones) return face_zones.error();
-    const MarkedMemory marked;
-    const ExpectedVtkError expected(has_polygons(*face_zones) ? "Mismatch in number of cells" : "");
-    vtkNew<vtkCGNSReader> reader;
-    reader->SetFileName(path.c_str());
-    reader->SetUse3DVector(false); // no third component where the file has two
-    reader->SetLoadBndPatch(false);
-    reader->SetDoublePrecisionMesh(1); // exact for coordinates of either precision
-    std::vector<std::string> notes;
-    auto loaded = load_with(
-        *reader, path, with_glued_names(options), depth,
-        [&](const ReadOptions& chosen, FileInfo& info) {
-            choose_bases(*reader, options, depth, notes);
-            choose_arrays_by_name(*reader, chosen, info);
-            for (int i = 0; i < reader->GetNumberOfCellArrays() && has_polygons(*face_zones); ++i)
-                leave_to_us(*reader, i, info);
-        },
-        "zone");
-    if (!loaded) return loaded;
-    loaded->notes.insert(loaded->notes.begin(), notes.begin(), notes.end());
-    if (auto set = MarkedMemory::check(path, *loaded); !set) return set.error();
-    loaded->info.fields = unglued(loaded->info.fields);
-    for (Piece& piece : loaded->pieces) {
-        name_pyramids(piece.grid.cells);
-        piece.grid.point_fields = unglued(std::move(piece.grid.point_fields), options, Association::point);
-        piece.grid.cell_fields = unglued(std::move(piece.grid.cell_fields), options, Association::cell);
-    }
-    if (auto done = replace_polygons(path, *face_zones, options, *loaded); !done) return done.error();
-    return loaded;
+    const auto tree = CgnsTree::open(path);
+    if (!tree) return tree.error();
+    return CgnsFile(path, *tree).load(options, depth);
 }
 
 } // namespace isotet::io::vtk

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/core.h>
@@ -16,6 +16,35 @@
 #include VTK_CGNS(cgns_io.h)
 
 namespace isotet::io::vtk {
+namespace {
+
+std::optional<ScalarType> scalar_type_of_cgns(std::string_view type) {
+    struct Named {
+        std::string_view name;
+        ScalarType type;
+    };
+    for (const Named& named :
+         {Named{"R4", ScalarType::float32}, Named{"R8", ScalarType::float64}, Named{"I4", ScalarType::int32},
+          Named{"I8", ScalarType::int64}, Named{"U4", ScalarType::uint32}, Named{"U8", ScalarType::uint64},
+          Named{"B1", ScalarType::uint8}})
+        if (named.name == type) return named.type;
+    return std::nullopt;
+}
+
+std::optional<CgnsNode> found_or_nothing(const std::vector<CgnsNode>& nodes,
+                                         std::vector<CgnsNode>::const_iterator found) {
+    return found == nodes.end() ? std::nullopt : std::optional(*found);
+}
+
+} // namespace
+
+std::optional<CgnsNode> child_named(const std::vector<CgnsNode>& nodes, std::string_view name) {
+    return found_or_nothing(nodes, std::ranges::find(nodes, name, &CgnsNode::name));
+}
+
+std::optional<CgnsNode> child_labelled(const std::vector<CgnsNode>& nodes, std::string_view label) {
+    return found_or_nothing(nodes, std::ranges::find(nodes, label, &CgnsNode::label));
+}
 
 Result<CgnsTree> CgnsTree::open(const std::string& path) {
     CgnsTree tree(path);
@@ -63,7 +92,7 @@ Result<CgnsTree::Shape> CgnsTree::shape(const CgnsNode& node) const {
     if (cgio_get_data_type(number_, node.id, type.data()) != CGIO_ERR_NONE ||
         cgio_get_dimensions(number_, node.id, &rank, dimensions.data()) != CGIO_ERR_NONE)
         return wrong(node, "cannot be read");
-    Shape shape{type.data(), rank > 0 ? std::uint64_t{1} : 0};
+    Shape shape{type.data(), rank > 0 ? std::uint64_t{1} : 0, scalar_type_of_cgns(type.data())};
     for (int i = 0; i < rank; ++i) {
         const auto size = static_cast<std::uint64_t>(dimensions[static_cast<std::size_t>(i)]);
         constexpr std::uint64_t most = std::uint64_t{1} << 48U;
@@ -91,26 +120,13 @@ Result<Array> CgnsTree::integers(const CgnsNode& node) const {
     return wrong(node, fmt::format("is of type \"{}\", not I4 or I8", escaped(found->type)));
 }
 
-Result<Array> CgnsTree::reals(const CgnsNode& node) const {
+Result<Array> CgnsTree::numbers(const CgnsNode& node) const {
     const auto found = shape(node);
     if (!found) return found.error();
-    if (found->type == "R4") return values<float>(node, *found);
-    if (found->type == "R8") return values<double>(node, *found);
-    return wrong(node, fmt::format("is of type \"{}\", not R4 or R8", escaped(found->type)));
-}
-
-Result<void> CgnsTree::check_values(const CgnsNode& node, std::uint64_t least) const {
-    constexpr std::array<std::string_view, 10> types = {"R4", "R8", "I4", "I8", "U4", "U8", "B1", "C1", "X4", "X8"};
-    const auto found = shape(node);
-    if (!found) return found.error();
-    if (std::ranges::find(types, found->type) == types.end())
-        return wrong(node, fmt::format("is of type \"{}\", which is none of CGNS", escaped(found->type)));
-    if (found->count < least) return wrong(node, fmt::format("has {} values, but {} are needed", found->count, least));
-    std::array<std::byte, 64> value{};
-    if (found->count > 0 &&
-        cgio_read_block_data_type(number_, node.id, 1, 1, found->type.c_str(), value.data()) != CGIO_ERR_NONE)
-        return wrong(node, "has values that cannot be read");
-    return {};
+    if (!found->scalar) return wrong(node, fmt::format("is of type \"{}\", which is no number", escaped(found->type)));
+    return Array(*found->scalar, nullptr, 0, 1, nullptr).visit([&](auto none) {
+        return values<std::remove_const_t<typename decltype(none)::value_type>>(node, *found);
+    });
 }
 
 std::string CgnsTree::text(const CgnsNode& node) const {
@@ -120,6 +136,23 @@ std::string CgnsTree::text(const CgnsNode& node) const {
     if (!read) return {};
     const auto letters = read->as<std::int8_t>();
     return {letters.begin(), letters.end()};
+}
+
+std::vector<std::string> CgnsTree::texts(const CgnsNode& node, std::size_t letters) const {
+    constexpr std::uint64_t most = 1 << 26;
+    const auto found = shape(node);
+    if (!found || found->type != "C1" || found->count > most) return {};
+    const auto read = values<std::int8_t>(node, *found);
+    if (!read) return {};
+    std::vector<std::string> texts;
+    const auto all = read->as<std::int8_t>();
+    for (std::size_t at = 0; at + letters <= all.size(); at += letters) {
+        std::string& text = texts.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(at),
+                                               all.begin() + static_cast<std::ptrdiff_t>(at + letters));
+        text.resize(std::min(text.find('\0'), text.size()));
+        text.resize(text.find_last_not_of(' ') + 1);
+    }
+    return texts;
 }
 
 } // namespace isotet::io::vtk

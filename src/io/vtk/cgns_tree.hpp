@@ -2,7 +2,9 @@
 // A CGNS file (ADF or HDF5) as a tree of nodes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,10 @@ struct CgnsNode {
     double id = 0;
     std::string name, label;
 };
+
+/// Empty where there is none of that name.
+std::optional<CgnsNode> child_named(const std::vector<CgnsNode>& nodes, std::string_view name);
+std::optional<CgnsNode> child_labelled(const std::vector<CgnsNode>& nodes, std::string_view label);
 
 /// An open file. Links are followed, as VTK's reader does.
 class CgnsTree {
@@ -33,20 +39,22 @@ public:
     ///
     /// Errors   invalid_data: no integers, more than the file can have, values that cannot be read
     Result<Array> integers(const CgnsNode& node) const;
-    /// The same of float32 or float64.
-    Result<Array> reals(const CgnsNode& node) const;
-    /// That a node has at least so many values of a type, the first of which can be read.
-    Result<void> check_values(const CgnsNode& node, std::uint64_t least) const;
+    /// The same of numbers of any type.
+    Result<Array> numbers(const CgnsNode& node) const;
+    /// What numbers() would give, without the values: their type and count.
+    struct Shape {
+        std::string type; ///< as CGNS calls it: "R8"
+        std::uint64_t count = 0;
+        std::optional<ScalarType> scalar; ///< nothing: it holds no numbers
+    };
+    Result<Shape> shape(const CgnsNode& node) const;
     /// Empty where it is no text.
     std::string text(const CgnsNode& node) const;
+    /// Texts of so many letters each, one after another, without the spaces at their ends.
+    std::vector<std::string> texts(const CgnsNode& node, std::size_t letters) const;
 
 private:
-    struct Shape {
-        std::string type;
-        std::uint64_t count = 0;
-    };
     Error wrong(const CgnsNode& node, std::string_view what) const;
-    Result<Shape> shape(const CgnsNode& node) const;
     template <class T>
     Result<Array> values(const CgnsNode& node, const Shape& shape) const;
 

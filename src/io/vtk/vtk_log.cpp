@@ -19,7 +19,6 @@ namespace {
 struct Collected {
     std::mutex mutex;
     std::optional<std::string> error;
-    std::string expected; ///< part of an error that is none
     std::function<void(double)> progress;
 };
 
@@ -67,8 +66,6 @@ public:
 private:
     static void keep(const char* text) {
         const std::scoped_lock lock(collected().mutex);
-        const std::string& expected = collected().expected;
-        if (!expected.empty() && std::string_view(text).find(expected) != std::string_view::npos) return;
         if (!collected().error) collected().error = sentence_of(text);
     }
 };
@@ -78,16 +75,6 @@ private:
 void collect_vtk_messages() {
     vtkNew<Listener> listener;
     vtkOutputWindow::SetInstance(listener);
-}
-
-ExpectedVtkError::ExpectedVtkError(std::string part) {
-    const std::scoped_lock lock(collected().mutex);
-    collected().expected = std::move(part);
-}
-
-ExpectedVtkError::~ExpectedVtkError() {
-    const std::scoped_lock lock(collected().mutex);
-    collected().expected.clear();
 }
 
 std::optional<std::string> take_vtk_error() {

@@ -23,14 +23,4 @@ void report_progress(double fraction);
 /// Passes on the progress of a VTK reader.
 void follow_progress(vtkAlgorithm* algorithm);
 
-/// As long as it lives, errors with this part are none: what they miss is made otherwise. One at a time.
-class ExpectedVtkError {
-public:
-    /// `part`   empty: there is none
-    explicit ExpectedVtkError(std::string part);
-    ~ExpectedVtkError();
-    ExpectedVtkError(const ExpectedVtkError&) = delete;
-    ExpectedVtkError& operator=(const ExpectedVtkError&) = delete;
-};
-
 } // namespace isotet::io::vtk
