@@ -31,7 +31,8 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     request.ends = options.edge_ends || (reference && !options.point_fields.empty());
     request.normals = options.normals == Normals::gradient;
     request.source_cells = options.source_cells || !options.cell_fields.empty();
-    const api::MoreBytes more = api::more_bytes(options, packed.origin);
+    const api::Placement placement{packed.origin, packed.point_type};
+    const api::MoreBytes more = api::more_bytes(options, placement);
     request.more_vertex_bytes = more.vertex;
     request.more_triangle_bytes = more.triangle;
 
@@ -44,7 +45,7 @@ Result<std::vector<Extraction>> extract_as(const core::Packed& packed, std::span
     for (std::size_t i = 0; i < out.size(); ++i) {
         ops::RawSurface& surface = raw->surfaces[i];
         ExtractReport& report = out[i].report;
-        out[i].surface = api::finish<Real>(packed.origin, options, storages, surface);
+        out[i].surface = api::finish<Real>(placement, options, storages, surface);
         api::report_ties(packed, isovalues[i], request.isovalues[i], surface.tied_points, report);
         report.selected_clusters = surface.selected_clusters;
         report.surface_bytes = api::bytes_of(out[i].surface);

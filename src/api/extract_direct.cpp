@@ -77,6 +77,7 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
     if (!result) return std::move(result).error();
     progress("extract", 0.8);
 
+    const api::Placement placement{result->origin, input.grid.points.type()};
     DirectExtraction out;
     out.needs_all_cells = result->needs_all_cells;
     out.field = result->field;
@@ -85,7 +86,7 @@ Result<DirectExtraction> extract_as(const ops::DirectInput& input, const core::B
         Extraction& extraction = out.surfaces.emplace_back();
         ExtractReport& report = extraction.report;
         if (!original.empty() && !surface.raw.ends.empty()) surface.raw.ends = user_ends(surface.raw.ends, original);
-        extraction.surface = api::finish<Real>(result->origin, options, result->carried, surface.raw);
+        extraction.surface = api::finish<Real>(placement, options, result->carried, surface.raw);
         report.tied_points = surface.raw.tied_points;
         report.false_ties = surface.false_ties;
         report.near_tie = surface.near_tie;

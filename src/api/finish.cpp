@@ -37,10 +37,12 @@ Array restored(std::span<const Real> stored, std::size_t components, const F& f)
     return std::move(out).to_array(components);
 }
 
+/// The type follows from that of the points alone, also where the origin is 0.
 template <class Real>
-Array user_positions(const Array& stored, const std::array<double, 3>& origin) {
-    if (origin == std::array<double, 3>{}) return stored;
-    return restored<double>(stored.as<Real>(), 3, [&](double x, std::size_t axis) { return x + origin[axis]; });
+Array user_positions(const Array& stored, const Placement& placement) {
+    if (placement.point_type == ScalarType::float32 || sizeof(Real) == sizeof(double)) return stored;
+    return restored<double>(stored.as<Real>(), 3,
+                            [&](double x, std::size_t axis) { return x + placement.origin[axis]; });
 }
 
 template <class Real>
@@ -56,10 +58,10 @@ Array user_values(const Array& stored, ScalarType type, const core::Storage& sto
 } // namespace
 
 template <class Real>
-Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
+Surface finish(const Placement& placement, const ExtractOptions& options,
                std::span<const core::Storage> storages, const ops::RawSurface& raw) {
     Surface surface;
-    surface.positions = user_positions<Real>(raw.positions, origin);
+    surface.positions = user_positions<Real>(raw.positions, placement);
     surface.triangles = raw.triangles;
     surface.normals_kind = options.normals;
     if (options.normals == Normals::gradient) surface.normals = fill_normals<Real>(raw);
@@ -79,14 +81,14 @@ Surface finish(const std::array<double, 3>& origin, const ExtractOptions& option
     return surface;
 }
 
-template Surface finish<float>(const std::array<double, 3>&, const ExtractOptions&, std::span<const core::Storage>,
+template Surface finish<float>(const Placement&, const ExtractOptions&, std::span<const core::Storage>,
                                const ops::RawSurface&);
-template Surface finish<double>(const std::array<double, 3>&, const ExtractOptions&, std::span<const core::Storage>,
+template Surface finish<double>(const Placement&, const ExtractOptions&, std::span<const core::Storage>,
                                 const ops::RawSurface&);
 
-MoreBytes more_bytes(const ExtractOptions& options, const std::array<double, 3>& origin) {
+MoreBytes more_bytes(const ExtractOptions& options, const Placement& placement) {
     MoreBytes more;
-    if (origin != std::array<double, 3>{}) more.vertex += 3 * sizeof(double);
+    if (placement.point_type != ScalarType::float32) more.vertex += 3 * sizeof(double);
     for (const Field& field : options.point_fields) more.vertex += field.values.components() * sizeof(double);
     if (options.normals == Normals::gradient) more.vertex += fill_normals_bytes;
     if (options.normals == Normals::face) more.triangle += 3 * sizeof(float);

@@ -18,10 +18,16 @@ namespace isotet::api {
 /// Errors   invalid_argument for an isovalue that is not finite
 ISOTET_API Result<void> check_isovalues(std::span<const double> isovalues);
 
+/// How coordinates are stored: relative to an origin, of points of this type.
+struct Placement {
+    std::array<double, 3> origin{};
+    ScalarType point_type = ScalarType::float32;
+};
+
 /// Geometry, normals and fields in the user's coordinates and units. `storages` are those of the point fields of
 /// `options`, in their order.
 template <class Real>
-ISOTET_API Surface finish(const std::array<double, 3>& origin, const ExtractOptions& options,
+ISOTET_API Surface finish(const Placement& placement, const ExtractOptions& options,
                           std::span<const core::Storage> storages, const ops::RawSurface& raw);
 
 /// Bytes at most that finish() adds to each vertex and triangle of the surface of an engine that interpolates point
@@ -29,7 +35,7 @@ ISOTET_API Surface finish(const std::array<double, 3>& origin, const ExtractOpti
 struct MoreBytes {
     std::size_t vertex = 0, triangle = 0;
 };
-MoreBytes more_bytes(const ExtractOptions& options, const std::array<double, 3>& origin);
+MoreBytes more_bytes(const ExtractOptions& options, const Placement& placement);
 
 /// All arrays of a surface.
 ISOTET_API std::uint64_t bytes_of(const Surface& surface);

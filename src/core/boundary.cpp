@@ -113,7 +113,7 @@ Array positions_of(const Packed& packed, const std::vector<std::uint64_t>& point
                 });
                 return Array::own(std::move(out), 3);
             };
-            if (packed.origin == std::array<double, 3>{})
+            if (packed.point_type == ScalarType::float32)
                 return positions(Real{}, [](Real x, std::size_t) { return x; });
             return positions(double{}, [&](Real x, std::size_t axis) { return x + packed.origin[axis]; });
         },

@@ -186,6 +186,7 @@ struct Packed {
     std::optional<Frame> frame;
 
     std::array<double, 3> origin{};
+    ScalarType point_type = ScalarType::float32; ///< of the user's points, and so of vertices
     Storage storage;
     std::shared_ptr<StorageCache> storage_cache; ///< of fields carried onto surfaces (field_storage.hpp)
     Array field; ///< as the user gave it, to tell false ties; no values, only their type, where

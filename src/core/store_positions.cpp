@@ -66,6 +66,7 @@ Result<void> store_positions(const Array& array, Packed& packed) {
     const PointReader points(array);
     const bool unchanged = array.type() == ScalarType::float32 || sizeof(Real) == sizeof(double);
     packed.origin = {};
+    packed.point_type = array.type();
     if (packed.frame)
         if (auto ok = check_point_type(*packed.frame, array.type()); !ok) return ok;
     if (!unchanged) {

@@ -143,7 +143,7 @@ Result<Extraction> DeviceSurface::Data::download() const {
     if (!fields_are_there)
         for (const Field& field : options.point_fields) stored_as.push_back(core::choose_storage(field, *packed));
     Extraction out;
-    out.surface = api::finish<float>(packed->origin, the_rest, stored_as, *raw);
+    out.surface = api::finish<float>({packed->origin, packed->point_type}, the_rest, stored_as, *raw);
     if (options.normals != Normals::vertex) {
         out.surface.normals_kind = options.normals;
         out.surface.normals = raw->normals;

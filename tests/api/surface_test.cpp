@@ -21,6 +21,24 @@ PackedGrid packed_with_everything(const Grid& grid) {
     return pack(grid, point_field(grid), options).value();
 }
 
+TEST(Surface, HasVerticesInTheTypeOfThePointsAlsoAroundTheOrigin) {
+    Grid grid = make_grid({.shape = "kuhn", .side = 4, .fields = {"sphere"}}).value(); // from -1 to 1
+    const auto single = grid.points.as<float>();
+    const Array points[] = {grid.points, Array::own(std::vector<double>(single.begin(), single.end()), 3)};
+    const double isovalues[] = {0.5, 99};
+    for (const Array& array : points) {
+        grid.points = array;
+        const PackedGrid packed = pack(grid, point_field(grid)).value();
+        for (const auto& found : {extract(packed, isovalues).value(), extract_by_reference(packed, isovalues).value(),
+                                  extract_direct(grid, point_field(grid), isovalues).value().surfaces,
+                                  extract_direct_by_reference(grid, point_field(grid), isovalues).value().surfaces})
+            for (const Extraction& extraction : found) {
+                EXPECT_EQ(extraction.surface.positions.type(), array.type());
+                EXPECT_EQ(extraction.surface.positions.components(), 3U);
+            }
+    }
+}
+
 TEST(Surface, CarriesOnlyWhatWasAskedFor) {
     const Grid grid = made_grid("mixed", 5, {"sphere"});
     const PackedGrid packed = packed_with_everything(grid);
