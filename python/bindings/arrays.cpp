@@ -38,11 +38,13 @@ ScalarType type_of(const ArrayIn& array) {
 }
 
 /// Arrays may be let go of by any thread, and after the interpreter has ended.
-void release(const ArrayIn* array) {
-    if (!nb::is_alive()) return;
-    const nb::gil_scoped_acquire held;
-    delete array;
-}
+struct Release {
+    void operator()(const ArrayIn* array) const {
+        if (!nb::is_alive()) return;
+        const nb::gil_scoped_acquire held;
+        delete array;
+    }
+};
 
 } // namespace
 
@@ -50,8 +52,15 @@ Array array_in(const ArrayIn& array) {
     const std::size_t components = array.ndim() == 2 ? array.shape(1) : 1;
     const std::size_t tuples = array.ndim() == 0 ? 1 : array.shape(0);
     const ScalarType type = type_of(array);
-    std::shared_ptr<const void> owner(new ArrayIn(array), [](const ArrayIn* kept) { release(kept); });
+    std::shared_ptr<const void> owner(new ArrayIn(array), Release());
     return {type, array.data(), tuples, components == 0 ? 1 : components, std::move(owner)};
+}
+
+Array renewed(const Array& array) {
+    const std::shared_ptr<const void> owner = array.owner().lock();
+    if (!std::get_deleter<Release>(owner)) return array;
+    return {array.type(), array.data(), array.tuples(), array.components(),
+            std::make_shared<const std::shared_ptr<const void>>(owner)};
 }
 
 std::vector<Field> fields_in(const FieldsIn& fields) {

@@ -25,6 +25,10 @@ using FieldsIn = std::vector<std::pair<std::string, ArrayIn>>;
 /// tuples.
 Array array_in(const ArrayIn& array);
 
+/// The same array with another owner, where Python owns it and may have changed it in place: whoever knows arrays by their
+/// owners then looks at what it holds.
+Array renewed(const Array& array);
+
 std::vector<Field> fields_in(const FieldsIn& fields);
 
 /// A read-only NumPy array on the memory of `array`, which it keeps alive. One dimension where there is one component.

@@ -36,6 +36,23 @@ Surface join_all(std::vector<Extraction>&& extractions, const std::vector<double
     return join(surfaces, isovalues);
 }
 
+Array without_tuples(const Array& array) { return {array.type(), nullptr, 0, array.components(), nullptr}; }
+
+/// The surface of no isovalue at all: the arrays of another surface, empty.
+Surface empty_like(Surface surface) {
+    for (Array* array : {&surface.positions, &surface.triangles, &surface.normals, &surface.edge_ends,
+                         &surface.edge_weights, &surface.source_cells})
+        *array = without_tuples(*array);
+    for (auto* fields : {&surface.point_fields, &surface.cell_fields})
+        for (Field& field : *fields) field.values = without_tuples(field.values);
+    std::erase_if(surface.cell_fields, [](const Field& field) { return field.name == "isovalue"; });
+    surface.cell_fields.push_back({"isovalue", Array::own(std::vector<double>())});
+    return surface;
+}
+
+/// An isovalue in the range of the field, in place of none.
+double some_isovalue(const FieldReport& field) { return field.lower <= field.upper ? field.lower : 0; }
+
 ContourOptions contour_options(std::string_view normals, bool edge_ends, bool source_cells, std::string_view ties,
                                std::string_view precision, std::optional<std::string_view> method,
                                std::uint64_t surfaces, bool split_cells, const Frame* frame,
@@ -109,6 +126,17 @@ struct Extracted {
     ContourResult how;                      ///< without surfaces
 };
 
+Result<Extracted> extract_nothing(Contour& session, const Run& run) {
+    const Result<FieldReport> field = session.field(run);
+    if (!field) return field.error();
+    Result<ContourResult> result = session.extract(some_isovalue(*field), run);
+    if (!result) return result.error();
+    Extracted out;
+    out.surface = empty_like(std::move(result->surfaces.front().surface));
+    out.how = *std::move(result);
+    return out;
+}
+
 nb::tuple extracted_out(Extracted&& extracted) {
     nb::dict how;
     how["method"] = word_of(extracted.how.method, words_of_method);
@@ -169,6 +197,7 @@ void add_sessions(nb::module_& module) {
             "extract",
             [](Contour& self, const std::vector<double>& isovalues, const CallOptions& how) {
                 return extracted_out(call(how, [&](const Run& run) -> Result<Extracted> {
+                    if (isovalues.empty()) return extract_nothing(self, run);
                     Result<ContourResult> result = self.extract(isovalues, run);
                     if (!result) return result.error();
                     Extracted out;
@@ -237,8 +266,11 @@ void add_packed_grids(nb::module_& module) {
                 extraction.point_fields = fields_in(fields);
                 extraction.cell_fields = fields_in(cell_fields);
                 return call(how, [&](const Run& run) -> Result<Surface> {
-                    Result<std::vector<Extraction>> result = extract(self, isovalues, extraction, run);
+                    std::vector<double> values = isovalues;
+                    if (isovalues.empty()) values = {some_isovalue(self.field())};
+                    Result<std::vector<Extraction>> result = extract(self, values, extraction, run);
                     if (!result) return result.error();
+                    if (isovalues.empty()) return empty_like(std::move(result->front().surface));
                     return join_all(*std::move(result), isovalues);
                 });
             },

@@ -38,6 +38,16 @@ Cells cells_in(const ArrayIn& connectivity, const std::optional<ArrayIn>& offset
     return cells;
 }
 
+Grid renewed_grid(Grid grid) {
+    Cells& cells = grid.cells;
+    for (Array* array : {&grid.points, &grid.point_numbers, &cells.connectivity, &cells.offsets, &cells.types,
+                         &cells.faces, &cells.face_offsets})
+        *array = renewed(*array);
+    for (auto* fields : {&grid.point_fields, &grid.cell_fields})
+        for (Field& field : *fields) field.values = renewed(field.values);
+    return grid;
+}
+
 nb::tuple cells_out(const Cells& cells) {
     const auto optional = [](const Array& array) { return array.empty() ? nb::none() : array_out(array); };
     return nb::make_tuple(array_out(cells.connectivity), optional(cells.offsets), optional(cells.types),
@@ -113,6 +123,7 @@ void add_grids(nb::module_& module) {
                 if (point_numbers) self->point_numbers = array_in(*point_numbers);
             },
             "points"_a, "cells"_a, "fields"_a, "cell_fields"_a, "point_numbers"_a.none() = nb::none())
+        .def("renewed", [](const Grid& self) { return renewed_grid(self); })
         .def_prop_ro("points", [](const Grid& self) { return array_out(self.points); })
         .def_prop_ro("cells", [](const Grid& self) { return self.cells; }) // shares the arrays
         .def_prop_ro(

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import numbers
+import operator
+
 import numpy as np
 
 from . import _isotet
@@ -23,14 +26,14 @@ def _native(what: str, array, integers_only: bool = False) -> np.ndarray:
         raise ValueError(f"{what} is a masked array with masked values: only values may have some, which are no data")
     array = np.asarray(array)
     kind, bits = array.dtype.kind, 8 * array.dtype.itemsize
+    if integers_only and kind in "bf":
+        raise TypeError(f"{what} has type {array.dtype}, but must have integers")
     if kind == "b":
         array = array.astype(np.uint8)
     elif kind == "f" and bits == 16:
         array = array.astype(np.float32)
     elif kind not in "iuf" or bits > 64:
         raise TypeError(f"{what} has type {array.dtype}, but must have integers, float16, float32 or float64")
-    if integers_only and kind not in "iu":
-        raise TypeError(f"{what} has type {array.dtype}, but must have integers")
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
     return np.ascontiguousarray(array)
@@ -73,7 +76,7 @@ def numbers_in(what: str, numbers) -> np.ndarray:
 
 def fields_in(what: str, fields) -> list[tuple[str, np.ndarray]]:
     """Names and arrays, of a mapping."""
-    if not fields:
+    if fields is None or (isinstance(fields, (list, tuple)) and not fields):
         return []
     if not hasattr(fields, "items"):
         raise TypeError(f"{what} is a {type(fields).__name__}, but must map names to arrays")
@@ -82,6 +85,8 @@ def fields_in(what: str, fields) -> list[tuple[str, np.ndarray]]:
 
 def _indices(what: str, array) -> np.ndarray:
     array = _native(what, array, integers_only=True)
+    if array.dtype == np.uint64 and array.size and array.max() >= 2**63:
+        raise ValueError(f"{what} has the number {array.max()}, but numbers must be below 2^63")
     return array if array.dtype.itemsize >= 4 else array.astype(np.int32)
 
 
@@ -109,7 +114,7 @@ def cells_in(cells, offsets=None, types=None, faces=None, face_offsets=None) -> 
     """Cells as the functions of isotet take them."""
     if isinstance(cells, _isotet.Cells):
         return cells
-    if hasattr(cells, "items"):
+    if hasattr(cells, "items") and not hasattr(cells, "__array__"):  # a table of pandas has both
         return _blocks_in(cells.items())
     if isinstance(cells, (list, tuple)) and cells and not np.isscalar(cells[0]):
         first = cells[0]
@@ -142,9 +147,41 @@ def cells_in(cells, offsets=None, types=None, faces=None, face_offsets=None) -> 
 
 def isovalues_in(isovalues) -> list[float]:
     """One number, or any sequence of them."""
-    if isinstance(isovalues, (float, int)):
-        return [float(isovalues)]
-    return np.asarray(isovalues, np.float64).reshape(-1).tolist()
+    try:
+        array = np.asarray(isovalues)
+    except ValueError:  # lists of different lengths
+        array = np.empty(0, object)
+    array = array.reshape(-1)
+    if array.dtype.kind == "O" and array.size and all(isinstance(value, numbers.Real) and not isinstance(value, bool) for value in array):
+        try:
+            return [float(value) for value in array]
+        except OverflowError:
+            raise ValueError("an isovalue is beyond the range of float64") from None
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"isovalues is {_shortened(isovalues)}, but must be a number, or several")
+    if isinstance(isovalues, np.ma.MaskedArray) and np.ma.is_masked(isovalues):
+        raise ValueError("isovalues is a masked array with masked values")
+    return array.astype(np.float64).tolist()
+
+
+def _shortened(value) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def number_in(what: str, value) -> int:
+    """An integer."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} is {_shortened(value)}, but must be an integer") from None
+
+
+def words_in(**words) -> None:
+    """Raises TypeError for what is no word."""
+    for what, value in words.items():
+        if not isinstance(value, str):
+            raise TypeError(f"{what} is {_shortened(value)}, but must be text")
 
 
 def tolerances_in(tolerance, geometry_tolerance, distance) -> tuple[float | None, float | None, float, float]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _isotet
-from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in, tolerances_in
+from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in, tolerances_in, words_in
 from ._pieces import Frame
 from ._surface import Surface, call_options
 
@@ -156,7 +156,8 @@ class Grid:
             A name ("p"; "velocity:x" or "velocity:mag" of a vector; a cell field is averaged to the points), or one value
             a point. Without it the only field there is.
         normals
-            "none"; "gradient", one a vertex, along the field's gradient; "face", one a triangle.
+            "none"; "gradient", one a vertex, along the field's gradient; "vertex", one a vertex, the mean of its triangles',
+            which follows the surface on thin cells, too; "face", one a triangle.
         fields, cell_fields
             What the surface carries: names, or mappings from names to arrays. Without them all `fields` and no
             `cell_fields`, as the program does.
@@ -195,6 +196,7 @@ class Grid:
         """
         values = isovalues_in(isovalues)
         call = call_options(threads, progress)
+        words_in(normals=normals, ties=ties, precision=precision)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, precision, method, len(values),
                                          split_cells, frame and frame._frame,
                                          *tolerances_in(tolerance, geometry_tolerance, distance),
@@ -300,6 +302,7 @@ class PackedGrid:
 
         Raises ValueError for wrong arguments, and where something was not packed; MemoryError.
         """
+        words_in(normals=normals, ties=ties)
         options = _isotet.ContourOptions(normals, edge_ends, source_cells, ties, self._packed.precision, None, 0)
         surface = self._packed.extract(isovalues_in(isovalues), fields_in("fields", fields),
                                        fields_in("cell_fields", cell_fields), options,
@@ -386,6 +389,7 @@ class Contour:
                  geometry_tolerance: float = 0.0, distance: float = 0.0,
                  exact_vertices: bool = False, centre: str = "mean"):  # fmt: skip
         call = call_options(0, None)
+        words_in(normals=normals, ties=ties, precision=precision)
         self._centre = centre
         self._refinement = (*tolerances_in(tolerance, geometry_tolerance, distance), exact_vertices)
         self._options = (normals, edge_ends, source_cells, ties, precision, method, surfaces, split_cells)
@@ -405,8 +409,9 @@ class Contour:
         Raises ValueError as `Grid.contour`; the session is then as before.
         """
         call = call_options(threads, progress)
-        return self._session.set(grid._grid, grid._field(field, call, frame is not None, self._centre),
-                                 grid._carried(fields, "fields"), grid._carried(cell_fields, "cell_fields"),
+        now = Grid._of(grid._grid.renewed())  # what its arrays hold is compared, not whose they are
+        return self._session.set(now._grid, now._field(field, call, frame is not None, self._centre),
+                                 now._carried(fields, "fields"), now._carried(cell_fields, "cell_fields"),
                                  self._options_with(frame), call)  # fmt: skip
 
     def contour(self, isovalues: float | Sequence[float], *, threads: int = 0, progress: Progress | None = None) -> Surface:

@@ -41,7 +41,7 @@ class Ranks:
         """Which of the flags a rank has set."""
         return np.any([np.frombuffer(flags, bool) for flags in self.gather(np.array(mine, bool).tobytes())], axis=0).tolist()
 
-    def agree(self, failure: Exception | None) -> None:
+    def agree(self, failure: BaseException | None) -> None:
         """Raises on every rank when one has failed: its own exception there, and on the others what the first of them says."""
         text = "" if failure is None else str(failure) or type(failure).__name__
         texts = [sent.rstrip(b"\0").decode(errors="ignore") for sent in self.gather(text.encode()[:_TEXT].ljust(_TEXT, b"\0"))]

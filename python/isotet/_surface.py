@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _isotet
-from ._arrays import fields_in, points_in, values_in
+from ._arrays import fields_in, number_in, points_in, values_in
 
 if TYPE_CHECKING:
     from ._grid import Grid, Progress
 
 
 def call_options(threads: int, progress: Progress | None) -> _isotet.CallOptions:
-    return _isotet.CallOptions(threads, progress)
+    count = number_in("threads", threads)
+    if not 0 <= count < 2**31:
+        raise ValueError(f"threads is {threads}, but must be 0, for all, or a number of threads")
+    return _isotet.CallOptions(count, progress)
 
 
 class Surface:
@@ -82,13 +85,17 @@ class Surface:
 
     @property
     def normals(self) -> np.ndarray | None:
-        """None, or float32, unit length, towards higher values: V x 3 of the gradient, F x 3 of the faces."""
+        """None, or float32, unit length, towards higher values: V x 3 ("gradient", "vertex") or F x 3 ("face")."""
         return self._surface.normals
 
     @property
     def normals_kind(self) -> str:
-        """"none", "gradient" (one a vertex) or "face" (one a triangle)."""
+        """"none"; "gradient" or "vertex", one a vertex; "face", one a triangle."""
         return self._surface.normals_kind
+
+    @property
+    def _has_vertex_normals(self) -> bool:
+        return self.normals_kind in ("gradient", "vertex")
 
     @property
     def fields(self) -> dict[str, np.ndarray]:
@@ -168,14 +175,15 @@ class Surface:
         return to_polydata(self)
 
     def to_trimesh(self):
-        """The surface as trimesh.Trimesh: the same vertices and faces, the fields as attributes. The arrays are copies."""
+        """The surface as trimesh.Trimesh: the same vertices, faces and normals, the fields as attributes. The arrays are copies."""
         import trimesh
 
         points = {name: np.array(values) for name, values in self.fields.items()}
         faces = {name: np.array(values) for name, values in self.cell_fields.items()}
         return trimesh.Trimesh(
             np.array(self.points, np.float64), self.triangles.astype(np.int64), process=False,
-            vertex_normals=np.array(self.normals) if self.normals_kind == "gradient" else None,
+            vertex_normals=np.array(self.normals) if self._has_vertex_normals else None,
+            face_normals=np.array(self.normals) if self.normals_kind == "face" else None,
             vertex_attributes=points, face_attributes=faces)  # fmt: skip
 
     def to_meshio(self):
@@ -202,7 +210,7 @@ class Surface:
             return
         print(self)
         if self._surface.triangle_count:
-            self.to_pyvista().plot(notebook=True, smooth_shading=self.normals_kind == "gradient")
+            self.to_pyvista().plot(notebook=True, smooth_shading=self._has_vertex_normals)
 
     def __reduce__(self):
         fields = {name: np.array(values) for name, values in self.fields.items()}
@@ -262,6 +270,8 @@ def check(surface: Surface, *, grid: Grid | None = None, field=None, closed: boo
     (True, 2)
     """
     chosen = None
+    if grid is not None and surface.edge_ends is None and len(surface.points):
+        raise ValueError("the surface has no edge ends, but to check against a grid it needs them: contour it with edge_ends=True")
     if grid is not None and field is not None:
         chosen = grid._field(field)
     report = _isotet.check(surface._surface, closed, None if grid is None else grid._grid, chosen, weld, max_findings,

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 import pyvista
 
-from ._arrays import tolerances_in
-from .vtk import IsotetContour, _arrays_of, _finish, _levels, _Session
+from ._arrays import isovalues_in, tolerances_in
+from .vtk import IsotetContour, _arrays_of, _finish, _levels, _says_nothing_to_contour, _Session
 
 _STRUCTURED = (pyvista.StructuredGrid, pyvista.ExplicitStructuredGrid, pyvista.RectilinearGrid, pyvista.ImageData)
 _MANY = 1 << 20  # surfaces that a slider may ask for
@@ -43,12 +43,22 @@ def _scalars_name(grid, scalars) -> str:
 
 
 def _isovalues(isosurfaces, rng, range_of_data) -> list[float]:
-    if isinstance(isosurfaces, (int, np.integer)):
-        lower, upper = range_of_data() if rng is None else rng
-        if not lower <= upper:
-            raise ValueError(f"rng is {lower} to {upper}, but must ascend")
-        return _levels(float(lower), float(upper), int(isosurfaces))
-    return np.asarray(isosurfaces, float).reshape(-1).tolist()
+    if not isinstance(isosurfaces, (int, np.integer)) or isinstance(isosurfaces, bool):
+        return isovalues_in(isosurfaces)
+    ends = [float(end) for end in range_of_data()] if rng is None else _ends_of(rng)
+    if not np.isfinite(ends).all():
+        raise ValueError(f"the field has values from {ends[0]} to {ends[1]}: give isovalues, or rng")
+    return _levels(ends[0], ends[1], int(isosurfaces))
+
+
+def _ends_of(rng) -> list[float]:
+    array = np.asarray(rng)
+    if array.shape != (2,) or array.dtype.kind not in "iuf":
+        raise TypeError(f"rng is {rng!r}, but must be two numbers")
+    lower, upper = array.tolist()
+    if not lower <= upper:
+        raise ValueError(f"rng is {lower} to {upper}, but must ascend")
+    return [float(lower), float(upper)]
 
 
 class GridAccessor:
@@ -111,17 +121,26 @@ class GridAccessor:
         if grid.n_cells == 0 or not values:
             return out
         cell_fields = _arrays_of(grid.GetCellData())
-        surface = self._session.contour(
-            self._unstructured(), array, values, normals=compute_normals, surfaces=self._expected,
-            fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields,
-            tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
-        left_out = surface._how["cells_left_out"] - self._blank
-        if left_out:
-            warnings.warn(f"isotet leaves out {left_out} of {grid.n_cells} cells: it contours three-dimensional cells of "
-                          "degree 1 to 10, and polyhedra with faces", stacklevel=2)  # fmt: skip
+        try:
+            surface = self._session.contour(
+                self._unstructured(), array, values, normals=compute_normals, surfaces=self._expected,
+                fields=_arrays_of(grid.GetPointData(), array.GetName()), cell_fields=cell_fields,
+                tolerances=tolerances_in(tolerance, geometry_tolerance, distance))  # fmt: skip
+        except ValueError as error:
+            if not _says_nothing_to_contour(error):
+                raise
+            self._warn_of_cells(grid.n_cells - self._blank)
+            out.GetFieldData().PassData(grid.GetFieldData())
+            return out
+        self._warn_of_cells(surface._how["cells_left_out"] - self._blank)
         _finish(surface, values, array, compute_scalars, any(name == "isovalue" for name, _ in cell_fields), out)
         out.GetFieldData().PassData(grid.GetFieldData())
         return out
+
+    def _warn_of_cells(self, left_out: int) -> None:
+        if left_out:
+            warnings.warn(f"isotet leaves out {left_out} of {self._grid.n_cells} cells: it contours three-dimensional cells of "
+                          "degree 1 to 10, and polyhedra with faces", stacklevel=3)  # fmt: skip
 
     def pack(self, scalars=None, *, compute_normals: bool = False) -> None:
         """Packs the grid now, and keeps it packed for all contours to come, instead of when so many were asked for that it pays."""

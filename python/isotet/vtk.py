@@ -6,7 +6,9 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
+import ctypes
+import functools
+import threading
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -15,7 +17,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataObjectTree, vtkPolyData, vtkUnstructuredGrid
-from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkDemandDrivenPipeline
 
 from . import _isotet
 from ._arrays import points_in, scalars_in, values_in
@@ -146,7 +148,7 @@ def _fill(out, surface: Surface, *, copy: bool):
     if normals is not None:
         array = numpy_to_vtk(normals, deep=copy)
         array.SetName("Normals")
-        (out.GetPointData() if surface.normals_kind == "gradient" else out.GetCellData()).SetNormals(array)
+        (out.GetPointData() if surface._has_vertex_normals else out.GetCellData()).SetNormals(array)
     return out
 
 
@@ -161,6 +163,7 @@ class _Session:
         self._session: _isotet.Contour | None = None
         self._cells: _isotet.Cells | None = None
         self._times: tuple[int, ...] = ()
+        self.update = "grid"  # what the last set() found to differ
 
     @staticmethod
     def times_of(grid) -> tuple[int, ...]:
@@ -177,7 +180,7 @@ class _Session:
 
     def _input(self, grid, scalars, numbers: np.ndarray | None = None) -> tuple[_isotet.Grid, _isotet.PointField]:
         times = self.times_of(grid)
-        if self._cells is None or times != self._times:
+        if self._cells is None or times != self._times:  # equal cells in other arrays: the session finds it out
             self._cells, self._times = _cells_of(grid), times
         name = scalars.GetName() or "scalars"
         field = _isotet.PointField(name, scalars_in(name, vtk_to_numpy(scalars)))
@@ -195,13 +198,18 @@ class _Session:
         options = _isotet.ContourOptions(kind, False, False, "merge", precision, None, surfaces, False, frame, *tolerances)
         call = call_options(0, None)
         if self._session is None:
-            self._session = _isotet.Contour(mine, field, fields, cell_fields, options, call)
+            self._session, self.update = _isotet.Contour(mine, field, fields, cell_fields, options, call), "grid"
         else:
-            self._session.set(mine, field, fields, cell_fields, options, call)
+            self.update = self._session.set(mine, field, fields, cell_fields, options, call)
 
     def prepare(self) -> None:
         assert self._session is not None
         self._session.prepare(call_options(0, None))
+
+
+def _says_nothing_to_contour(error: ValueError) -> bool:
+    """Whether the library refused a grid for want of cells that it contours; which they are only it knows."""
+    return "no cell that can be contoured" in str(error)
 
 
 def _levels(lower: float, upper: float, count: int) -> list[float]:
@@ -216,16 +224,26 @@ def _finish(surface: Surface, isovalues: list[float], scalars, compute_scalars: 
         out.GetCellData().RemoveArray("isovalue")
     if compute_scalars:
         kind = vtk_to_numpy(scalars).dtype
-        values = np.repeat(np.array(isovalues, kind if kind.kind == "f" else np.float64), surface._how["vertex_counts"])
+        values = np.repeat(np.array(isovalues, kind if kind.kind == "f" else np.float64), np.array(surface._how["vertex_counts"], np.intp))
         array = numpy_to_vtk(values)
         array.SetName(scalars.GetName())
         out.GetPointData().SetScalars(array)
     return out
 
 
+def _raised_later(error: BaseException) -> int:
+    """A result for VTK, 1, whose end raises an exception of that class in this thread. VTK's wrappers clear what is raised in
+    an algorithm; they drop the result when they are done, and the next line of Python raises. It is no failure, which
+    observers in Python would be told of: there VTK ends the process."""
+    raises = functools.partial(ctypes.pythonapi.PyThreadState_SetAsyncExc, ctypes.c_ulong(threading.get_ident()),
+                               ctypes.py_object(type(error)))  # fmt: skip
+    return type("RaisedLater", (int,), {"__del__": staticmethod(raises)})(1)
+
+
 class _Block(NamedTuple):
     """A grid with cells, its scalars, and where its surface goes."""
 
+    number: int
     grid: Any
     scalars: Any
     out: Any
@@ -280,8 +298,6 @@ class IsotetContour(VTKPythonAlgorithmBase):
     True
     """
 
-    _MAX_SESSIONS = 64  # blocks of a composite data set, each with a session
-
     def __init__(self):
         super().__init__(nInputPorts=1, inputType="vtkUnstructuredGrid", nOutputPorts=1, outputType="vtkPolyData")
         self._values: list[float] = [0.0]
@@ -290,7 +306,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
         self._precision = "float32"
         self._tolerance = 0.0
         self._controller = None
-        self._sessions: OrderedDict[Any, _Session] = OrderedDict()
+        self._sessions: dict[int, _Session] = {}  # of the blocks of the last execution, by their numbers
         self._frame: _isotet.Frame | None = None
         self._framed: list[tuple[int, ...]] | None = None  # modified times that the frame follows from
         self.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, 0)
@@ -401,14 +417,17 @@ class IsotetContour(VTKPythonAlgorithmBase):
             text += ", but a cell array: use vtkCellDataToPointData before, in ParaView Cell Data to Point Data"
         return ValueError(text)
 
-    def _session_of(self, grid) -> _Session:
-        """By the connectivity: blocks of a composite data set come one after another."""
-        key = grid.GetCells().GetConnectivityArray().GetAddressAsString("vtkObject")
-        session = self._sessions.pop(key, None) or _Session()
-        self._sessions[key] = session
-        while len(self._sessions) > self._MAX_SESSIONS:
-            self._sessions.popitem(last=False)
-        return session
+    def _match_sessions(self, blocks: list[_Block]) -> None:
+        """Each block keeps the session that knows its cells, else that of its number, which compares what the cells hold.
+        Sessions of blocks that are gone go, too."""
+        before = dict(self._sessions)
+        matched: dict[int, _Session] = {}
+        numbers = {session._times: number for number, session in before.items()}
+        for block in blocks:
+            number = numbers.get(_Session.times_of(block.grid))
+            if number in before:
+                matched[block.number] = before.pop(number)
+        self._sessions = {block.number: matched.get(block.number) or before.pop(block.number, None) or _Session() for block in blocks}
 
     def _blocks_of(self, data, out) -> tuple[list[_Block], Exception | None]:
         """The grids that have the array; of composite data others stay empty. And what to say if no grid has it."""
@@ -421,7 +440,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
             surface.GetFieldData().PassData(grid.GetFieldData())
             scalars = self._scalars_of(grid)
             if scalars is not None:
-                blocks.append(_Block(grid, scalars, surface))
+                blocks.append(_Block(number, grid, scalars, surface))
             elif surface is out:
                 raise self._missing(grid)
             else:
@@ -434,8 +453,8 @@ class IsotetContour(VTKPythonAlgorithmBase):
         try:
             for block in blocks:
                 fields = block.fields() if carried else []
-                mine.append(self._session_of(block.grid).survey(block.grid, block.scalars, fields))
-        except Exception as error:  # noqa: BLE001 - the other ranks wait for this one
+                mine.append(self._sessions[block.number].survey(block.grid, block.scalars, fields))
+        except BaseException as error:  # noqa: BLE001 - the other ranks wait for this one
             failure = error
         ranks.agree(failure)
         return [survey for surveys in ranks.gather_objects(mine) for survey in surveys]
@@ -451,7 +470,8 @@ class IsotetContour(VTKPythonAlgorithmBase):
             except ValueError:  # on all ranks alike
                 continue
 
-    def _agree(self, blocks: list[_Block], missing: Exception | None, failure: Exception | None) -> tuple[Ranks, bool]:
+    def _agree(self, blocks: list[_Block], missing: Exception | None,
+               failure: BaseException | None) -> tuple[Ranks, bool]:
         """What all ranks must know before one extracts; and whether all points have global ids. Raises alike on all."""
         ranks = Ranks(self._controller)
         times = [block.times() for block in blocks] if failure is None else None
@@ -478,7 +498,7 @@ class IsotetContour(VTKPythonAlgorithmBase):
             precision = precision if frame is not None else "float64"  # fits where types differ, but for one rounding
             numbers = vtk_to_numpy(block.numbers) if numbered else None
         cell_fields = _arrays_of(block.grid.GetCellData())
-        surface = self._session_of(block.grid).contour(
+        surface = self._sessions[block.number].contour(
             block.grid, block.scalars, self._values, normals=self._compute_normals, surfaces=self._expected,
             fields=block.fields(), cell_fields=cell_fields, precision=precision, numbers=numbers, frame=frame,
             tolerances=(None, None if framed else self._tolerance or None, 0.0, 0.0))  # fmt: skip
@@ -491,18 +511,22 @@ class IsotetContour(VTKPythonAlgorithmBase):
         try:
             try:
                 blocks, missing = self._blocks_of(vtkDataObject.GetData(inputs[0], 0), out)
-            except Exception as error:  # noqa: BLE001 - the other ranks wait for this one
+                self._match_sessions(blocks)
+            except BaseException as error:  # noqa: BLE001 - the other ranks wait for this one
                 failure = error
             ranks, numbered = self._agree(blocks, missing, failure)
             try:
                 for block in blocks:
                     self._contour(block, self._framed is not None, numbered)
-            except Exception as error:  # noqa: BLE001
+            except BaseException as error:  # noqa: BLE001
                 failure = error
             ranks.agree(failure)
-        except Exception as error:  # noqa: BLE001 - VTK would say that a method failed, and not why
+        except BaseException as error:  # noqa: BLE001 - VTK would say that a method failed, and not why
             for block in blocks:
                 block.out.Initialize()
+            if not isinstance(failure or error, Exception):  # as KeyboardInterrupt
+                outputs.GetInformationObject(0).Set(vtkDemandDrivenPipeline.DATA_NOT_GENERATED(), 1)
+                return _raised_later(failure or error)
             self._fail(error)
             return 0
         return 1

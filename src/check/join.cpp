@@ -107,7 +107,12 @@ Array isovalue_field(const std::vector<Surface>& surfaces, const std::vector<dou
 } // namespace
 
 Surface join(const std::vector<Surface>& surfaces, const std::vector<double>& isovalues) {
-    if (surfaces.empty()) return {};
+    if (surfaces.empty()) {
+        Surface none;
+        none.positions = Array::own(std::vector<float>(), 3);
+        none.triangles = Array::own(std::vector<std::uint32_t>(), 3);
+        return none;
+    }
     // Empty surfaces may lack arrays; they have no say in what the result carries.
     Parts parts;
     std::uint64_t vertices = 0, triangles = 0;

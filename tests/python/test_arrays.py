@@ -1,6 +1,8 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """What goes in: shapes, types, orders, masks; without a copy where the library takes an array as it is."""
 
+from fractions import Fraction
+
 import meshio
 import numpy as np
 import pytest
@@ -207,3 +209,67 @@ def test_isovalues_of_every_kind(tet):
     many = isotet.contour(*tet, [0.25, 0.5])
     assert many.cell_fields["isovalue"].tolist() == [0.25, 0.5]
     assert len(isotet.contour(*tet, []).triangles) == 0
+
+
+@pytest.mark.parametrize("isovalue", ["0.5", None, True, [True, False], ["a"], [0.5, None], [[1], [1, 2]], 1j, {}])
+def test_what_is_no_isovalue_is_a_type_error(tet, isovalue):
+    with pytest.raises(TypeError, match="isovalues is .*, but must be a number, or several"):
+        isotet.contour(*tet, isovalue)
+
+
+def test_isovalues_beyond_float64_are_a_value_error(tet):
+    with pytest.raises(ValueError, match="beyond the range of float64"):
+        isotet.contour(*tet, 10**400)
+    assert len(isotet.contour(*tet, [10**30, Fraction(1, 2)]).triangles) == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "message", "how"),
+    [
+        (TypeError, "normals is True, but must be text", {"normals": True}),
+        (TypeError, "ties is 1, but must be text", {"ties": 1}),
+        (TypeError, "precision is <class .*, but must be text", {"precision": np.float64}),
+        (ValueError, "threads is -1, but must be 0, for all, or a number of threads", {"threads": -1}),
+        (TypeError, "threads is 'two', but must be an integer", {"threads": "two"}),
+    ],
+)
+def test_wrong_options_are_said_in_a_sentence(tet, error, message, how):
+    with pytest.raises(error, match=message):
+        isotet.contour(*tet, 0.5, **how)
+    with pytest.raises(error, match=message):
+        isotet.Grid(*tet[:2], fields={"v": tet[2]}).contour(0.5, **how)
+
+
+def test_wrong_cells_are_said(tet):
+    points, cells, values = tet
+    with pytest.raises(TypeError, match="cells has type bool, but must have integers"):
+        isotet.contour(points, cells.astype(bool), values, 0.5)
+    with pytest.raises(ValueError, match="cells has the number 9223372036854775808, but numbers must be below 2"):
+        isotet.contour(points, np.array([[0, 1, 2, 2**63]], np.uint64), values, 0.5)
+
+
+def test_tables_are_arrays(tet):
+    class Table:  # as of pandas: an array that has items, too
+        def __init__(self, array):
+            self._array = array
+
+        def __array__(self, dtype=None, copy=None):
+            return self._array
+
+        def items(self):
+            return [(str(i), column) for i, column in enumerate(self._array.T)]
+
+        def __bool__(self):
+            raise ValueError("The truth value is ambiguous")
+
+    points, cells, values = tet
+    surface = isotet.contour(Table(points), Table(cells), values, 0.5, fields=Table(points))
+    assert same(surface, isotet.contour(points, cells, values, 0.5, fields={"0": points[:, 0], "1": points[:, 1], "2": points[:, 2]}))
+
+
+def test_checking_against_a_grid_says_what_the_surface_lacks(sphere):
+    with pytest.raises(ValueError, match="contour it with edge_ends=True"):
+        isotet.check(sphere.contour(0.5, "sphere"), grid=sphere)
+    assert isotet.check(sphere.contour(0.5, "sphere", edge_ends=True), grid=sphere).sound
+    for isovalue in (99, []):
+        assert isotet.check(sphere.contour(isovalue, "sphere"), grid=sphere).sound

@@ -121,6 +121,41 @@ def test_cells_left_out_are_said():
         mixed.isotet.contour([1.5], "x")
 
 
+@pytest.mark.parametrize("cell", ["Triangle", "Quadrilateral", "Line", "PolyVertex", "TriangleStrip", "Pixel", "structured"])
+def test_grids_without_cells_to_contour_give_nothing_and_a_warning(cell):
+    if cell == "structured":
+        grid = pv.StructuredGrid(*np.meshgrid([0.0, 1.0], [0.0, 1.0], [0.0]))
+    else:
+        grid = getattr(pv.examples.cells, cell)()
+    grid["x"] = grid.points[:, 0]
+    grid.field_data["time"] = [2.5]
+    with pytest.warns(UserWarning, match="leaves out 1 of 1 cells"):
+        surface = grid.isotet.contour([0.5], "x")
+    assert surface.n_points == surface.n_cells == 0
+    assert surface.field_data["time"].tolist() == [2.5]
+
+
+@pytest.mark.parametrize(
+    ("error", "message", "how"),
+    [
+        (TypeError, "rng is {}, but must be two numbers", {"rng": {}}),
+        (TypeError, "rng is .1., but must be two numbers", {"rng": [1]}),
+        (ValueError, "rng is 2 to 1, but must ascend", {"rng": [2, 1]}),
+        (TypeError, "isovalues is '3', but must be a number", {"isosurfaces": "3"}),
+        (TypeError, "isovalues is None, but must be a number", {"isosurfaces": None}),
+        (TypeError, "isovalues is True, but must be a number", {"isosurfaces": True}),
+        (TypeError, "isovalues is PolyData", {"isosurfaces": pv.PolyData()}),
+        (ValueError, "the field has values from 0.0 to inf: give isovalues, or rng", {"isosurfaces": 3}),
+    ],
+)
+def test_wrong_isovalues_are_said(error, message, how):
+    grid = cubes(4)
+    grid["r"][0] = np.inf
+    grid["r"][1] = 0
+    with pytest.raises(error, match=message):
+        grid.isotet.contour(scalars="r", **how)
+
+
 def test_what_changes_is_found_out(grid):
     grid.isotet.pack("r")
     accessor = grid.isotet

@@ -48,6 +48,59 @@ def test_normals_of_vertices_follow_the_surface(sphere):
     assert (np.einsum("ij,ij->i", surface.normals, outward) > 0.8).all()
 
 
+@pytest.mark.parametrize("kind", ["none", "gradient", "vertex", "face"])
+def test_every_kind_of_normals_goes_where_it_belongs(sphere, kind):
+    surface = sphere.contour(0.5, "sphere", normals=kind)
+    assert surface.normals_kind == kind
+    of_points = {"gradient": True, "vertex": True}.get(kind, False)
+    for mesh in (pyvista.wrap(surface.to_vtk()), surface.to_pyvista()):
+        assert ("Normals" in mesh.point_data) == of_points
+        assert ("Normals" in mesh.cell_data) == (kind == "face")
+        data = mesh.point_data if of_points else mesh.cell_data
+        assert kind == "none" or np.array_equal(data["Normals"], surface.normals)
+        assert [len(array) for array in data.values()] == [mesh.n_points if of_points else mesh.n_cells] * len(data)
+    mesh = surface.to_trimesh()
+    assert of_points == np.array_equal(mesh.vertex_normals, surface.normals)
+    assert kind != "face" or np.allclose(mesh.face_normals, surface.normals, atol=1e-5)
+    assert surface._has_vertex_normals == of_points
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("shape", ["kuhn", "hex", "kelvin", "tet10"])
+@pytest.mark.parametrize("middle", [0.0, 0.5])
+def test_the_type_of_points_follows_from_that_of_the_grid_alone(dtype, shape, middle):
+    made = isotet.make(shape, 4, ["sphere"])
+    points = np.array(made.points, dtype)
+    grid = isotet.Grid(points - (points.min(axis=0) + points.max(axis=0)) / 2 + dtype(middle), made.cells, offsets=made.offsets,
+                       types=made.types, faces=made.faces, face_offsets=made.face_offsets, fields=made.fields)  # fmt: skip
+    for how in ({"method": "direct"}, {"method": "clusters"}, {"method": "clusters", "split_cells": True}):
+        for isovalues in (0.5, [0.5, 0.6], 99.0, []):
+            assert grid.contour(isovalues, **how).points.dtype == dtype, (how, isovalues)
+    assert grid.contour(0.5, precision="float64").points.dtype == np.float64
+    if shape not in ("kuhn", "hex"):
+        return
+    packed = grid.pack()
+    assert packed.contour(0.5).points.dtype == dtype
+    other = np.float64 if dtype == np.float32 else np.float32
+    packed.set_points(grid.points.astype(other))
+    assert packed.contour(0.5).points.dtype == other
+
+
+def test_no_isovalues_give_a_surface_without_triangles(sphere):
+    how = {"fields": {"p": sphere.points}, "cell_fields": {"n": np.arange(len(sphere))}, "normals": "gradient",
+           "edge_ends": True, "source_cells": True}  # fmt: skip
+    session = isotet.Contour(sphere, "sphere", **how)
+    for surface in (sphere.contour([], "sphere", **how), session.contour([]), session.contour(np.empty(0))):
+        assert surface.points.shape == (0, 3) and surface.triangles.shape == (0, 3) and surface.normals.shape == (0, 3)
+        assert surface.edge_ends.shape == (0, 2) and surface.source_cells.shape == (0,)
+        assert surface.fields["p"].shape == (0, 3)
+        assert {name: values.shape for name, values in surface.cell_fields.items()} == {"n": (0,), "isovalue": (0,)}
+        assert surface.to_pyvista().n_cells == 0 and surface.area == 0
+    packed = isotet.pack(sphere, values="sphere").contour([])
+    assert packed.points.shape == packed.triangles.shape == (0, 3)
+    assert isotet.contour(sphere.points, sphere.cells, sphere.fields["sphere"], []).to_vtk().GetNumberOfPoints() == 0
+
+
 def test_fields_are_named_or_given(sphere):
     assert list(sphere.contour(0.5, "sphere").fields) == ["sphere", "gyroid"]
     assert list(sphere.contour(0.5, "sphere", fields=["gyroid"]).fields) == ["gyroid"]
@@ -115,6 +168,38 @@ def test_grids_pack_themselves():
     packed = grid.pack("gyroid", source_cells=True)
     assert np.array_equal(packed.contour(0.1).points, isotet.pack(grid, values="gyroid").contour(0.1).points)
     assert packed.contour(0.1, source_cells=True).source_cells is not None
+
+
+@pytest.mark.parametrize("shape", ["kuhn", "hex", "kelvin"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_sessions_see_what_was_changed_in_place_in_the_same_grid(shape, dtype):
+    made = isotet.make(shape, 5, ["sphere"])
+    points, cells, values = np.array(made.points, dtype), np.array(made.cells), np.array(made.fields["sphere"], dtype)
+    carried = np.arange(len(points), dtype=float)
+    grid = isotet.Grid(points, cells, offsets=made.offsets, types=made.types, faces=made.faces, face_offsets=made.face_offsets,
+                       fields={"f": values, "p": carried})  # fmt: skip
+    session = isotet.Contour(grid, "f", surfaces=100)
+    session.prepare()
+
+    def differs(expected, field="f", **how):
+        assert session.set(grid, field, **how) == expected
+        wanted = grid.contour(0.5, field, method="clusters", **how)
+        assert same(session.contour(0.5), wanted)
+
+    differs("nothing")
+    values *= 2
+    differs("field")
+    values[0] = -1
+    carried += 1
+    differs("field")
+    points *= 2
+    differs("points")
+    points += dtype(1)
+    differs("points", values, fields=["p"])
+    differs("nothing", values, fields=["p"])
+    if made.faces is None:
+        cells[:10] = cells[10]
+        differs("grid")
 
 
 def test_sessions_find_out_what_is_the_same(sphere):

@@ -1,6 +1,10 @@
 # Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 """IsotetContour in a pipeline of VTK's."""
 
+import signal
+import time
+from unittest import mock
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -8,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkContourFilter, vtkPolyDataNormals
 
 import isotet
+import isotet.vtk
 from isotet.vtk import IsotetContour, grid_of
 from test_pyvista import cubes
 
@@ -116,6 +121,80 @@ def test_composite_data_sets_come_block_by_block():
     contour.SetValue(0, 2.0)
     output(contour)
     assert list(contour._sessions.values()) == kept
+
+
+def test_a_series_with_the_same_cells_in_new_arrays_is_one_session():
+    contour = pipeline(cubes())
+    contour.SetExpectedSurfaces(1000)
+    output(contour)
+    for step in range(3):
+        grid = cubes()  # as a reader gives it: all arrays are new
+        grid["r"] = grid["r"] * (1 + step)
+        contour.SetInputDataObject(grid)
+        assert output(contour).area == pytest.approx(grid.contour([2.5], "r").area, rel=0.02)
+        assert len(contour._sessions) == 1
+        assert contour._sessions[0].update in ("nothing", "field")  # not packed again
+
+
+def test_sessions_go_with_their_blocks_and_any_number_stays():
+    blocks = pv.MultiBlock([cubes(2) for _ in range(100)])
+    contour = pipeline(blocks, value=1.0)
+    contour.SetExpectedSurfaces(1000)
+    output(contour)
+    kept = list(contour._sessions.values())
+    contour.SetValue(0, 0.9)
+    output(contour)
+    assert len(kept) == 100 and list(contour._sessions.values()) == kept
+    assert {session.update for session in kept} == {"nothing"}
+    last = pv.MultiBlock([blocks[99], blocks[98]])  # other numbers, the same cells
+    contour.SetInputDataObject(last)
+    output(contour)
+    assert list(contour._sessions.values()) == [kept[99], kept[98]]
+    assert {session.update for session in contour._sessions.values()} == {"nothing"}
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_points_have_the_type_of_the_input(dtype):
+    grid = cubes(4).triangulate()
+    grid.points = grid.points.astype(dtype) - dtype(2)  # the middle is 0
+    assert output(pipeline(grid, value=1.5)).points.dtype == dtype
+    assert grid.isotet.contour([1.5], "r").points.dtype == dtype
+
+
+def test_no_isovalues_give_nothing():
+    contour = pipeline(cubes())
+    contour.SetNumberOfContours(0)
+    heard = []
+    contour.AddObserver("ErrorEvent", lambda *_: heard.append(1))
+    surface = output(contour)
+    assert surface.n_points == surface.n_cells == 0 and not heard
+    assert cubes().isotet.contour([], "r").n_points == 0
+
+
+@pytest.mark.parametrize("through", ["itself", "another filter"])
+def test_an_interrupt_arrives(through):
+    grid = cubes(40)
+    contour = pipeline(grid)
+    last = contour
+    if through == "another filter":
+        last = vtkPolyDataNormals()
+        last.SetInputConnection(contour.GetOutputPort())
+    with mock.patch.object(isotet.vtk._Session, "set", side_effect=lambda *_, **__: signal.raise_signal(signal.SIGINT)):
+        with pytest.raises(KeyboardInterrupt):
+            last.Update()
+            time.sleep(10)
+    assert contour.GetOutputDataObject(0).GetNumberOfCells() == 0
+    assert output(contour).n_cells > 0, "it was not done"
+    contour.Modified()
+    assert output(last).n_cells > 0
+
+
+def test_an_exit_arrives():
+    contour = pipeline(cubes())
+    with mock.patch.object(isotet.vtk._Session, "set", side_effect=SystemExit):
+        with pytest.raises(SystemExit):
+            contour.Update()
+            time.sleep(10)
 
 
 def test_surfaces_of_blocks_fit_bit_for_bit():
