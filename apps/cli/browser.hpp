@@ -13,7 +13,20 @@ bool is_over_ssh();
 /// "ssh -N -L 8123:127.0.0.1:8123 user@host": to be typed on the machine where the browser is.
 std::string ssh_line(std::uint16_t port);
 
-/// Opens an address by xdg-open, which goes on by itself. False where there is no screen or no xdg-open.
-bool open_browser(const std::string& address);
+/// A browser of this machine. It is given the name of a file that leads to the address: the address holds a token, and
+/// other users see the words of every process.
+class Browser {
+public:
+    Browser() = default;
+    Browser(const Browser&) = delete;
+    Browser& operator=(const Browser&) = delete;
+    ~Browser(); ///< removes the file
+
+    /// By xdg-open, which goes on by itself. False where there is no screen, no xdg-open, or no place for the file.
+    bool open(const std::string& address);
+
+private:
+    std::string folder_; ///< of this user alone, with the file
+};
 
 } // namespace isotet::cli

@@ -64,7 +64,7 @@ Result<view::ViewerInput> read_input(const ViewCommand& command, const GridSourc
 }
 
 /// The address, before anything is read: for people, also with --quiet, or as JSON.
-Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer, Console& console) {
+Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer, Browser& browser, Console& console) {
     const std::string address = viewer.address();
     if (command.common.json.empty()) {
         if (Result<void> written = write_to_stdout(address + "\n"); !written) return written;
@@ -80,14 +80,17 @@ Result<void> tell_address(const ViewCommand& command, const view::Viewer& viewer
                      " HOST  then open the address there");
         return {};
     }
-    if (!command.listen.empty() && command.listen != "127.0.0.1" && command.listen != "::1")
+    if (!command.listen.empty() && command.listen != "127.0.0.1" && command.listen != "::1") {
+        const bool anywhere = command.listen == "0.0.0.0" || command.listen == "::";
         console.note(
             fmt::format("warning: other machines reach this page at {}, and the line is not encrypted: whoever "
                         "reads it can look at the file{}. ssh -L is the safe way",
-                        command.listen, command.out.empty() ? "" : ", and write into --out"));
+                        anywhere ? "each address of this machine" : command.listen,
+                        command.out.empty() ? "" : ", and write into --out"));
+    }
     if (is_over_ssh()) {
         console.note("on the machine with the browser: " + ssh_line(viewer.port()) + "  then open the address there");
-    } else if (!command.no_browser && !open_browser(address)) {
+    } else if (!command.no_browser && !browser.open(address)) {
         console.note("there is no browser here that could be opened: open the address in one");
     }
     return {};
@@ -131,7 +134,8 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     };
     auto viewer = view::Viewer::open(std::move(options));
     if (!viewer) return viewer.error();
-    if (Result<void> told = tell_address(command, **viewer, console); !told) return told.error();
+    Browser browser;
+    if (Result<void> told = tell_address(command, **viewer, browser, console); !told) return told.error();
     if (Result<void> served = (*viewer)->run(stop_requested); !served) return served.error();
     return ExitCode::done;
 }

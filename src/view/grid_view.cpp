@@ -37,6 +37,26 @@ bool same_values(const Array& a, const Array& b) {
            (a.data() == b.data() || std::memcmp(a.data(), b.data(), a.bytes()) == 0);
 }
 
+/// A checksum of what the cells hold.
+std::uint64_t sum_of(const Cells& cells) {
+    constexpr std::uint64_t factor = 0x9E3779B97F4A7C15U;
+    std::uint64_t sum = static_cast<std::uint64_t>(cells.uniform_type);
+    for (const Array* array : {&cells.connectivity, &cells.offsets, &cells.types, &cells.faces, &cells.face_offsets}) {
+        const auto* bytes = static_cast<const std::byte*>(array->data());
+        sum = (sum ^ array->bytes() ^ static_cast<std::uint64_t>(array->type())) * factor;
+        for (std::size_t left = array->bytes(); left > 0;) {
+            std::uint64_t word = 0;
+            const std::size_t size = std::min(left, sizeof(word));
+            std::memcpy(&word, bytes, size);
+            sum = (sum ^ word) * factor;
+            sum ^= sum >> 32U;
+            bytes += size;
+            left -= size;
+        }
+    }
+    return sum;
+}
+
 /// Whether the boundary of both is the same.
 bool same_cells(const Grid& a, const Grid& b) {
     return same_values(a.points, b.points) && same_values(a.cells.types, b.cells.types) &&
@@ -134,6 +154,7 @@ Result<void> GridView::go_to_step(const ShowMessage& message, const Run& run) {
             const std::lock_guard lock(grid_mutex_);
             grid_ = *std::move(grid);
             step_ = *wanted;
+            if (!same) ++grid_number_;
         }
         found_.clear();
         if (!same)
@@ -171,13 +192,17 @@ Result<void> GridView::pack(const std::string& field, const Run& run) {
 Result<void> GridView::find_boundary(const Run& run) {
     std::unique_lock lock(grid_mutex_);
     const Grid grid = grid_;
+    const std::uint64_t number = grid_number_;
     lock.unlock();
     Result<Surface> boundary = boundary_of(grid, run);
     if (!boundary) return boundary.error();
     Result<Mesh> mesh = mesh_of(*boundary, nullptr, run);
     if (!mesh) return mesh.error();
+    lock.lock();
+    if (number != grid_number_) return {}; // another step came meanwhile, and finds its own
     const std::lock_guard boundary_lock(boundary_mutex_);
     boundary_ = std::make_shared<const Mesh>(*std::move(mesh));
+    ++boundary_number_;
     return {};
 }
 
@@ -190,10 +215,9 @@ Result<void> GridView::need_cells(const Run& run) {
     if (has_cells_) return {};
     Result<Grid> again = options_.read_step(step_, run);
     if (!again) return again.error();
-    if (again->points.tuples() != grid_.points.tuples() || again->cells.count() != cell_count_)
-        return Error{ErrorCode::invalid_data,
-                     fmt::format("the file has changed: it had {} points and {} cells, and now {} and {}",
-                                 grid_.points.tuples(), cell_count_, again->points.tuples(), again->cells.count())};
+    if (!same_values(again->points, grid_.points) || sum_of(again->cells) != cells_sum_)
+        return Error{ErrorCode::invalid_data, "the file has changed since it was read: it has other points or cells now, "
+                                              "so what needs its cells cannot be shown. Start isotet view again"};
     const std::lock_guard lock(grid_mutex_);
     grid_.cells = std::move(again->cells);
     has_cells_ = true;
@@ -202,7 +226,10 @@ Result<void> GridView::need_cells(const Run& run) {
 
 void GridView::rest() {
     if (is_packed_.load(std::memory_order_acquire) && lean_ && has_cells_) {
-        if (!sample_) sample_ = sample_of_cells(grid_);
+        if (!sample_) {
+            sample_ = sample_of_cells(grid_);
+            cells_sum_ = sum_of(grid_.cells);
+        }
         direct_.contour.reset();
         const std::lock_guard lock(grid_mutex_);
         grid_.cells = {};

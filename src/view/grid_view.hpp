@@ -159,12 +159,14 @@ private:
     static void add(FrameSurface surface, const std::shared_ptr<const Mesh>& mesh,
                     const std::vector<std::string>& known, Making& making);
 
-    mutable std::mutex grid_mutex_; ///< of grid_ and step_, while another thread may copy them
+    mutable std::mutex grid_mutex_; ///< of grid_, grid_number_ and step_, while another thread may copy them
     Grid grid_;                     ///< without cells where has_cells_ is false
+    std::uint64_t grid_number_ = 0; ///< another one when cells or points are others
     bool has_cells_ = true;
     std::uint64_t cell_count_ = 0;
     std::optional<PackedSource> lean_; ///< instead of packed_, where cells may be released
     std::optional<CellSample> sample_; ///< of the cells that were released
+    std::uint64_t cells_sum_ = 0;      ///< of these, to know them again
     GridViewOptions options_;
     std::vector<OfferedField> fields_;
     Box bounds_;
@@ -181,6 +183,7 @@ private:
     std::vector<double> scene_isovalues_;
     std::mutex boundary_mutex_;
     std::shared_ptr<const Mesh> boundary_; ///< of the cells and points of grid_; null: not there yet
+    std::uint64_t boundary_number_ = 0;    ///< another one for each boundary, in its key
 };
 
 } // namespace isotet::view

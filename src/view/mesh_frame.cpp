@@ -249,10 +249,11 @@ void GridView::add_boundary(const ViewState& state, const std::vector<std::strin
     if (state.boundary <= 0) return;
     std::unique_lock lock(boundary_mutex_);
     const std::shared_ptr<const Mesh> boundary = boundary_;
+    const std::uint64_t number = boundary_number_;
     lock.unlock();
     if (!boundary) return;
     FrameSurface surface;
-    surface.key = fmt::format("boundary|{}", static_cast<const void*>(boundary.get()));
+    surface.key = fmt::format("boundary|{}", number);
     surface.kind = "boundary";
     surface.color = {0.62F, 0.66F, 0.70F, 1};
     surface.opacity = state.boundary;

@@ -3,7 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -123,6 +128,41 @@ Result<void> run_words(const std::string& program, const std::vector<std::string
     return Error{ErrorCode::cannot_write, said.empty() ? "the file was not written" : said};
 }
 
+/// A new folder inside another, which goes with all it holds.
+class OwnFolder {
+public:
+    explicit OwnFolder(const std::string& parent) : path_(parent + "/.isotet-save-XXXXXX") {
+        if (!::mkdtemp(path_.data())) path_.clear();
+    }
+    OwnFolder(const OwnFolder&) = delete;
+    OwnFolder& operator=(const OwnFolder&) = delete;
+    ~OwnFolder() {
+        std::error_code ignored;
+        if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+    }
+    const std::string& path() const noexcept { return path_; } ///< empty: it could not be made
+
+private:
+    std::string path_;
+};
+
+/// Gives a file another name that nothing has; 0 or the system's error.
+int move_to_free_name(const std::string& from, const std::string& to) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    if (errno != EINVAL && errno != ENOSYS) return errno;
+    return ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno; // file systems without the flag
+}
+
+Error taken_name(const std::string& name) {
+    return wrong_file(fmt::format("'{}' is there already: another name is needed", name));
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+        text.replace(at, what.size(), by);
+    return text;
+}
+
 } // namespace
 
 std::optional<SaveKind> parse_save_kind(std::string_view name) {
@@ -172,16 +212,34 @@ Result<void> Saver::start(std::vector<std::string> words, const std::string& nam
     std::error_code ignored;
     const std::filesystem::path path = std::filesystem::path(folder_) / name;
     if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored)))
-        return wrong_file(fmt::format("'{}' is there already: another name is needed", name));
+        return taken_name(name);
     if (busy_) return wrong_file("another file is being written: one at a time");
     if (thread_.joinable()) thread_.join();
     busy_ = true;
-    thread_ = std::thread([this, words = std::move(words), path = path.string(), done = std::move(done)] {
-        const Result<void> run = run_words(program_, words, stop_);
+    stop_ = false;
+    thread_ = std::thread([this, words = std::move(words), name, done = std::move(done)] {
+        Result<std::string> written = write(words, name);
         busy_ = false;
-        done(run ? Result<std::string>(path) : Result<std::string>(run.error()));
+        done(std::move(written));
     });
     return {};
+}
+
+Result<std::string> Saver::write(std::vector<std::string> words, const std::string& name) const {
+    const OwnFolder own(folder_);
+    if (own.path().empty())
+        return Error{ErrorCode::cannot_write, fmt::format("{} cannot be written into: {}", folder_,
+                                                          std::generic_category().message(errno))};
+    words.back() = own.path() + "/" + name;
+    if (const Result<void> run = run_words(program_, words, stop_); !run)
+        return Error{run.error().code, replaced(run.error().message, own.path(), folder_)};
+    const std::string path = (std::filesystem::path(folder_) / name).string();
+    const int failed = move_to_free_name(words.back(), path);
+    if (failed == EEXIST) return taken_name(name);
+    if (failed != 0)
+        return Error{ErrorCode::cannot_write,
+                     fmt::format("{} cannot be written: {}", path, std::generic_category().message(failed))};
+    return path;
 }
 
 } // namespace isotet::view

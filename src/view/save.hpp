@@ -45,7 +45,8 @@ bool is_file_name(std::string_view name);
 Result<std::vector<std::string>> save_words(const SaveRequest& request, const std::string& folder,
                                             const std::string& file, const std::vector<std::string>& reading);
 
-/// Runs command lines one after another, one at a time.
+/// Runs command lines one after another, one at a time. Files are written in a folder of their own below the one named, and
+/// moved out of it when they are whole: nothing that came meanwhile is replaced, and no link is followed.
 ///
 /// Threads   one call at a time
 class Saver {
@@ -60,11 +61,17 @@ public:
     const std::string& folder() const noexcept { return folder_; }
 
     /// Begins to write a file; `done` is called by a thread of its own, with the path or an error.
-    /// Errors   invalid_argument when the file exists already, or another one is being written
+    /// `words`   a command line whose last word is the file's path
+    /// Errors    invalid_argument when the file exists already, or another one is being written
     Result<void> start(std::vector<std::string> words, const std::string& name,
                        std::function<void(Result<std::string>)> done);
 
+    /// Ends what is going on, soon: it is then an error.
+    void stop() noexcept { stop_ = true; }
+
 private:
+    Result<std::string> write(std::vector<std::string> words, const std::string& name) const;
+
     std::string program_, folder_;
     std::thread thread_;
     std::atomic<bool> busy_{false}, stop_{false};

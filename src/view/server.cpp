@@ -3,6 +3,7 @@
 #include "view/server.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -43,11 +44,14 @@ std::chrono::steady_clock::duration duration_of(double seconds) {
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// "localhost:8123" gives "localhost", "[::1]:8123" gives "[::1]".
+/// "localhost:8123" gives "localhost", "[::1]:8123" gives "[::1]"; nothing for what has no port behind its colon.
 std::string_view name_of_host(std::string_view host) {
     const std::size_t bracket = host.starts_with('[') ? host.find(']') : 0;
     if (bracket == std::string_view::npos) return {};
-    return host.substr(0, host.find(':', bracket));
+    const std::size_t colon = host.find(':', bracket);
+    if (colon == std::string_view::npos) return host;
+    const bool port = host.find_first_not_of("0123456789", colon + 1) == std::string_view::npos;
+    return port ? host.substr(0, colon) : std::string_view();
 }
 
 /// "https://a.b:1" gives "a.b:1"; nothing for what no page of a server sends.
@@ -61,14 +65,34 @@ bool is_listed(const std::vector<std::string>& hosts, std::string_view name) {
     return !name.empty() && std::ranges::find(hosts, name) != hosts.end();
 }
 
-bool is_our_host(const std::vector<std::string>& hosts, std::string_view host) {
+/// "192.168.1.2" or "[fe80::1]": no name, which a foreign server could lead here.
+bool is_numeric(std::string_view name) {
+    const bool brackets = name.size() > 2 && name.front() == '[' && name.back() == ']';
+    if (brackets) name = name.substr(1, name.size() - 2);
+    beast::error_code error;
+    const auto address = asio::ip::make_address(std::string(name), error);
+    return !error && address.is_v6() == brackets;
+}
+
+bool is_our_host(const ServerOptions& options, std::string_view host) {
     const std::string_view name = name_of_host(host);
-    return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || is_listed(hosts, name);
+    return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || is_listed(options.hosts, name) ||
+           (options.any_address && is_numeric(name));
 }
 
 bool is_our_origin(const std::vector<std::string>& hosts, std::string_view origin, std::string_view host) {
     const std::string_view from = host_of_origin(origin);
     return !from.empty() && (from == host || is_listed(hosts, name_of_host(from)));
+}
+
+/// Whether there is a socket of this user, of a program that has ended without removing it.
+bool is_left_behind(asio::io_context& io, const std::string& path) {
+    struct stat status{};
+    if (::lstat(path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode) || status.st_uid != ::geteuid()) return false;
+    LocalProtocol::socket socket(io);
+    beast::error_code error;
+    socket.connect(LocalProtocol::endpoint(path), error);
+    return error == asio::error::connection_refused;
 }
 
 /// The last part of a path, without what follows ?.
@@ -88,13 +112,15 @@ struct Server::Data {
     tcp::acceptor acceptor{io};
     LocalProtocol::acceptor local_acceptor{io};
     std::string socket_path; ///< to be removed at the end
-    asio::steady_timer timer{io};
+    asio::steady_timer timer{io}, accept_timer{io};
     std::uint16_t port = 0;
     ConnectionNumber last = 0;
     std::map<ConnectionNumber, std::shared_ptr<Connection>> open; ///< all sockets
 
     template <class Acceptor>
     void accept_next(Acceptor& from);
+    template <class Acceptor>
+    void accept_later(Acceptor& from);
     void listen_locally(const std::string& path, beast::error_code& error);
     void listen_at(const tcp::endpoint& endpoint, beast::error_code& error);
     void wait_for_tick();
@@ -120,7 +146,7 @@ public:
 
     void start();
     void send(std::shared_ptr<const std::string> message, bool text);
-    bool has_nothing_to_send() const { return waiting_.empty(); }
+    void send_news(std::shared_ptr<const std::string> text);
     void close_when_sent();
     void drop();
 
@@ -149,7 +175,8 @@ private:
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
-    std::deque<Outgoing> waiting_; ///< the first one is being written
+    std::deque<Outgoing> waiting_;            ///< the first one is being written
+    std::shared_ptr<const std::string> news_; ///< the newest, once nothing waits
     bool reading_ = false, opened_ = false, closing_ = false, finished_ = false;
 };
 
@@ -167,7 +194,7 @@ void Connection::start() {
 void Connection::answer() {
     const auto& request = parser_->get();
     const std::string_view host = view_of(request[http::field::host]);
-    if (!is_our_host(owner_.options.hosts, host))
+    if (!is_our_host(owner_.options, host))
         return respond(http::status::forbidden, "text/plain",
                        "This server answers to localhost only; isotet view --allow-host NAME allows another name.\n");
     if (websocket::is_upgrade(request)) {
@@ -253,6 +280,11 @@ void Connection::send(std::shared_ptr<const std::string> message, bool text) {
     if (waiting_.size() == 1) write_next();
 }
 
+void Connection::send_news(std::shared_ptr<const std::string> text) {
+    if (waiting_.empty()) send(std::move(text), true);
+    else news_ = std::move(text);
+}
+
 void Connection::write_next() {
     const Outgoing& next = waiting_.front();
     socket_->text(next.text);
@@ -262,6 +294,7 @@ void Connection::write_next() {
                              self->waiting_.pop_front();
                              if (!self->waiting_.empty()) return self->write_next();
                              if (self->closing_) return self->finish();
+                             if (self->news_) self->send(std::exchange(self->news_, nullptr), true);
                              self->read_next();
                          });
 }
@@ -300,17 +333,32 @@ void Server::Data::accept_next(Acceptor& from) {
             open.emplace(number, connection);
             connection->start();
         }
+        if (error) return accept_later(from);
         accept_next(from);
     });
 }
 
-/// A socket that its owner alone may open.
+/// After an error that may last, such as no descriptor being free: at once it would be met again.
+template <class Acceptor>
+void Server::Data::accept_later(Acceptor& from) {
+    accept_timer.expires_after(std::chrono::milliseconds(100));
+    accept_timer.async_wait([this, &from](beast::error_code error) {
+        if (!error) accept_next(from);
+    });
+}
+
+/// A socket that its owner alone may open. It takes the place of one that nobody listens at any more.
 void Server::Data::listen_locally(const std::string& path, beast::error_code& error) {
     local_acceptor.open(LocalProtocol(), error);
     if (error) return;
-    const mode_t before = ::umask(0177);
+    // Linux gives the name the mode that the socket has, less the umask, which belongs to all threads.
+    if (::fchmod(local_acceptor.native_handle(), 0600) != 0) {
+        error.assign(errno, beast::system_category());
+        return;
+    }
     local_acceptor.bind(LocalProtocol::endpoint(path), error);
-    ::umask(before);
+    if (error == asio::error::address_in_use && is_left_behind(io, path) && ::unlink(path.c_str()) == 0)
+        local_acceptor.bind(LocalProtocol::endpoint(path), error);
     if (error) return;
     socket_path = path;
     local_acceptor.listen(16, error);
@@ -374,6 +422,7 @@ Result<Server> Server::open(ServerOptions options, ServerEvents events) {
     if (error)
         return Error{ErrorCode::invalid_argument,
                      fmt::format("'{}' is neither an IP address to serve at, nor unix:PATH", listen)};
+    data->options.any_address = address.is_unspecified();
     if (!address.is_unspecified()) data->options.hosts.push_back(address.is_v6() ? "[" + listen + "]" : listen);
     data->listen_at({address, data->options.port}, error);
     if (error)
@@ -414,7 +463,7 @@ void Server::send_bytes(ConnectionNumber to, std::string bytes) {
 
 void Server::send_news(ConnectionNumber to, std::string text) {
     data_->with(to, [text = std::make_shared<const std::string>(std::move(text))](Connection& connection) {
-        if (connection.has_nothing_to_send()) connection.send(text, true);
+        connection.send_news(text);
     });
 }
 

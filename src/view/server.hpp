@@ -27,6 +27,7 @@ struct ServerOptions {
     std::vector<std::string> hosts; ///< names besides localhost and 127.0.0.1 that a browser may have reached it by
     std::string
         listen; ///< an IP address of the machine; "unix:PATH": a socket there, for its owner alone; empty: 127.0.0.1
+    bool any_address = false; ///< a browser may have reached it by any IP address; so it is where it listens at all
     std::vector<ServedFile> files;    ///< must outlive the server
     std::size_t max_connections = 32; ///< at once; more are closed
     std::size_t max_message = 65'536; ///< bytes from a page; a larger one ends its connection
@@ -62,7 +63,7 @@ public:
     /// Sends a message, in the order of calls; to a connection that is gone: nothing. From any thread.
     void send_text(ConnectionNumber to, std::string text);
     void send_bytes(ConnectionNumber to, std::string bytes);
-    /// Sends it only if nothing else waits to be sent: for news that newer news replaces.
+    /// Sends it once nothing else waits to be sent, unless newer news has come by then.
     void send_news(ConnectionNumber to, std::string text);
     /// Ends a connection, after what was sent to it.
     void close(ConnectionNumber which);

@@ -120,7 +120,8 @@ struct Viewer::Data {
 
     std::unique_ptr<GridView> view;
     std::optional<Worker> worker;
-    std::unique_ptr<Saver> saver; ///< with ViewerOptions::out
+    std::unique_ptr<Saver> saver;    ///< with ViewerOptions::out
+    ConnectionNumber saving_for = 0; ///< whose file is written, or was last
     std::thread reader;
 
     void start();
@@ -245,7 +246,8 @@ void Viewer::Data::save(ConnectionNumber from, const SaveRequest& request) {
         server->send_text(from, path ? text_of({{"say", "saved"}, {"name", name}, {"path", *path}})
                                      : error_text("save", path.error().message));
     });
-    if (!started) refuse(started.error().message);
+    if (!started) return refuse(started.error().message);
+    saving_for = from;
 }
 
 void Viewer::Data::answer(ConnectionNumber from, PageMessage message) {
@@ -293,6 +295,7 @@ void Viewer::Data::page_closed(ConnectionNumber which) {
     pages.erase(page);
     if (!was_admitted) return;
     worker->remove_page(which);
+    if (saver && saving_for == which) saver->stop();
     if (admitted() == 0) alone_since = now_seconds();
 }
 

@@ -2,11 +2,14 @@
 // The real server on loopback: pages that are right, pages that are wrong, and what is no page.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
 #include <isotet/make.hpp>
 
+#include "support/temporary_folder.hpp"
 #include "view/frame_reader.hpp"
 #include "view/page.hpp"
 #include "view/raw_page.hpp"
@@ -21,8 +24,7 @@ constexpr const char* right_token = "00112233445566778899aabbccddeeff";
 
 class RunningViewer {
 public:
-    explicit RunningViewer(double linger_seconds = 60) {
-        ViewerOptions options;
+    explicit RunningViewer(double linger_seconds = 60, ViewerOptions options = {}) {
         options.file = "grid.vtu";
         options.token = right_token;
         options.hosts = {"hub.example.org"};
@@ -119,7 +121,7 @@ TEST(Server, AnswersOnlyToNamesOfThisMachine) {
             answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").starts_with("HTTP/1.1 200"))
             << host;
     for (const char* host :
-         {"evil.example.org", "localhost.evil.org", "127.0.0.1.evil.org", "", "[::1", "evil:127.0.0.1"})
+         {"evil.example.org", "localhost.evil.org", "127.0.0.1.evil.org", "", "[::1", "evil:127.0.0.1", "localhost:80@evil.org"})
         EXPECT_TRUE(
             answer_to(viewer, "GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n").starts_with("HTTP/1.1 403"))
             << host;
@@ -282,6 +284,30 @@ TEST(Viewer, EndsSomeTimeAfterTheLastPageIsGone) {
         ASSERT_TRUE(message_with(page, "welcome"));
     }
     viewer.join(); // hangs, and is killed, where it does not
+}
+
+TEST(Viewer, WhatAPageSavesEndsWithThePage) {
+    const TemporaryFolder scripts, out;
+    ViewerOptions options;
+    options.out = out.file("");
+    options.program = scripts.write_script("isotet", "echo > '" + scripts.file("begun") + "'; exec sleep 1000");
+    const RunningViewer viewer(60, std::move(options));
+    const auto save = [](RawPage& page) {
+        return say_hello(page) && message_with(page, R"("say":"grid")") &&
+               page.send_text(R"({"do":"save","kind":"picture","name":"a.png","state":{"isovalues":[0.5]}})");
+    };
+    {
+        RawPage page(viewer.port());
+        ASSERT_TRUE(save(page));
+        while (!std::filesystem::exists(scripts.file("begun"))) std::this_thread::yield();
+    }
+    std::filesystem::remove(scripts.file("begun"));
+    while (!std::filesystem::exists(scripts.file("begun"))) { // until the next one may begin
+        RawPage page(viewer.port());
+        ASSERT_TRUE(save(page));
+        for (int i = 0; i < 50 && !std::filesystem::exists(scripts.file("begun")); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
 }
 
 TEST(Viewer, TheAddressHoldsATokenOfItsOwnEachTime) {
