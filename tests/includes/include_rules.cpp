@@ -33,6 +33,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"src/api/", {"api/", "reference/", "cpu/", "ops/", "core/"}},
         {"src/device/", {"device/", "api/", "vulkan/", "ops/", "core/"}},
         {"src/session/", {"session/", "core/", "linear/"}},
+        {"src/solid/", {"solid/", "session/", "core/"}},
         {"src/scene/", {"scene/", "core/"}},
         {"src/jobs/", {"jobs/", "core/"}},
         {"src/view/", {"view/"}},

@@ -1,0 +1,94 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// The part of a grid on one side of an isosurface, or between two of them, as a closed surface.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include <isotet/contour.hpp>
+#include <isotet/export.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
+#include <isotet/surface.hpp>
+
+namespace isotet {
+
+/// Where lower <= field < upper, in the unit of the field; at least one of them finite.
+struct SolidRange {
+    double lower = -std::numeric_limits<double>::infinity();
+    double upper = std::numeric_limits<double>::infinity();
+
+    static SolidRange above(double isovalue) { return {isovalue, std::numeric_limits<double>::infinity()}; }
+    static SolidRange below(double isovalue) { return {-std::numeric_limits<double>::infinity(), isovalue}; }
+};
+
+/// What a triangle of a solid is part of: values of its cell field "part".
+enum class SolidPart : std::uint8_t { isosurface = 0, boundary = 1 };
+
+/// A solid and what is told of it.
+///
+/// `surface`   triangles face outwards: those of the isosurfaces first, as extract() gives them, then the boundary. Its
+///             last cell field is "part", uint8, a SolidPart. Vertices: those of the isosurfaces, then points of the grid
+///             (both edge ends are the point), then vertices inside faces that are not flat (both are -1)
+struct Solid {
+    Surface surface;
+    std::uint64_t isosurface_triangles = 0;
+    double volume = 0; ///< enclosed, in double, by the positions of the surface
+    double isosurface_area = 0;
+    double boundary_area = 0;
+    std::uint64_t open_edges = 0; ///< edges at the boundary not used equally often in both directions; 0: closed
+    ContourResult contour;        ///< of the isosurfaces; its surfaces are empty
+};
+
+/// Makes solids of one grid and field, for one isovalue after another.
+///
+/// The isosurface is that of Contour. The boundary consists of the faces that cells with data do not share; polyhedra and
+/// curved cells are taken as linear cells, curved ones refined for all isovalues. Faces on the side of the solid stay
+/// whole, those that the isosurface crosses are cut where it crosses their edges, and share its vertices there. So both
+/// together are closed: also at ties, beside cells without data, and where cells do not fit together, whose faces are
+/// then boundary on both sides. A quadrilateral that is not flat gets a vertex inside each of its parts where it is
+/// cut, so placed that the solids above and below an isovalue have the volume of the grid together.
+///
+/// Threads   one call at a time
+class ISOTET_API Solids {
+public:
+    /// Finds the boundary, once for all isovalues.
+    ///
+    /// `options`   as of a session. Ties are merged; no frame, exact vertices or gradient normals. Vertex normals are of
+    ///             the isosurface and the boundary together
+    /// Cost        a session, two passes over the cells and 8 bytes a point
+    /// Errors      as Contour::create(), linearize(), refine() and boundary_of(); invalid_argument for other options
+    static Result<Solids> create(ContourInput input, const ContourOptions& options = {}, const Run& run = {});
+
+    Solids(Solids&&) noexcept;
+    Solids& operator=(Solids&&) noexcept;
+    ~Solids();
+
+    /// The solid of a range of values.
+    ///
+    /// Guarantees   the same bytes for any thread count and on every engine; closed where Solid::open_edges is 0: always,
+    ///              unless cells are repeated
+    /// Cost         as Contour::extract(), and O(n) in the faces of the boundary
+    /// Errors       invalid_argument when no end of the range is finite, or lower >= upper; as Contour::extract()
+    Result<Solid> extract(const SolidRange& range, const Run& run = {});
+
+    /// The range of the field, as Contour::field().
+    Result<FieldReport> field(const Run& run = {});
+
+    /// The method of the isosurfaces, as Contour::method().
+    Method method() const;
+
+    /// The linear cells that were made of the grid; null where all its cells are linear.
+    std::shared_ptr<const LinearGrid> linear_grid() const;
+
+    /// Volume of all cells with data: enclosed by their boundary.
+    double grid_volume() const;
+
+private:
+    struct Data;
+    explicit Solids(std::unique_ptr<Data> data);
+    std::unique_ptr<Data> data_;
+};
+
+} // namespace isotet

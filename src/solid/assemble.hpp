@@ -1,0 +1,31 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// One surface of isosurfaces and the boundary's part, with what each carries.
+#pragma once
+
+#include <span>
+
+#include <isotet/contour.hpp>
+#include <isotet/surface.hpp>
+
+#include "solid/cap.hpp"
+
+namespace isotet::solid {
+
+/// An isosurface of a solid.
+struct Shell {
+    Surface surface;       ///< with edge ends
+    bool mirrored = false; ///< its triangles face into the solid
+};
+
+/// The vertices of the shells, then those of the cap; the triangles likewise. Arrays that `options` do not ask for are
+/// left out.
+///
+/// `input`   linear cells: what new vertices and triangles carry
+Surface assemble(std::span<const Shell> shells, const Cap& cap, const ContourInput& input,
+                 const ContourOptions& options);
+
+/// The volume that a closed surface encloses, and the area of the triangles [first, last): summed in a fixed order.
+double enclosed_volume(const Surface& surface);
+double area_of(const Surface& surface, std::size_t first, std::size_t last);
+
+} // namespace isotet::solid

@@ -1,0 +1,326 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "solid/cap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <tbb/parallel_sort.h>
+
+#include "core/orientation.hpp"
+#include "core/parallel.hpp"
+#include "solid/face_part.hpp"
+#include "solid/warped_face.hpp"
+
+namespace isotet::solid {
+
+namespace {
+
+/// A corner of a triangle before points have got numbers: a vertex of an isosurface, a place among the points of the
+/// boundary, or an apex.
+using Corner = std::uint64_t;
+constexpr Corner point_bit = Corner{1} << 32, apex_bit = Corner{1} << 33;
+
+struct RawTriangle {
+    std::array<Corner, 3> corners;
+    std::uint64_t cell;
+};
+
+struct RawApex {
+    Place3 position{};
+    std::vector<Corner> around;
+};
+
+/// What some faces become; apexes are numbered from 0.
+struct RawCap {
+    std::vector<RawTriangle> triangles;
+    std::vector<RawApex> apexes;
+};
+
+template <class Real>
+class CapMaker {
+public:
+    CapMaker(const BoundaryFaces& boundary, const Array& points, const Array& values, const Cuts<Real>& cuts)
+        : boundary_(boundary),
+          points_(points),
+          cuts_(cuts),
+          stored_(boundary.points.size()),
+          rounding_(points.type() == ScalarType::float32 ? 0x1p-21 : 0x1p-50) {
+        values.visit([&](auto typed) {
+            core::parallel_each(stored_.size(), 1 << 14, [&](std::size_t place) {
+                stored_[place] =
+                    core::store_value<Real>(static_cast<double>(typed[boundary.points[place]]), cuts.storage);
+            });
+        });
+    }
+
+    void add_face(const BoundaryFace& face, RawCap& out) const {
+        std::array<Side, 4> all_sides;
+        for (std::size_t k = 0; k < face.count; ++k) all_sides[k] = side_of(face.places[k]);
+        const auto sides = std::span<const Side>(all_sides).first(face.count);
+        const bool is_cut = std::ranges::any_of(sides, [&](Side side) { return side != sides[0]; });
+        if (is_cut && is_warped(face)) return add_warped(face, sides, out);
+        for_parts(sides, [&](std::span<const PartVertex> part) {
+            std::array<Corner, 16> polygon;
+            const std::size_t count = corners_of(face, part, polygon);
+            // Any fan of a flat part will do; that of a whole face starts in its lowest point, as when cells are split.
+            add_fan(std::span(polygon).first(count), is_cut ? 0 : lowest_corner(face), face.cell, out.triangles);
+        });
+    }
+
+private:
+    Side side_of(std::uint32_t place) const {
+        const Real value = stored_[place];
+        if (cuts_.upper && value >= cuts_.upper->isovalue.value) return Side::above;
+        return cuts_.lower && value < cuts_.lower->isovalue.value ? Side::below : Side::inside;
+    }
+
+    const Cut<Real>& cut_of(const PartVertex& vertex) const { return vertex.of_upper ? *cuts_.upper : *cuts_.lower; }
+
+    /// The corners of a part, those that follow each other and are equal once. Returns how many.
+    std::size_t corners_of(const BoundaryFace& face, std::span<const PartVertex> part,
+                           std::array<Corner, 16>& polygon) const {
+        std::size_t count = 0;
+        for (const PartVertex& vertex : part) {
+            const Corner corner = corner_of(face, vertex);
+            if (count == 0 || polygon[count - 1] != corner) polygon[count++] = corner;
+        }
+        while (count > 1 && polygon[0] == polygon[count - 1]) --count;
+        return count;
+    }
+
+    Corner corner_of(const BoundaryFace& face, const PartVertex& vertex) const {
+        const std::uint32_t above = face.places[vertex.above];
+        if (vertex.is_corner()) return corner_at(above);
+        const Cut<Real>& cut = cut_of(vertex);
+        if (stored_[above] == cut.isovalue.tied) return corner_at(above);
+        const std::uint32_t found = vertex_on_edge(cut, face.places[vertex.below], above);
+        // Every edge that an isovalue crosses has a vertex; a point in its place keeps the solid whole should one lack.
+        return found == Rim::no_vertex ? above | point_bit : found + cut.first_vertex;
+    }
+
+    std::uint32_t vertex_on_edge(const Cut<Real>& cut, std::uint32_t below, std::uint32_t above) const {
+        return cut.rim.find(boundary_.points[below], boundary_.points[above]);
+    }
+
+    /// A point of the grid: the isosurface's vertex where it is tied.
+    Corner corner_at(std::uint32_t place) const {
+        const std::uint64_t point = boundary_.points[place];
+        for (const std::optional<Cut<Real>>* cut : {&cuts_.lower, &cuts_.upper}) {
+            if (!*cut || stored_[place] != (*cut)->isovalue.tied) continue;
+            if (const std::uint32_t found = (*cut)->rim.find(point, point); found != Rim::no_vertex)
+                return found + (*cut)->first_vertex;
+        }
+        return place | point_bit;
+    }
+
+    static std::size_t lowest_corner(const BoundaryFace& face) {
+        return static_cast<std::size_t>(std::ranges::min_element(face.all()) - face.all().begin());
+    }
+
+    static void add_fan(std::span<const Corner> polygon, std::size_t start, std::uint64_t cell,
+                        std::vector<RawTriangle>& out) {
+        if (polygon.size() < 3) return;
+        const auto n = polygon.size();
+        for (std::size_t k = 1; k + 1 < n; ++k)
+            out.push_back({{polygon[start], polygon[(start + k) % n], polygon[(start + k + 1) % n]}, cell});
+    }
+
+    Place3 place_of_point(std::uint32_t place) const { return points_[boundary_.points[place]]; }
+
+    Place3 place_of(const BoundaryFace& face, const PartVertex& vertex, const Cut<Real>* cut) const {
+        const std::uint32_t above = face.places[vertex.above];
+        if (vertex.is_corner() || stored_[above] == cut->isovalue.tied) return place_of_point(above);
+        const std::uint32_t found = vertex_on_edge(*cut, face.places[vertex.below], above);
+        if (found == Rim::no_vertex) return place_of_point(above);
+        Place3 out;
+        for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = cut->positions.at(found, axis);
+        return out;
+    }
+
+    /// By more than the rounding of coordinates.
+    bool is_warped(const BoundaryFace& face) const {
+        if (face.count < 4) return false;
+        std::array<Place3, 4> p;
+        double largest = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            p[k] = place_of_point(face.places[k]);
+            for (const double x : p[k]) largest = std::max(largest, std::abs(x));
+        }
+        const Polygon polygon = polygon_of(p);
+        const double area = std::hypot(polygon.area[0], polygon.area[1], polygon.area[2]);
+        return std::abs(core::six_volumes(p[0], p[1], p[2], p[3])) > rounding_ * largest * area;
+    }
+
+    /// The parts of a face on a side of some corners, as polygons from `origin`.
+    std::vector<Polygon> polygons_of(const BoundaryFace& face, std::span<const Side> sides, const Place3& origin,
+                                     const Cut<Real>* one_cut) const {
+        std::vector<Polygon> out;
+        for_parts(sides, [&](std::span<const PartVertex> part) {
+            std::array<Place3, 16> corners;
+            for (std::size_t k = 0; k < part.size(); ++k) {
+                const Cut<Real>* cut = one_cut || part[k].is_corner() ? one_cut : &cut_of(part[k]);
+                corners[k] = place_of(face, part[k], cut);
+                for (std::size_t axis = 0; axis < 3; ++axis) corners[k][axis] -= origin[axis];
+            }
+            out.push_back(polygon_of(std::span(corners).first(part.size())));
+        });
+        return out;
+    }
+
+    /// What is cut off a face at one isovalue: of a whole volume the share below, or at and above it.
+    double volume_cut_off(const BoundaryFace& face, const Place3& origin, const Cut<Real>& cut, Side side,
+                          double whole) const {
+        std::array<Side, 4> low, high;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const bool is_above = stored_[face.places[k]] >= cut.isovalue.value;
+            low[k] = is_above ? Side::above : Side::inside;
+            high[k] = is_above ? Side::inside : Side::below;
+        }
+        std::vector<Polygon> parts = polygons_of(face, low, origin, &cut);
+        const std::size_t low_parts = parts.size();
+        for (const Polygon& part : polygons_of(face, high, origin, &cut)) parts.push_back(part);
+        std::vector<double> volumes(parts.size());
+        share_difference(whole, parts, volumes);
+        double sum = 0;
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            if ((i < low_parts) == (side == Side::below)) sum += volumes[i];
+        return sum;
+    }
+
+    void add_warped(const BoundaryFace& face, std::span<const Side> sides, RawCap& out) const {
+        const Place3 origin = place_of_point(face.places[0]);
+        double whole = 0;
+        const std::size_t start = lowest_corner(face);
+        for (const std::size_t k : {1, 2}) {
+            std::array<Place3, 3> triangle{place_of_point(face.places[start]),
+                                           place_of_point(face.places[(start + k) % 4]),
+                                           place_of_point(face.places[(start + k + 1) % 4])};
+            for (Place3& corner : triangle)
+                for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] -= origin[axis];
+            whole += polygon_of(triangle).volume;
+        }
+        double left = whole;
+        if (cuts_.lower) left -= volume_cut_off(face, origin, *cuts_.lower, Side::below, whole);
+        if (cuts_.upper) left -= volume_cut_off(face, origin, *cuts_.upper, Side::above, whole);
+        const std::vector<Polygon> parts = polygons_of(face, sides, origin, nullptr);
+        std::vector<double> volumes(parts.size());
+        share_difference(left, parts, volumes);
+        std::size_t next = 0;
+        for_parts(sides, [&](std::span<const PartVertex> part) {
+            std::array<Corner, 16> polygon;
+            const std::size_t count = corners_of(face, part, polygon);
+            Place3 apex = apex_of(parts[next], volumes[next]);
+            ++next;
+            if (count < 3) return;
+            for (std::size_t axis = 0; axis < 3; ++axis) apex[axis] += origin[axis];
+            const Corner number = out.apexes.size() | apex_bit;
+            for (std::size_t k = 0; k < count; ++k)
+                out.triangles.push_back({{polygon[k], polygon[(k + 1) % count], number}, face.cell});
+            out.apexes.push_back({apex, {polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(count)}});
+        });
+    }
+
+    const BoundaryFaces& boundary_;
+    core::PointReader points_;
+    const Cuts<Real>& cuts_;
+    std::vector<Real> stored_; ///< by place
+    double rounding_;          ///< of coordinates
+};
+
+/// By ranges of faces, in their order whatever the threads do.
+template <class Real>
+RawCap raw_cap(const BoundaryFaces& boundary, const CapMaker<Real>& maker) {
+    constexpr std::size_t faces_at_once = 1 << 12;
+    const std::size_t ranges = (boundary.faces.size() + faces_at_once - 1) / faces_at_once;
+    std::vector<RawCap> found(ranges);
+    core::parallel_each(ranges, 1, [&](std::size_t range) {
+        const std::size_t end = std::min(boundary.faces.size(), (range + 1) * faces_at_once);
+        for (std::size_t i = range * faces_at_once; i < end; ++i) maker.add_face(boundary.faces[i], found[range]);
+    });
+    RawCap all;
+    for (RawCap& some : found) {
+        const Corner before = all.apexes.size();
+        for (RawTriangle triangle : some.triangles) {
+            for (Corner& corner : triangle.corners)
+                if (corner & apex_bit) corner += before;
+            all.triangles.push_back(triangle);
+        }
+        std::ranges::move(some.apexes, std::back_inserter(all.apexes));
+    }
+    return all;
+}
+
+struct DirectedEdge {
+    std::uint32_t low, high;
+    std::int32_t uses; ///< +1 from low to high
+
+    friend bool operator<(const DirectedEdge& a, const DirectedEdge& b) {
+        return a.low != b.low ? a.low < b.low : a.high < b.high;
+    }
+};
+
+} // namespace
+
+template <class Real>
+Cap make_cap(const BoundaryFaces& boundary, const Array& points, const Array& values, const Cuts<Real>& cuts) {
+    RawCap raw = raw_cap(boundary, CapMaker<Real>(boundary, points, values, cuts));
+    std::vector<std::uint32_t> numbers(boundary.points.size(), Rim::no_vertex);
+    for (const RawTriangle& triangle : raw.triangles)
+        for (const Corner corner : triangle.corners)
+            if (corner & point_bit) numbers[static_cast<std::uint32_t>(corner)] = 0;
+    Cap cap;
+    for (std::size_t place = 0; place < numbers.size(); ++place) {
+        if (numbers[place] == Rim::no_vertex) continue;
+        numbers[place] = cuts.vertices + static_cast<std::uint32_t>(cap.points.size());
+        cap.points.push_back(boundary.points[place]);
+    }
+    const std::uint32_t first_apex = cuts.vertices + static_cast<std::uint32_t>(cap.points.size());
+    const auto vertex_of = [&](Corner corner) {
+        const auto number = static_cast<std::uint32_t>(corner);
+        return corner & apex_bit ? first_apex + number : corner & point_bit ? numbers[number] : number;
+    };
+    cap.triangles.resize(raw.triangles.size());
+    cap.cells.resize(raw.triangles.size());
+    core::parallel_each(raw.triangles.size(), 1 << 14, [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) cap.triangles[i][k] = vertex_of(raw.triangles[i].corners[k]);
+        cap.cells[i] = raw.triangles[i].cell;
+    });
+    cap.apexes.resize(raw.apexes.size());
+    core::parallel_each(raw.apexes.size(), 1 << 12, [&](std::size_t i) {
+        cap.apexes[i].position = raw.apexes[i].position;
+        for (const Corner corner : raw.apexes[i].around) cap.apexes[i].around.push_back(vertex_of(corner));
+    });
+    return cap;
+}
+
+template Cap make_cap<float>(const BoundaryFaces&, const Array&, const Array&, const Cuts<float>&);
+template Cap make_cap<double>(const BoundaryFaces&, const Array&, const Array&, const Cuts<double>&);
+
+std::uint64_t count_open_edges(const Cap& cap, std::span<const std::uint32_t> isosurfaces, std::uint32_t vertices) {
+    std::vector<std::uint8_t> in_cap(vertices);
+    for (const auto& triangle : cap.triangles)
+        for (const std::uint32_t vertex : triangle) in_cap[vertex] = 1;
+    std::vector<DirectedEdge> edges;
+    const auto add = [&](std::uint32_t from, std::uint32_t to) {
+        edges.push_back(from < to ? DirectedEdge{from, to, 1} : DirectedEdge{to, from, -1});
+    };
+    for (const auto& triangle : cap.triangles)
+        for (std::size_t k = 0; k < 3; ++k) add(triangle[k], triangle[(k + 1) % 3]);
+    for (std::size_t i = 0; i < isosurfaces.size(); i += 3)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t from = isosurfaces[i + k], to = isosurfaces[i + (k + 1) % 3];
+            if (in_cap[from] && in_cap[to]) add(from, to);
+        }
+    tbb::parallel_sort(edges.begin(), edges.end());
+    std::uint64_t open = 0;
+    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+        std::int32_t uses = 0;
+        for (end = begin; end < edges.size() && !(edges[begin] < edges[end]); ++end) uses += edges[end].uses;
+        open += uses != 0;
+    }
+    return open;
+}
+
+} // namespace isotet::solid

@@ -1,0 +1,213 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/solid.hpp>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <isotet/linear_cells.hpp>
+#include <isotet/refine.hpp>
+
+#include "core/carry_out.hpp"
+#include "core/errors.hpp"
+#include "core/guard.hpp"
+#include "session/curved_input.hpp"
+#include "session/linear_input.hpp"
+#include "solid/assemble.hpp"
+#include "solid/boundary_faces.hpp"
+#include "solid/cap.hpp"
+#include "solid/rim.hpp"
+
+namespace isotet {
+
+struct Solids::Data {
+    ContourInput input;     ///< with linear cells
+    ContourOptions options; ///< as the user gave them
+    std::shared_ptr<const LinearGrid> linear;
+    std::optional<Contour> contour; ///< of the linear cells, with edge ends
+    solid::BoundaryFaces boundary;
+    solid::BoundaryPoints points;
+    double grid_volume = 0;
+    std::vector<std::string> notes; ///< of making cells linear, told once
+};
+
+namespace {
+
+Result<void> check_options(const ContourInput& input, const ContourOptions& options) {
+    if (options.frame) return invalid_argument("solids are made of whole grids, but the grid is a piece with a frame");
+    if (options.exact_vertices)
+        return invalid_argument("solids have vertices on the edges of linear cells: not exact ones");
+    if (options.ties == Ties::keep) return invalid_argument("solids merge ties, but `ties` keeps them");
+    if (options.normals == Normals::gradient)
+        return invalid_argument("solids have normals of faces or vertices, but those of the gradient were asked for");
+    if (options.split_cells && !input.grid.point_numbers.empty())
+        return invalid_argument("solids of split cells need a grid without point numbers");
+    return {};
+}
+
+/// The cells that are not linear made so, curved ones for all isovalues.
+Result<std::shared_ptr<const LinearGrid>> linear_of(const ContourInput& input, const ContourOptions& options,
+                                                    const Run& run) {
+    if (!has_cells_to_linearize(input.grid.cells)) return std::shared_ptr<const LinearGrid>();
+    Result<LinearGrid> made = LinearGrid{};
+    if (options.refine && has_curved_cells(input.grid.cells)) {
+        RefineOptions all = *options.refine;
+        all.isovalues = {};
+        made = refine(input.grid, input.field, all, run);
+    } else {
+        made = linearize(input.grid, {}, run);
+    }
+    if (!made) return made.error();
+    return std::make_shared<const LinearGrid>(*std::move(made));
+}
+
+Result<void> check_range(const SolidRange& range) {
+    if (std::isnan(range.lower) || std::isnan(range.upper) || !(range.lower < range.upper))
+        return invalid_argument(
+            fmt::format("the range of the solid is {} to {}, but must ascend", range.lower, range.upper));
+    if (!std::isfinite(range.lower) && !std::isfinite(range.upper))
+        return invalid_argument("the range of the solid has no finite end");
+    return {};
+}
+
+template <class Real>
+solid::Cap cap_of(const solid::BoundaryFaces& boundary, const solid::BoundaryPoints& points, const ContourInput& input,
+                  const FieldReport& field, const SolidRange& range, std::span<const solid::Shell> shells) {
+    solid::Cuts<Real> cuts;
+    cuts.storage = {field.offset, field.scale, field.unchanged};
+    for (const solid::Shell& shell : shells) {
+        std::optional<solid::Cut<Real>>& cut = shell.mirrored ? cuts.lower : cuts.upper;
+        const double isovalue = shell.mirrored ? range.lower : range.upper;
+        cut = solid::Cut<Real>{core::store_isovalue<Real>(isovalue, cuts.storage), solid::Rim(shell.surface, points),
+                               shell.surface.positions, cuts.vertices};
+        cuts.vertices += static_cast<std::uint32_t>(shell.surface.vertex_count());
+    }
+    return solid::make_cap<Real>(boundary, input.grid.points, input.field.values, cuts);
+}
+
+Result<void> add_normals(Normals kind, Surface& surface, const Run& run) {
+    if (kind == Normals::none) return {};
+    Result<Array> made = kind == Normals::face ? face_normals(surface, run) : vertex_normals(surface, run);
+    if (!made) return made.error();
+    surface.normals = *std::move(made);
+    surface.normals_kind = kind;
+    return {};
+}
+
+} // namespace
+
+Solids::Solids(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Solids::Solids(Solids&&) noexcept = default;
+Solids& Solids::operator=(Solids&&) noexcept = default;
+Solids::~Solids() = default;
+
+Result<Solids> Solids::create(ContourInput given, const ContourOptions& options, const Run& run) {
+    return core::carry_out("starting to make solids", run, [&](const Progress& progress) -> Result<Solids> {
+        const Run inside{core::threads_here(), progress};
+        if (given.all_cells) {
+            Result<ContourInput> all = given.all_cells(inside);
+            if (!all) return all.error();
+            given = *std::move(all);
+        }
+        if (auto ok = check_options(given, options); !ok) return ok.error();
+        auto data = std::make_unique<Data>();
+        auto linear = linear_of(given, options, inside);
+        if (!linear) return linear.error();
+        data->linear = *std::move(linear);
+        data->input = std::move(given);
+        if (data->linear) {
+            Result<ContourInput> made = session::on_linear_grid(std::move(data->input), *data->linear, inside);
+            if (!made) return made.error();
+            data->input = *std::move(made);
+            data->notes = data->linear->report.notes();
+            std::ranges::move(session::notes_on(data->linear->refinement), std::back_inserter(data->notes));
+        }
+        data->options = options;
+        ContourOptions linear_options = options;
+        linear_options.edge_ends = true;
+        linear_options.normals = Normals::none;
+        linear_options.refine = {};
+        linear_options.expected_isovalues = {};
+        Result<Contour> contour = Contour::create(data->input, linear_options);
+        if (!contour) return contour.error();
+        data->contour = *std::move(contour);
+        auto boundary = solid::find_boundary_faces(
+            data->input.grid, data->input.field.values,
+            options.split_cells ? solid::CellMode::split : solid::CellMode::native, progress);
+        if (!boundary) return boundary.error();
+        data->boundary = *std::move(boundary);
+        data->points = solid::BoundaryPoints(data->boundary, data->input.grid.points.tuples());
+        ContourInput bare = data->input;
+        bare.point_fields = {};
+        bare.cell_fields = {};
+        const solid::Cap all = solid::make_cap<double>(data->boundary, bare.grid.points, bare.field.values, {});
+        data->grid_volume = solid::enclosed_volume(solid::assemble({}, all, bare, {.precision = Precision::float64}));
+        return Solids(std::move(data));
+    });
+}
+
+Result<Solid> Solids::extract(const SolidRange& range, const Run& run) {
+    if (!data_) return moved_from("the maker of solids");
+    return core::carry_out("making a solid", run, [&](const Progress& progress) -> Result<Solid> {
+        Data& data = *data_;
+        if (auto ok = check_range(range); !ok) return ok.error();
+        std::vector<double> isovalues;
+        for (const double end : {range.lower, range.upper})
+            if (std::isfinite(end)) isovalues.push_back(end);
+        Solid out;
+        const Run inside{core::threads_here(), progress};
+        Result<ContourResult> result = data.contour->extract(isovalues, inside);
+        if (!result) return result.error();
+        out.contour = *std::move(result);
+        std::vector<solid::Shell> shells;
+        std::uint64_t vertices = data.boundary.points.size() + 2 * data.boundary.faces.size(); // with apexes
+        for (std::size_t i = 0; i < isovalues.size(); ++i) {
+            const bool is_lower = i == 0 && std::isfinite(range.lower);
+            shells.push_back({std::exchange(out.contour.surfaces[i].surface, {}), is_lower});
+            vertices += shells.back().surface.vertex_count();
+        }
+        if (vertices > std::numeric_limits<std::uint32_t>::max())
+            return invalid_data(
+                fmt::format("the solid has up to {} vertices, but must have fewer than 2^32", vertices));
+        const solid::Cap cap =
+            data.options.precision == Precision::float32
+                ? cap_of<float>(data.boundary, data.points, data.input, out.contour.field, range, shells)
+                : cap_of<double>(data.boundary, data.points, data.input, out.contour.field, range, shells);
+        out.surface = solid::assemble(shells, cap, data.input, data.options);
+        if (auto made = add_normals(data.options.normals, out.surface, inside); !made) return made.error();
+        out.isosurface_triangles = out.surface.triangle_count() - cap.triangles.size();
+        const auto triangles = out.surface.triangles.as<std::uint32_t>();
+        out.open_edges = solid::count_open_edges(cap, triangles.first(3 * out.isosurface_triangles),
+                                                 static_cast<std::uint32_t>(out.surface.vertex_count()));
+        out.volume = solid::enclosed_volume(out.surface);
+        out.isosurface_area = solid::area_of(out.surface, 0, out.isosurface_triangles);
+        out.boundary_area = solid::area_of(out.surface, out.isosurface_triangles, out.surface.triangle_count());
+        if (data.linear) {
+            std::vector<Extraction> mapped(1);
+            mapped[0].surface.source_cells = out.surface.source_cells;
+            session::map_source_cells(*data.linear, mapped);
+            out.surface.source_cells = mapped[0].surface.source_cells;
+            out.contour.refinement = data.linear->refinement;
+            out.contour.cells_left_out += data.linear->refinement.left_out;
+        }
+        out.contour.notes.insert(out.contour.notes.begin(), data.notes.begin(), data.notes.end());
+        data.notes.clear();
+        return out;
+    });
+}
+
+Result<FieldReport> Solids::field(const Run& run) {
+    if (!data_) return moved_from("the maker of solids");
+    return data_->contour->field(run);
+}
+
+Method Solids::method() const { return data_ ? data_->contour->method() : Method::direct; }
+
+std::shared_ptr<const LinearGrid> Solids::linear_grid() const { return data_ ? data_->linear : nullptr; }
+double Solids::grid_volume() const { return data_ ? data_->grid_volume : 0; }
+
+} // namespace isotet

@@ -1,0 +1,50 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "solid/warped_face.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace isotet::solid {
+
+namespace {
+
+double scalar_product(const Place3& a, const Place3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+} // namespace
+
+Polygon polygon_of(std::span<const Place3> corners) {
+    Polygon out;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Place3 &a = corners[k], &b = corners[(k + 1) % corners.size()];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
+            out.mean[axis] += a[axis] / static_cast<double>(corners.size());
+            out.area[axis] += (a[next] * b[last] - a[last] * b[next]) / 2;
+        }
+    }
+    out.volume = scalar_product(out.area, out.mean) / 3;
+    return out;
+}
+
+Place3 apex_of(const Polygon& polygon, double volume) {
+    const double square = scalar_product(polygon.area, polygon.area);
+    if (square == 0) return polygon.mean;
+    const double along = 3 * (volume - polygon.volume) / square;
+    Place3 out = polygon.mean;
+    for (std::size_t axis = 0; axis < 3; ++axis) out[axis] += along * polygon.area[axis];
+    return out;
+}
+
+void share_difference(double whole, std::span<const Polygon> parts, std::span<double> volumes) {
+    double sum = 0, areas = 0;
+    for (const Polygon& part : parts) {
+        sum += part.volume;
+        areas += std::sqrt(scalar_product(part.area, part.area));
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double share = areas > 0 ? std::sqrt(scalar_product(parts[i].area, parts[i].area)) / areas : 0;
+        volumes[i] = parts[i].volume + (whole - sum) * share;
+    }
+}
+
+} // namespace isotet::solid

@@ -1,0 +1,35 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Quadrilaterals of the boundary that are not flat: where an isovalue cuts one, the triangles of its parts are others
+// than
+// those of the whole face, and the volumes of the solids on both sides would not add up to the grid's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace isotet::solid {
+
+using Place3 = std::array<double, 3>;
+
+/// A polygon in space.
+struct Polygon {
+    Place3 mean{};
+    Place3 area{};     ///< vector, by the right-hand rule
+    double volume = 0; ///< between the origin and triangles from the mean to the sides
+};
+
+/// `corners`   at least three
+Polygon polygon_of(std::span<const Place3> corners);
+
+/// From the mean so far along the area that triangles to this point, in place of the mean, enclose `volume`.
+Place3 apex_of(const Polygon& polygon, double volume);
+
+/// What the parts of a face on each side enclose, made so that they add up to the whole.
+///
+/// `whole`   what the triangles of the whole face enclose
+/// The difference is shared by the areas.
+void share_difference(double whole, std::span<const Polygon> parts, std::span<double> volumes);
+
+} // namespace isotet::solid

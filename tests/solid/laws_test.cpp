@@ -1,0 +1,191 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Solids of random grids: every edge is used equally often in both directions, and what lies above and below an isovalue
+// makes up the grid.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <isotet/check.hpp>
+#include <isotet/contour_spectrum.hpp>
+#include <isotet/solid.hpp>
+
+#include "support/mixed_grid.hpp"
+#include "support/random_grid.hpp"
+#include "support/seeds.hpp"
+#include "support/surface_bytes.hpp"
+
+namespace isotet::test {
+namespace {
+
+/// Edges that are not used equally often in both directions, counted in the plainest way.
+std::size_t unbalanced_edges(const Surface& surface) {
+    std::map<std::pair<std::uint64_t, std::uint64_t>, int> uses;
+    const auto triangles = surface.triangles.as<std::uint32_t>();
+    for (std::size_t i = 0; i < triangles.size(); i += 3)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint64_t a = triangles[i + k], b = triangles[i + (k + 1) % 3];
+            if (a < b) ++uses[{a, b}];
+            else --uses[{b, a}];
+        }
+    std::size_t count = 0;
+    for (const auto& [edge, sum] : uses) count += sum != 0;
+    return count;
+}
+
+Solids solids_of(const NastyGrid& g, const ContourOptions& options) {
+    ContourInput input{g.grid, g.field, {{"value", g.field.values}}, {}};
+    Result<Solids> solids = Solids::create(std::move(input), options);
+    EXPECT_TRUE(static_cast<bool>(solids)) << (solids ? "" : solids.error().message);
+    return *std::move(solids);
+}
+
+struct Tolerance {
+    double volume; ///< of the grid's
+};
+
+void expect_whole(const NastyGrid& g, const ContourOptions& options, const std::vector<double>& isovalues,
+                  const Tolerance& tolerance) {
+    Solids solids = solids_of(g, options);
+    const double near = tolerance.volume * std::abs(solids.grid_volume());
+    double before = 0;
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "isovalue " << isovalues[i]);
+        const Solid above = solids.extract(SolidRange::above(isovalues[i])).value();
+        const Solid below = solids.extract(SolidRange::below(isovalues[i])).value();
+        for (const Solid* solid : {&above, &below}) {
+            ASSERT_EQ(solid->open_edges, 0u);
+            ASSERT_EQ(unbalanced_edges(solid->surface), 0u);
+        }
+        ASSERT_EQ(above.isosurface_triangles, below.isosurface_triangles);
+        ASSERT_NEAR(above.volume + below.volume, solids.grid_volume(), near);
+        if (i > 0) {
+            const Solid between = solids.extract({isovalues[i - 1], isovalues[i]}).value();
+            ASSERT_EQ(between.open_edges, 0u);
+            ASSERT_EQ(unbalanced_edges(between.surface), 0u);
+            ASSERT_NEAR(between.volume, below.volume - before, near);
+        }
+        before = below.volume;
+    }
+}
+
+constexpr Tolerance of_floats{2e-6}, of_doubles{1e-12};
+
+TEST(Solid, OfTetsIsClosedAndWhole) {
+    for (const std::uint32_t seed : Seeds(1, 8)) {
+        const NastyGrid smooth = nasty_grid(seed, {.side = 6, .values = 0, .missing = 0.1});
+        expect_whole(smooth, {}, {-0.7, -0.1, 0.4}, of_floats);
+        expect_whole(smooth, {.precision = Precision::float64}, {-0.7, -0.1, 0.4}, of_doubles);
+    }
+}
+
+TEST(Solid, OfTetsFullOfTiesIsClosedAndWhole) {
+    for (const std::uint32_t seed : Seeds(100, 12))
+        expect_whole(
+            nasty_grid(seed, {.side = 4, .values = 2 + int(seed) % 4, .no_data = 0.02 * (seed % 3), .missing = 0.1}),
+            {.precision = Precision::float64}, {-1, -0.5, 0, 1}, of_doubles);
+}
+
+TEST(Solid, OfTangledTetsIsClosed) {
+    for (const std::uint32_t seed : Seeds(200, 8))
+        expect_whole(nasty_grid(seed, {.side = 5, .values = 4, .inverted = 0.1, .mirrored = 0.3, .wide = true}),
+                     {.precision = Precision::float64}, {-0.5, 0, 0.5}, of_doubles);
+}
+
+TEST(Solid, OfAllKindsOfCellsIsClosedAndWhole) {
+    for (const char* shape : {"hex", "wedge", "pyramid", "mixed"})
+        for (const std::uint32_t seed : Seeds(300, 4))
+            for (const bool split : {false, true}) {
+                SCOPED_TRACE(testing::Message() << shape << (split ? ", split" : ""));
+                ContourOptions options{.precision = Precision::float64};
+                options.split_cells = split;
+                expect_whole(mixed_grid(seed, {.shape = shape,
+                                               .side = 4,
+                                               .values = 4,
+                                               .no_data = 0.01 * (seed % 2),
+                                               .missing = 0.1,
+                                               .mirrored = 0.2,
+                                               .wide = true}),
+                             options, {0, 0.5, 1, 2}, of_doubles);
+            }
+}
+
+TEST(Solid, OfCellsWithWarpedFacesIsClosedAndWhole) {
+    for (const char* shape : {"hex", "wedge", "pyramid", "mixed"})
+        for (const std::uint32_t seed : Seeds(350, 4))
+            expect_whole(mixed_grid(seed, {.shape = shape,
+                                           .side = 4,
+                                           .values = seed % 2 ? 4 : 0,
+                                           .missing = 0.1,
+                                           .moved = 0.2,
+                                           .wide = true}),
+                         {.precision = Precision::float64}, {-0.3, 0, 0.5, 1}, of_doubles);
+}
+
+TEST(Solid, OfCollapsedCellsIsClosed) {
+    for (const std::uint32_t seed : Seeds(400, 8)) {
+        Solids solids =
+            solids_of(mixed_grid(seed, {.side = 4, .values = 3, .moved = 0.2, .collapsed = 0.1}), {.surfaces = 1});
+        for (const double isovalue : {0.5, 1.0}) {
+            const Solid solid = solids.extract(SolidRange::above(isovalue)).value();
+            ASSERT_EQ(solid.open_edges, 0u);
+            ASSERT_EQ(unbalanced_edges(solid.surface), 0u);
+        }
+    }
+}
+
+TEST(Solid, EnclosesTheVolumeOfTheSpectrum) {
+    for (const std::uint32_t seed : Seeds(500, 4)) {
+        const NastyGrid g = nasty_grid(seed, {.side = 6, .values = 0});
+        Solids solids = solids_of(g, {.precision = Precision::float64});
+        const std::vector<double> isovalues{-0.8, -0.2, 0.1, 0.6};
+        const ContourSpectrum spectrum = contour_spectrum(g.grid, g.field, isovalues).value();
+        for (std::size_t i = 0; i < isovalues.size(); ++i) {
+            const Solid below = solids.extract(SolidRange::below(isovalues[i])).value();
+            EXPECT_NEAR(below.volume, spectrum.volume_below[i], 1e-6 * solids.grid_volume());
+        }
+    }
+}
+
+TEST(Solid, IsTheSameFromBothMethodsAndAnyThreads) {
+    for (const std::uint32_t seed : Seeds(600, 3)) {
+        const NastyGrid g = mixed_grid(seed, {.side = 6, .values = 5});
+        std::vector<std::string> bytes;
+        for (const int threads : {1, 2, 7}) {
+            ContourInput input{g.grid, g.field, {}, {}};
+            Solids solids = Solids::create(input, {.surfaces = 1}, {.threads = threads}).value();
+            bytes.push_back(bytes_of(solids.extract({1, 3}, {.threads = threads}).value().surface));
+        }
+        EXPECT_TRUE(bytes[0] == bytes[1] && bytes[1] == bytes[2]);
+        Solids direct = solids_of(g, {.method = Method::direct}), packed = solids_of(g, {.method = Method::clusters});
+        const Solid a = direct.extract(SolidRange::above(1.5)).value(),
+                    b = packed.extract(SolidRange::above(1.5)).value();
+        EXPECT_EQ(a.surface.vertex_count(), b.surface.vertex_count());
+        EXPECT_EQ(a.surface.triangle_count(), b.surface.triangle_count());
+        EXPECT_NEAR(a.volume, b.volume, 1e-9);
+    }
+}
+
+TEST(Solid, OfASphereIsItsBallOrTheRestOfTheBox) {
+    MakeOptions make;
+    make.shape = "hex";
+    make.side = 24;
+    make.fields = {"sphere"};
+    const Grid grid = make_grid(make).value();
+    ContourInput input{grid, find_field(grid, "sphere").value(), {}, {}};
+    Solids solids = Solids::create(std::move(input)).value();
+    const Solid inside = solids.extract(SolidRange::below(0.35)).value();
+    const Solid outside = solids.extract(SolidRange::above(0.35)).value();
+    EXPECT_EQ(inside.isosurface_triangles, inside.surface.triangle_count());
+    EXPECT_GT(outside.surface.triangle_count(), outside.isosurface_triangles);
+    const SurfaceReport report = check(outside.surface).value();
+    EXPECT_TRUE(report.sound);
+    EXPECT_EQ(report.boundary_edges, 0u);
+    EXPECT_GT(report.volume, 0);
+}
+
+} // namespace
+} // namespace isotet::test
