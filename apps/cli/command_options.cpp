@@ -59,6 +59,10 @@ the same vertices and triangles in a different order. auto chooses by a fixed ru
 (isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the
 same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a note.
 
+A solid (--solid) is closed: its boundary has the vertices of the isosurface. Triangles face outwards; those of the
+isosurface come first. The report tells its volume, and that of the grid. Polyhedra and curved cells are taken as the
+linear cells that are made of them. --solid A:B has no other isovalues.
+
 Pieces (--piece) have equally many cells, in the order of the file. They are stored as the whole grid is, and edge ends
 and source cells have the numbers of the whole; so surfaces of pieces fit bit for bit. Normals of vertices at the rim
 of a piece do not: they are those of its own cells.
@@ -69,6 +73,7 @@ Examples:
   isotet extract run.pvd 'front-{step}.vtp' -f c -i 0.5 --all-steps
   isotet extract grid.vtu surface.vtp -f pressure -i @isovalues.txt --with pressure,velocity
   isotet extract make:kuhn:64:gyroid -i 0
+  isotet extract grid.vtu part.stl -f density -i 0.5 --solid above
   isotet extract grid.vtu surface.vtp -f pressure -i 0.5 --engine vulkan
   isotet extract grid.vtu part-2.vtp -f pressure -i 0.5 --piece 2/8
 )";
@@ -242,6 +247,21 @@ PieceOf parse_piece(const std::string& text) {
     return out;
 }
 
+/// "above", "below", "0.1:0.5".
+SolidChoice parse_solid(const std::string& text) {
+    if (text == "above") return {SolidChoice::Kind::above, {}};
+    if (text == "below") return {SolidChoice::Kind::below, {}};
+    SolidChoice out{SolidChoice::Kind::between, {}};
+    const char* const end = text.data() + text.size();
+    const auto [colon, first] = std::from_chars(text.data(), end, out.range.lower);
+    const bool divided = first == std::errc{} && colon != end && *colon == ':';
+    const auto [rest, second] =
+        divided ? std::from_chars(colon + 1, end, out.range.upper) : std::from_chars_result{end, std::errc{}};
+    if (!divided || second != std::errc{} || rest != end || !(out.range.lower < out.range.upper))
+        refuse_value("--solid", text, "above, below, or two isovalues A:B, A below B");
+    return out;
+}
+
 void add_compression(const Command& command, Compression& compression, const char* format) {
     command.add_choice<Compression>(
         "--compress", compression,
@@ -266,6 +286,10 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_value(
         "--piece", [&](const std::string& text) { extract.piece = parse_piece(text); }, "K/N",
         "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
+    command.add_value(
+        "--solid", [&](const std::string& text) { extract.solid = parse_solid(text); }, "above|below|A:B",
+        "Closed solids: the part of the grid where the field is at least the isovalue, below it, or from A to B, with the "
+        "grid's boundary there; cell field part: 0 isosurface, 1 boundary");
     command.add_flag("--keep-degenerate", extract.keep_degenerate,
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--fail-if-empty", extract.fail_if_empty,

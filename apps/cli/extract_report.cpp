@@ -2,6 +2,7 @@
 #include "extract_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -62,6 +63,22 @@ void add_pack_rows(const PackReport& pack, Table& table) {
     }
 }
 
+std::string solid_text(const SolidRange& range) {
+    if (!std::isfinite(range.upper)) return "above " + shortest(range.lower);
+    if (!std::isfinite(range.lower)) return "below " + shortest(range.upper);
+    return fmt::format("{} to {}", shortest(range.lower), shortest(range.upper));
+}
+
+Json solid_json(const SolidNumbers& solid) {
+    const auto end = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+    return {{"range", Json::array({end(solid.range.lower), end(solid.range.upper)})},
+            {"volume", solid.volume},
+            {"grid_volume", solid.grid_volume},
+            {"isosurface_area", solid.isosurface_area},
+            {"boundary_area", solid.boundary_area},
+            {"open_edges", solid.open_edges}};
+}
+
 std::string time_text(const ExtractNumbers& numbers) {
     std::string text = "read " + seconds_text(numbers.read_seconds);
     if (numbers.pack) text += ", pack " + seconds_text(numbers.pack_seconds);
@@ -89,6 +106,8 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
     table.row({"grid", fmt::format("{} ({}), {}", numbers.grid, numbers.format, counted(numbers.cells, "cell"))});
     if (numbers.cells_left_out > 0) table.row({"", fmt::format("{} cells left out", grouped(numbers.cells_left_out))});
     table.row({"field", field_text(numbers)});
+    if (!numbers.surfaces.empty() && numbers.surfaces.back().solid)
+        table.row({"", fmt::format("volume of the grid {}", rounded(numbers.surfaces.back().solid->grid_volume))});
     if (!numbers.collection.empty()) table.row({"series", numbers.collection});
     if (!verbose) return table.text();
     if (numbers.pack) add_pack_rows(*numbers.pack, table);
@@ -109,14 +128,20 @@ std::string extract_table(const ExtractNumbers& numbers, bool verbose) {
     const auto any = [&](const auto& holds) { return std::ranges::any_of(numbers.surfaces, holds); };
     const bool times = any([](const SurfaceNumbers& surface) { return surface.time.has_value(); });
     const bool files = any([](const SurfaceNumbers& surface) { return !surface.file.empty(); });
+    const bool solids = any([](const SurfaceNumbers& surface) { return surface.solid.has_value(); });
     using enum Table::Align;
-    Table table({right, right, right, right, right, left, right, right, right});
-    table.row({"isovalue", times ? "time" : "", "triangles", "vertices", "area", files ? "file" : "",
+    Table table({right, right, right, right, right, right, left, right, right, right});
+    table.row({solids ? "solid" : "isovalue", times ? "time" : "", "triangles", "vertices", "area",
+               solids ? "volume" : "", files ? "file" : "",
                verbose ? "tied points" : "", verbose ? "extract" : "", verbose && files ? "write" : ""});
     for (const SurfaceNumbers& surface : numbers.surfaces) {
-        std::vector<std::string> row{shortest(surface.isovalue), surface.time ? shortest(*surface.time) : "",
-                                     grouped(surface.triangles), grouped(surface.vertices),
-                                     rounded(surface.area),      surface.file};
+        std::vector<std::string> row{surface.solid ? solid_text(surface.solid->range) : shortest(surface.isovalue),
+                                     surface.time ? shortest(*surface.time) : "",
+                                     grouped(surface.triangles),
+                                     grouped(surface.vertices),
+                                     rounded(surface.area),
+                                     surface.solid ? rounded(surface.solid->volume) : "",
+                                     surface.file};
         if (verbose) {
             row.push_back(grouped(surface.report.tied_points));
             row.push_back(seconds_text(surface.extract_seconds));
@@ -183,6 +208,7 @@ Json extract_json(const ExtractNumbers& numbers) {
                         {"area", surface.area},
                         {"seconds", {{"extract", surface.extract_seconds}, {"write", surface.write_seconds}}},
                         {"file", surface.file.empty() ? Json(nullptr) : json_text(surface.file)}});
+        if (surface.solid) list.back()["solid"] = solid_json(*surface.solid);
         if (surface.device)
             list.back()["device"] = {{"seconds", surface.device->device_seconds},
                                      {"bytes_up", surface.device->uploaded_bytes},

@@ -35,6 +35,7 @@ private:
     Result<std::optional<std::uint64_t>> read_grid(std::size_t step);
     Result<void> load(std::size_t step);
     Result<Contour> start(ContourInput input);
+    Result<void> set(ContourInput input);
     Result<void> take_piece_of(ContourInput& input);
     bool goes_into_one_file() const {
         return !plan_.names.none() && !plan_.names.by_value();
@@ -43,6 +44,9 @@ private:
     Result<void> choose_values(std::size_t step);
     Result<void> extract_step(std::size_t step);
     Result<std::vector<Surface>> extract_pass(std::span<const double> isovalues, std::size_t step);
+    Result<std::vector<Surface>> extract_solid(double isovalue, std::size_t step);
+    Result<FieldReport> range_of_field();
+    Method method() const { return solids_ ? solids_->method() : contour_->method(); }
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
     OutputKey key(double isovalue, std::size_t step) const;
 
@@ -52,6 +56,7 @@ private:
     ExtractPlan plan_;
     std::shared_ptr<const Engine> device_; ///< null: the CPU extracts
     std::optional<Contour> contour_;
+    std::optional<Solids> solids_; ///< in its place where solids are made
     Grid grid_;                                    ///< of the step at hand
     Array field_;                                  ///< its values
     std::vector<double> isovalues_;                ///< of the step at hand: levels follow its range
@@ -163,6 +168,33 @@ Result<std::optional<std::uint64_t>> ExtractRun::read_grid(std::size_t step) {
     return std::optional<std::uint64_t>{};
 }
 
+/// Gives the step to the session, or starts it.
+Result<void> ExtractRun::set(ContourInput input) {
+    if (job_.solid) {
+        caller_.detail("finding the boundary");
+        Result<Solids> started = Solids::create(std::move(input), plan_.contour, caller_.run());
+        if (!started) return started.error();
+        solids_ = *std::move(started);
+        numbers_.why = "solids";
+        return {};
+    }
+    if (!contour_) {
+        Result<Contour> started = start(std::move(input));
+        if (!started) return started.error();
+        contour_ = *std::move(started);
+    } else {
+        const Result<ContourUpdate> update = job_.piece ? contour_->set(std::move(input), plan_.contour, caller_.run())
+                                                        : contour_->set(std::move(input), caller_.run());
+        if (!update) return update.error();
+        if (*update != ContourUpdate::grid) caller_.detail("the cells are those of the step before: not packed again");
+    }
+    return {};
+}
+
+Result<FieldReport> ExtractRun::range_of_field() {
+    return solids_ ? solids_->field(caller_.run()) : contour_->field(caller_.run());
+}
+
 /// Reads one step and gives it to the session.
 Result<void> ExtractRun::load(std::size_t step) {
     const core::Stopwatch reading;
@@ -192,24 +224,15 @@ Result<void> ExtractRun::load(std::size_t step) {
         return refusal("`piece` takes grids without quadratic cells only");
     if (job_.piece)
         if (Result<void> taken = take_piece_of(input); !taken) return taken;
-    if (!contour_) {
-        Result<Contour> started = start(std::move(input));
-        if (!started) return started.error();
-        contour_ = *std::move(started);
-    } else {
-        const Result<ContourUpdate> update = job_.piece ? contour_->set(std::move(input), plan_.contour, caller_.run())
-                                                        : contour_->set(std::move(input), caller_.run());
-        if (!update) return update.error();
-        if (*update != ContourUpdate::grid) caller_.detail("the cells are those of the step before: not packed again");
-    }
-    if (contour_->method() == Method::clusters) {
+    if (Result<void> taken = set(std::move(input)); !taken) return taken;
+    if (contour_ && contour_->method() == Method::clusters) {
         caller_.detail("packing");
         if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready;
     }
     if (job_.isovalues.empty()) {
         const core::Stopwatch looking;
         caller_.detail("looking at the field");
-        const Result<FieldReport> range = contour_->field(caller_.run());
+        const Result<FieldReport> range = range_of_field();
         if (!range) return range.error();
         numbers_.field = *range;
         if (plan_.contour.frame) { // levels are those of the whole grid
@@ -217,16 +240,20 @@ Result<void> ExtractRun::load(std::size_t step) {
             numbers_.field.lower = whole.lower;
             numbers_.field.upper = whole.upper;
         }
-        if (contour_->method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
+        if (method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
     }
     if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
     return choose_values(step);
 }
 
 Result<void> ExtractRun::choose_values(std::size_t step) {
-    Result<std::vector<double>> isovalues = choose_isovalues(job_, field_, numbers_.field, caller_);
-    if (!isovalues) return isovalues.error();
-    isovalues_ = *std::move(isovalues);
+    if (job_.solid && job_.solid->kind == SolidChoice::Kind::between) {
+        isovalues_ = {job_.solid->range.lower};
+    } else {
+        Result<std::vector<double>> isovalues = choose_isovalues(job_, field_, numbers_.field, caller_);
+        if (!isovalues) return isovalues.error();
+        isovalues_ = *std::move(isovalues);
+    }
     if (plan_.names.fixed()) return {};
     for (const double isovalue : isovalues_) {
         const std::string name = plan_.names.name(key(isovalue, step));
@@ -283,6 +310,42 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
     return surfaces;
 }
 
+Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::size_t step) {
+    const SolidRange range = range_for(*job_.solid, isovalue);
+    caller_.detail(fmt::format("making the solid from {} to {}", shortest(range.lower), shortest(range.upper)));
+    Result<Solid> made = solids_->extract(range, caller_.run());
+    if (!made) return made.error();
+    caller_.notes(made->contour.notes);
+    numbers_.method = made->contour.method;
+    numbers_.engine = made->contour.engine;
+    numbers_.field = made->contour.field;
+    numbers_.cells_left_out = made->contour.cells_left_out;
+    numbers_.pack_seconds += made->contour.pack_seconds;
+    coarse_tets_ += made->contour.coarse_tets;
+    numbers_.refinement = made->contour.refinement;
+    SurfaceNumbers& numbers = numbers_.surfaces.emplace_back();
+    numbers.isovalue = isovalue;
+    numbers.time = time_of(source_->info(), step);
+    numbers.report = made->contour.surfaces[0].report;
+    numbers.extract_seconds = made->contour.extract_seconds;
+    numbers.vertices = made->surface.vertex_count();
+    numbers.triangles = made->surface.triangle_count();
+    numbers.area = made->isosurface_area + made->boundary_area;
+    numbers.solid = SolidNumbers{range,
+                                 made->volume,
+                                 solids_->grid_volume(),
+                                 made->isosurface_area,
+                                 made->boundary_area,
+                                 made->open_edges};
+    if (numbers.triangles == 0 && job_.fail_if_empty)
+        return Error{ErrorCode::invalid_data, "`fail_if_empty`: the solid is empty"};
+    note_what_a_solid_is(numbers_, numbers, caller_);
+    if (!plan_.holds_fields) made->surface.cell_fields.clear(); // "part" alone: no note for that
+    std::vector<Surface> surfaces;
+    surfaces.push_back(std::move(made->surface));
+    return surfaces;
+}
+
 Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
     const core::Stopwatch writing;
     caller_.detail("writing " + numbers.file);
@@ -302,11 +365,12 @@ Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) 
 
 Result<void> ExtractRun::extract_step(std::size_t step) {
     const bool one_file = goes_into_one_file();
-    std::size_t at_once = contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
+    std::size_t at_once =
+        solids_ || contour_->engine() == "vulkan" ? 1 : isovalues_together(isovalues_.size());
     std::vector<Surface> joined;
     for (std::span<const double> left = isovalues_; !left.empty();) {
         const std::span<const double> pass = left.first(std::min(at_once, left.size()));
-        Result<std::vector<Surface>> surfaces = extract_pass(pass, step);
+        Result<std::vector<Surface>> surfaces = solids_ ? extract_solid(pass[0], step) : extract_pass(pass, step);
         if (!surfaces && surfaces.error().code == ErrorCode::out_of_memory && pass.size() > 1 && !one_file) {
             at_once = pass.size() / 2;
             continue;

@@ -1,6 +1,8 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "jobs/extract_notes.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <isotet/jobs/number_text.hpp>
@@ -40,6 +42,18 @@ std::string why_empty(const FieldReport& field, double isovalue) {
         return fmt::format("isovalue {} is outside {}: the surface is empty", value, range);
     return fmt::format("isovalue {} is within {}, but no tet has values on both sides of it: the surface is empty",
                        value, range);
+}
+
+void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller) {
+    const SolidRange& range = surface.solid->range;
+    if (surface.triangles == 0)
+        caller.note(fmt::format("no cell has values of '{}' from {} to {}: the solid is empty", numbers.field.name,
+                                shortest(std::max(range.lower, numbers.field.lower)),
+                                shortest(std::min(range.upper, numbers.field.upper))));
+    if (surface.solid->open_edges > 0)
+        caller.note(fmt::format("the solid is open at {} edges, as where cells are repeated: isotet info `survey` counts "
+                                "these",
+                                grouped(surface.solid->open_edges)));
 }
 
 void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller) {

@@ -12,6 +12,9 @@ std::string why_empty(const FieldReport& field, double isovalue);
 /// Notes of one surface: that it is empty, ties that only rounding made.
 void note_what_extracting_found(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller);
 
+/// The same of one solid: that it is empty or open.
+void note_what_a_solid_is(const ExtractNumbers& numbers, const SurfaceNumbers& surface, Caller& caller);
+
 /// Notes of a step: what was left out, and what rounding did.
 void note_what_the_step_holds(const ExtractNumbers& numbers, const Grid& grid, std::uint64_t coarse_tets,
                               Caller& caller);

@@ -94,7 +94,7 @@ constexpr std::size_t most_isovalues_of_active_cells = 8;
 
 std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const ExtractPlan& plan) {
     const bool has_components = plan.carried && !plan.carried->components.empty();
-    if (job.piece || job.grid.merge_points || has_components || !plan.read.cell || !plan.read.cell->empty() ||
+    if (job.piece || job.solid || job.grid.merge_points || has_components || !plan.read.cell || !plan.read.cell->empty() ||
         plan.contour.expected_isovalues.size() > most_isovalues_of_active_cells ||
         !Contour::can_do_with_active_cells(plan.contour))
         return std::nullopt;
@@ -104,13 +104,39 @@ std::optional<ReadActiveCells> plan_active_cells(const ExtractJob& job, const Ex
     return active;
 }
 
+/// What does not go together with solids.
+Result<void> check_solid(const ExtractJob& job) {
+    if (!job.solid) return {};
+    const bool device = job.engine == EngineChoice::vulkan || (!job.device.name.empty() && job.device.name != "none");
+    for (const auto& [asked, option] : {std::pair{job.piece.has_value(), "`piece`"},
+                                        {job.exact_vertices, "`exact_vertices`"},
+                                        {job.keep_degenerate, "`keep_degenerate`"},
+                                        {job.normals == Normals::gradient, "`normals` gradient"},
+                                        {device, "a device"}})
+        if (asked) return refusal("`solid` was asked for, which does not go with {}", option);
+    if (job.solid->kind == SolidChoice::Kind::between && (!job.isovalues.empty() || job.levels > 0))
+        return refusal("`solid` has its own two isovalues, but others were given");
+    return {};
+}
+
 } // namespace
+
+SolidRange range_for(const SolidChoice& choice, double isovalue) {
+    switch (choice.kind) {
+    case SolidChoice::Kind::above: return SolidRange::above(isovalue);
+    case SolidChoice::Kind::below: return SolidRange::below(isovalue);
+    case SolidChoice::Kind::between: break;
+    }
+    return choice.range;
+}
 
 Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source, Caller& caller) {
     ExtractPlan plan;
+    if (Result<void> solid = check_solid(job); !solid) return solid.error();
     plan.names = OutputNames(job.out);
     const Result<Holds> format = holds(job);
     if (!format) return format.error();
+    plan.holds_fields = format->fields;
 
     auto steps = choose_steps(source.info(), job.grid, job.all_steps ? Steps::all : Steps::one, caller);
     if (!steps) return steps.error();
@@ -141,7 +167,7 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source
     plan.contour.exact_vertices = job.exact_vertices;
     const std::size_t isovalues = job.isovalues.empty() ? std::max<std::uint64_t>(job.levels, 1) : job.isovalues.size();
     plan.contour.surfaces = isovalues * plan.steps.size();
-    if (!job.snap) plan.contour.expected_isovalues = job.isovalues;
+    if (!job.snap && !job.solid) plan.contour.expected_isovalues = job.isovalues;
     plan.active_cells = plan_active_cells(job, plan);
     return plan;
 }

@@ -17,7 +17,8 @@ namespace isotet::jobs {
 
 struct ExtractPlan {
     OutputNames names{""};
-    std::string collection; ///< a .pvd file for the series; empty: none
+    bool holds_fields = true; ///< the format of OUT
+    std::string collection;   ///< a .pvd file for the series; empty: none
     std::vector<std::size_t> steps;
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
@@ -46,6 +47,9 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
 /// `together`   isovalues extracted in one pass
 Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSample& sample, double kept,
                  std::size_t together);
+
+/// The values that a solid has, of one isovalue.
+SolidRange range_for(const SolidChoice& choice, double isovalue);
 
 /// Files that must not be each other: `output` and those of the caller.
 std::vector<std::string> with_others(const ExtractJob& job, const std::string& output);

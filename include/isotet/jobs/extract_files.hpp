@@ -14,9 +14,21 @@
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/pieces.hpp>
+#include <isotet/solid.hpp>
 #include <isotet/write.hpp>
 
 namespace isotet::jobs {
+
+/// Which solids are made in place of isosurfaces.
+struct SolidChoice {
+    enum class Kind : std::uint8_t {
+        above,  ///< of each isovalue
+        below,  ///< of each isovalue
+        between ///< one, of `range`
+    };
+    Kind kind = Kind::above;
+    SolidRange range;
+};
 
 struct ExtractJob {
     GridOptions grid;
@@ -42,15 +54,25 @@ struct ExtractJob {
     std::optional<PieceOf> piece;
     Compression compression = Compression::none;
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
+    std::optional<SolidChoice> solid;                      ///< nothing: isosurfaces
 };
 
-/// One isosurface.
+/// What is told of a solid.
+struct SolidNumbers {
+    SolidRange range;
+    double volume = 0, grid_volume = 0;
+    double isosurface_area = 0, boundary_area = 0;
+    std::uint64_t open_edges = 0;
+};
+
+/// One isosurface, or one solid.
 struct SurfaceNumbers {
     double isovalue = 0;
     std::optional<double> time;
     ExtractReport report;
     std::uint64_t vertices = 0, triangles = 0;
-    double area = 0;
+    double area = 0; ///< of a solid with its boundary
+    std::optional<SolidNumbers> solid;
     double extract_seconds = 0;
     std::optional<DeviceWork> device;
     double write_seconds = 0; ///< of several surfaces in one file the last has it all
