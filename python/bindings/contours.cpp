@@ -14,6 +14,7 @@
 #include <isotet/contour.hpp>
 #include <isotet/extract.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/solid.hpp>
 #include <isotet/surface.hpp>
 
 #include "arrays.hpp"
@@ -228,6 +229,41 @@ void add_sessions(nb::module_& module) {
             "isovalues"_a);
 }
 
+nb::dict solid_out(const Solid& solid, double grid_volume) {
+    nb::dict out;
+    out["volume"] = solid.volume;
+    out["grid_volume"] = grid_volume;
+    out["isosurface_area"] = solid.isosurface_area;
+    out["boundary_area"] = solid.boundary_area;
+    out["isosurface_triangles"] = solid.isosurface_triangles;
+    out["open_edges"] = solid.open_edges;
+    return out;
+}
+
+void add_solids(nb::module_& module) {
+    nb::class_<Solids>(module, "Solids")
+        .def(
+            "__init__",
+            [](Solids* self, const Grid& grid, const PointField& field, const FieldsIn& fields,
+               const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
+                ContourInput input = contour_input(grid, field, fields, cell_fields);
+                new (self)
+                    Solids(call(how, [&](const Run& run) { return Solids::create(std::move(input), options, run); }));
+            },
+            "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
+        .def(
+            "extract",
+            [](Solids& self, double lower, double upper, const CallOptions& how) {
+                Solid solid = call(how, [&](const Run& run) { return self.extract({lower, upper}, run); });
+                const nb::dict told = solid_out(solid, self.grid_volume());
+                nb::tuple out = extracted_out({std::move(solid.surface), {}, std::move(solid.contour)});
+                nb::cast<nb::dict>(out[1])["solid"] = told;
+                return out;
+            },
+            "lower"_a, "upper"_a, "call"_a)
+        .def_prop_ro("grid_volume", &Solids::grid_volume);
+}
+
 void add_packed_grids(nb::module_& module) {
     nb::class_<PackedGrid>(module, "PackedGrid")
         .def("field", [](const PackedGrid& self) { return field_out(self.field()); })
@@ -296,6 +332,7 @@ void add_packed_grids(nb::module_& module) {
 
 void add_contours(nb::module_& module) {
     add_sessions(module);
+    add_solids(module);
     add_packed_grids(module);
 }
 

@@ -20,13 +20,13 @@ Errors are ValueError (wrong arguments, broken data), TypeError (what is no numb
 `Error` for all else, each with a sentence: what, the value seen, the rule.
 """
 
-from ._grid import Contour, Grid, PackedGrid, contour, formats, inspect, make, pack, read
+from ._grid import Contour, Grid, PackedGrid, Solids, contour, formats, inspect, make, pack, read, solid
 from ._isotet import Error, __version__
 from ._picture import render
 from ._pieces import Frame, make_frame, number_points
 from ._surface import Surface, SurfaceReport, check, read_surface
 
 __all__ = [
-    "Contour", "Error", "Frame", "Grid", "PackedGrid", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
-    "inspect", "make", "make_frame", "number_points", "pack", "read", "read_surface", "render",
+    "Contour", "Error", "Frame", "Grid", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
+    "inspect", "make", "make_frame", "number_points", "pack", "read", "read_surface", "render", "solid",
 ]  # fmt: skip

@@ -123,6 +123,12 @@ class Surface:
         return self._surface.source_cells
 
     @property
+    def solid(self) -> dict[str, Any] | None:
+        """None, or of a solid: "volume", "grid_volume", "isosurface_area", "boundary_area", "isosurface_triangles" (the first
+        ones) and "open_edges" (0: closed)."""
+        return self._how.get("solid")
+
+    @property
     def area(self) -> float:
         """Of all triangles, in the square of the unit of the points."""
         return self._surface.area()

@@ -426,3 +426,20 @@ def test_surfaces_show_themselves_in_notebooks(sphere, monkeypatch, capsys):
     surface._ipython_display_()
     assert len(plotted) == 1
     assert capsys.readouterr().out.splitlines()[-1] == repr(surface)
+
+
+def test_a_solid_is_closed_and_the_two_sides_make_up_the_grid():
+    grid = isotet.make("mixed", 6, ["gyroid"])
+    solids = isotet.Solids(grid, "gyroid", cell_fields=[])
+    above, below = solids.solid(above=0.2), solids.solid(below=0.2)
+    for solid in (above, below):
+        assert solid.solid["open_edges"] == 0
+        assert isotet.check(solid, closed=True).sound
+        assert set(np.unique(solid.cell_fields["part"])) == {0, 1}
+        assert solid.solid["isosurface_triangles"] == (solid.cell_fields["part"] == 0).sum()
+    assert abs(above.solid["volume"] + below.solid["volume"] - solids.grid_volume) < 1e-5
+    assert grid.contour(0.2, "gyroid").solid is None
+    with pytest.raises(ValueError, match="above, below or both"):
+        solids.solid()
+    with pytest.raises(ValueError, match="must ascend"):
+        solids.solid(above=1, below=0)
