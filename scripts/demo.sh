@@ -92,7 +92,7 @@ NEXT
 
 say "isotet demo: packages, build, extract, check, draw"
 install_packages "${packages_to_build[@]}" || exit
-build_target=isotet_program build demo "$build" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF
+build demo "$build" -DCMAKE_BUILD_TYPE=Release -DISOTET_TESTS=OFF
 if up_to_date; then
     say "extracted and checked before, by the same program from the same grid"
 else
