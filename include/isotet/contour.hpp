@@ -112,11 +112,11 @@ public:
     /// extracted directly by the CPU, without what needs all cells.
     static bool can_do_with_active_cells(const ContourOptions& options);
 
-    /// Checks that the field fits the grid; nothing is packed yet.
+    /// Checks that the field fits the grid, and makes linear cells of others; nothing is packed yet.
     ///
     /// Errors   invalid_argument when a field does not fit the grid or options contradict each other; invalid_data when
-    ///          the arrays of the grid do not fit together
-    static Result<Contour> create(ContourInput input, const ContourOptions& options = {});
+    ///          the arrays of the grid do not fit together; cancelled
+    static Result<Contour> create(ContourInput input, const ContourOptions& options = {}, const Run& run = {});
 
     /// Whether cells of this type, a number of VTK's, are contoured as they are (polyhedra with their faces). Others are split
     /// first (quadratic ones, linear_cells.hpp), or left out, and counted in ContourResult::cells_left_out.

@@ -181,7 +181,7 @@ void add_sessions(nb::module_& module) {
             [](Contour* self, const Grid& grid, const PointField& field, const FieldsIn& fields,
                const FieldsIn& cell_fields, const ContourOptions& options, const CallOptions& how) {
                 ContourInput input = contour_input(grid, field, fields, cell_fields);
-                new (self) Contour(call(how, [&](const Run&) { return Contour::create(std::move(input), options); }));
+                new (self) Contour(call(how, [&](const Run& run) { return Contour::create(std::move(input), options, run); }));
             },
             "grid"_a, "field"_a, "fields"_a, "cell_fields"_a, "options"_a, "call"_a)
         .def(

@@ -12,11 +12,13 @@
 
 #include "core/cell_faces.hpp"
 #include "core/cells.hpp"
+#include "core/linear_names.hpp"
 #include "core/parallel.hpp"
 #include "core/rising_progress.hpp"
 #include "io/formats.hpp"
 #include "io/own/region_choice.hpp"
 #include "io/own/text_scanner.hpp"
+#include "io/own/vtk_xml/uniform_cells.hpp"
 #include "io/reader.hpp"
 
 namespace isotet {
@@ -198,6 +200,11 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     };
     if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
     if (auto checked = check_bezier(*result); !checked) return in_file(checked.error());
+    if (core::has_linear_names(result->grid.cells)) {
+        result->grid.cells = core::with_linear_names(std::move(result->grid.cells));
+        vtk_xml::simplify(result->grid.cells);
+        if (auto checked = check_grid(result->grid, progress); !checked) return in_file(checked.error());
+    }
     if (const std::string_view regions = region_field(result->info); !options.blocks.empty() && !regions.empty()) {
         if (auto chosen = choose_regions(*result, options); !chosen) return chosen.error();
         if (!wanted(options, Association::cell, regions))

@@ -133,7 +133,7 @@ Result<Contour> ExtractRun::start(ContourInput input) {
     const bool linear = !has_cells_to_linearize(input.grid.cells); // else it is not known how many tets they become
     const double kept =
         static_cast<double>(input.grid.cells.count()) / static_cast<double>(std::max<std::size_t>(numbers_.cells, 1));
-    Result<Contour> contour = Contour::create(std::move(input), options);
+    Result<Contour> contour = Contour::create(std::move(input), options, caller_.run());
     if (contour && linear && !device_ && job_.engine != EngineChoice::reference)
         if (const Result<FieldSample> sample = contour->sample())
             numbers_.predicted =

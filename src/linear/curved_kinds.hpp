@@ -12,6 +12,7 @@
 #include "core/cell_kind.hpp"
 #include "core/cells.hpp"
 #include "core/curved_types.hpp"
+#include "core/linear_names.hpp"
 #include "core/node_order.hpp"
 
 namespace isotet::linear {
@@ -66,7 +67,8 @@ constexpr std::span<const CornerQuad> quadratic_faces(core::CellKind kind) {
     return node_tables::hexahedron_faces;
 }
 
-inline constexpr std::uint8_t first_lagrange = 71, last_lagrange = 74; ///< tetrahedron, hexahedron, wedge, pyramid
+using core::first_lagrange;
+inline constexpr std::uint8_t last_lagrange = 74;
 
 /// Three-dimensional cells of a degree above 1, whether they can be handled or not: VTK's numbers.
 constexpr bool is_curved(std::uint8_t type) {
@@ -110,11 +112,10 @@ struct HighDegree {
 
 /// Lagrange cells of degree 3 to core::max_degree, Bezier cells from degree 1 on. No program defines Bezier pyramids.
 constexpr std::optional<HighDegree> high_degree_of(std::uint8_t type, std::uint64_t nodes) {
-    constexpr std::uint8_t first_bezier = 78;
     constexpr std::array<core::CellKind, 4> kinds{core::CellKind::tetrahedron, core::CellKind::hexahedron,
                                                   core::CellKind::wedge, core::CellKind::pyramid};
-    const bool bezier = type >= first_bezier;
-    const std::uint8_t first = bezier ? first_bezier : first_lagrange;
+    const bool bezier = type >= core::first_bezier;
+    const std::uint8_t first = bezier ? core::first_bezier : first_lagrange;
     if (type < first || type - first > (bezier ? 2 : 3)) return std::nullopt;
     const core::CellKind kind = kinds[static_cast<std::size_t>(type - first)];
     const unsigned degree = core::degree_of(kind, nodes);

@@ -122,7 +122,7 @@ Result<Surface> slice_of(const Grid& grid, const Plane& plane, const ColorField*
     options.method = Method::direct;
     options.expected_isovalues = {plane.offset}; // of polyhedra only those that the plane meets are made linear
     options.surfaces = 1;
-    Result<Contour> contour = Contour::create(std::move(input), options);
+    Result<Contour> contour = Contour::create(std::move(input), options, run);
     if (!contour) return contour.error();
     Result<ContourResult> cut = contour->extract(plane.offset, run);
     if (!cut) return cut.error();

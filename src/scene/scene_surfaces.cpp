@@ -54,7 +54,7 @@ Result<void> IsosurfaceScene::Data::start(IsosurfaceOptions wanted, const Run& r
         without_device = carrying;
     }
     const core::Stopwatch packing;
-    Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options);
+    Result<Contour> created = Contour::create(use_device ? std::move(plain) : std::move(carrying), options, run);
     if (!created) return created.error();
     contour = *std::move(created);
     if (Result<void> ready = contour->prepare(run); !ready) return ready;

@@ -7,10 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "core/carry_out.hpp"
 #include "core/cell_faces.hpp"
 #include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/guard.hpp"
+#include "core/linear_names.hpp"
 #include "core/packed.hpp"
 #include "core/parallel.hpp"
 #include "session/contour_data.hpp"
@@ -28,11 +30,16 @@ Result<void> check(const ContourOptions& options) {
     return {};
 }
 
-/// The input; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
+/// The input, cells of degree 1 by their linear types; where it has only some of the cells, and `options` ask for more than these can do, that with all cells.
 Result<ContourInput> input_for(ContourInput input, const ContourOptions& options, const Run& run) {
     const bool some_do = Contour::can_do_with_active_cells(options) && input.cell_fields.empty();
-    if (!input.all_cells || some_do) return input;
-    return input.all_cells(run);
+    if (input.all_cells && !some_do) {
+        Result<ContourInput> all = input.all_cells(run);
+        if (!all) return all;
+        input = *std::move(all);
+    }
+    input.grid.cells = core::with_linear_names(std::move(input.grid.cells));
+    return input;
 }
 
 /// Nothing where more cells are needed than the input has.
@@ -63,21 +70,21 @@ bool Contour::can_do_with_active_cells(const ContourOptions& options) {
            !options.exact_vertices && !options.frame;
 }
 
-Result<Contour> Contour::create(ContourInput given, const ContourOptions& options) {
-    return core::guarded("starting to contour", [&]() -> Result<Contour> {
+Result<Contour> Contour::create(ContourInput given, const ContourOptions& options, const Run& run) {
+    return core::carry_out("starting to contour", run, [&](const Progress&) -> Result<Contour> {
         if (auto ok = check(options); !ok) return ok.error();
-        Result<ContourInput> enough = input_for(std::move(given), options, {});
+        Result<ContourInput> enough = input_for(std::move(given), options, run);
         if (!enough) return enough.error();
         ContourInput input = *std::move(enough);
         auto data = std::make_unique<Data>();
-        const auto met = data->take_met(input, options);
+        const auto met = data->take_met(input, options, run);
         if (!met) return met.error();
         if (*met == Data::Met::some) return Contour(std::move(data));
         if (options.refine && has_curved_cells(input.grid.cells)) {
             if (auto taken = data->curved.take(std::move(input), options); !taken) return taken.error();
         } else {
             const auto start = std::chrono::steady_clock::now();
-            Result<ContourInput> linear = data->linear.make(std::move(input), {});
+            Result<ContourInput> linear = data->linear.make(std::move(input), run);
             if (!linear) return linear.error();
             data->input = *std::move(linear);
             if (data->linear.grid()) data->update_seconds += session::seconds_since(start);
@@ -123,7 +130,7 @@ Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& opt
             return ContourUpdate::grid;
         }
         if (!data.packed) {
-            const auto taken = data.take_met(input, options);
+            const auto taken = data.take_met(input, options, run);
             if (!taken) return taken.error();
             if (*taken == Data::Met::some) return ContourUpdate::grid;
         }

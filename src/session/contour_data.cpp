@@ -72,11 +72,12 @@ void Contour::Data::start_over(FieldSample next_sample, const ContourOptions& ne
 
 /// Starts over with an input of which only cells that the expected isovalues meet are made linear, unless all must be, for
 /// what is asked for, or since no cell is met: then nothing is done.
-Result<Contour::Data::Met> Contour::Data::take_met(const ContourInput& next, const ContourOptions& next_options) {
+Result<Contour::Data::Met> Contour::Data::take_met(const ContourInput& next, const ContourOptions& next_options,
+                                                   const Run& run) {
     if (!session::MetInput::suits(next, next_options)) return Met::not_chosen;
     const auto start = std::chrono::steady_clock::now();
     session::MetInput taken;
-    Result<std::optional<ContourInput>> some = taken.make(next, next_options);
+    Result<std::optional<ContourInput>> some = taken.make(next, next_options, run);
     if (!some) return some.error();
     if (!*some) return Met::not_chosen;
     std::optional<ContourInput> made = *std::move(some);

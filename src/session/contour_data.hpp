@@ -50,7 +50,7 @@ struct Contour::Data {
     void note_new_cells();
     enum class Met { some, not_chosen };
     void start_over(FieldSample next_sample, const ContourOptions& next_options);
-    Result<Met> take_met(const ContourInput& next, const ContourOptions& next_options);
+    Result<Met> take_met(const ContourInput& next, const ContourOptions& next_options, const Run& run);
     bool is_enough_for(std::span<const double> isovalues) const;
     Result<void> complete(const Run& run);
     Result<void> take_curved(ContourInput next, const ContourOptions& next_options);

@@ -51,7 +51,7 @@ public:
     /// coordinates or values would be rounded in another way: offset and origin come from the ends of their ranges, so
     /// polyhedra that have these stay, too, unless they are open.
     /// Errors   as linearize() and LinearGrid::extend()
-    Result<std::optional<ContourInput>> make(const ContourInput& input, const ContourOptions& options);
+    Result<std::optional<ContourInput>> make(const ContourInput& input, const ContourOptions& options, const Run& run);
 
     explicit operator bool() const { return user_.has_value(); }
     bool is_good_for(std::span<const double> isovalues) const;

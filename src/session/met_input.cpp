@@ -148,7 +148,8 @@ bool MetInput::is_good_for(std::span<const double> isovalues) const {
         isovalues, [&](double isovalue) { return std::ranges::find(isovalues_, isovalue) != isovalues_.end(); });
 }
 
-Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, const ContourOptions& options) {
+Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, const ContourOptions& options,
+                                                   const Run& run) {
     MetInput next;
     next.isovalues_ = options.expected_isovalues;
     // What does not fit is told by whoever takes all cells.
@@ -174,7 +175,7 @@ Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, co
         also = cells_at(*cells, *faces, used);
     }
     auto linear =
-        linearize(input.grid, {.isovalues = next.isovalues_, .values = input.field.values, .also = std::move(also)});
+        linearize(input.grid, {.isovalues = next.isovalues_, .values = input.field.values, .also = std::move(also)}, run);
     if (!linear) return linear.error();
     if (linear->grid.cells.count() == 0) return std::optional<ContourInput>();
     next.range_ = range_of(input.field, used_points(*cells, *faces));
@@ -183,7 +184,7 @@ Result<std::optional<ContourInput>> MetInput::make(const ContourInput& input, co
     if (!*same_storage) return std::optional<ContourInput>();
     next.linear_ = std::make_shared<const LinearGrid>(*std::move(linear));
     next.user_ = input;
-    auto made = on_linear_grid(input, *next.linear_, {});
+    auto made = on_linear_grid(input, *next.linear_, run);
     if (!made) return made.error();
     *this = std::move(next);
     return std::optional(*std::move(made));

@@ -114,7 +114,7 @@ isotet::Result<void> Block::set(const std::optional<isotet::Frame>& frame, bool 
         update_ = *update;
         return {};
     }
-    isotet::Result<isotet::Contour> session = isotet::Contour::create(std::move(input), options);
+    isotet::Result<isotet::Contour> session = isotet::Contour::create(std::move(input), options, run);
     if (!session) return session.error();
     session_.emplace(*std::move(session));
     update_ = isotet::ContourUpdate::grid;
