@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <fmt/core.h>
@@ -26,6 +27,10 @@ struct TrianglesAround {
 
 template <class Corners>
 Result<TrianglesAround> triangles_around(const Corners& corners, std::size_t vertices) {
+    constexpr std::uint64_t max_triangles = std::numeric_limits<std::uint32_t>::max();
+    if (corners.size() / 3 > max_triangles)
+        return invalid_argument(fmt::format("the surface has {} triangles, but normals of vertices take at most {}",
+                                            corners.size() / 3, max_triangles));
     TrianglesAround around;
     around.begins.resize(vertices + 2);
     for (std::size_t i = 0; i < corners.size(); ++i) {
