@@ -34,11 +34,11 @@ struct RefineOptions {
 };
 
 /// Makes linear tets of all cells that linearize() handles, so fine that the field, linear in each tet, differs from the
-/// piecewise quadratic field by at most the tolerance.
+/// cell's own by the tolerance at most, as far as cells may be bisected for it.
 ///
-/// The piecewise quadratic field is the interpolant through the nodes of a cell, on the tets into which it is split by the
-/// rule of split(): the field itself for quadratic tetrahedra, and for every field that is quadratic in the cell; of third
-/// order else. Tets are bisected at the edge that deviates most, in
+/// A cell is split into quadratic tets, by the rule of split(), and these are bisected until they are near the cell's own
+/// functions, with the cell's values at new points. Then they are bisected into linear tets at the edge that deviates
+/// most, in
 /// steps of 4 times, of several at the longest, ties by point numbers: this depends on edges alone, so neighbours agree.
 ///
 /// `grid`       its fields are not looked at
@@ -53,7 +53,7 @@ struct RefineOptions {
 ISOTET_API Result<LinearGrid> refine(const Grid& grid, const PointField& field, const RefineOptions& options = {},
                                      const Run& run = {});
 
-/// How far another field, linear in each tet of a grid of linearize() or refine(), is at most from the piecewise quadratic one.
+/// How far another field, linear in each tet of a grid of linearize() or refine(), is at most from the quadratic interpolants.
 ///
 /// `values`     one scalar a user's point
 /// Cost         a pass over the tets

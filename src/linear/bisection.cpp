@@ -92,8 +92,9 @@ void Bisector::judge(Edge& edge, const Corner& a, const Corner& b) {
     double excess2 = excess * excess;
     const double allowed2 = rule_.length > 0 ? rule_.length * rule_.length : rule_.bend * rule_.bend * length2;
     if (away2 > allowed2) {
-        if (rule_.length == 0 && is_bent_too_fine(a.place, b.place)) told_.too_bent = true;
-        else excess2 = std::max(excess2, away2 / allowed2);
+        if (rule_.length == 0 && is_bent_too_fine(a.place, b.place)) {
+            if (told_.bent.empty() || told_.bent.back() != index_) told_.bent.push_back(index_);
+        } else excess2 = std::max(excess2, away2 / allowed2);
     }
     if (excess2 > 1) edge.grade = grade_of(excess2);
 }

@@ -39,7 +39,8 @@ struct Bisected {
     std::uint64_t not_finite = 0;                    ///< quadratic tets dropped
     bool too_fine = false;                           ///< an edge was too short to be bisected further
     DistanceCounts distances;                        ///< with BisectionRule::deviations
-    bool too_bent = false;                           ///< an edge bends by more than `bend`, but is too short for that
+    std::vector<std::uint32_t> bent;                 ///< quadratic tets of which an edge bends by more than `bend`, but is
+                                                     ///< too short for that
 };
 
 /// Limits that all threads share.

@@ -108,7 +108,8 @@ Result<Array> LinearGrid::extend(const Array& values, const Run& run) const {
         if (derived.count() == 0 && refined.count() == 0) return values;
         Array out = values.visit([&]<class T>(std::span<const T> from) {
             using To = std::conditional_t<std::is_floating_point_v<T>, T, double>;
-            return extended<To>(derived, refined, from, values.components(), report.high_degree == 0, progress);
+            return extended<To>(derived, refined, from, values.components(),
+                                report.high_degree == 0 && refinement.curved_cells == 0, progress);
         });
         if (progress.cancelled()) return cancelled_extension();
         return out;

@@ -215,7 +215,7 @@ bool has_polyhedra(const Cells& cells) { return has_type(cells, is_split_by_face
 Result<LinearGrid> linearize(const Grid& grid, const LinearizeOptions& options, const Progress& progress) {
     auto split = split_polyhedra(grid, options, progress);
     if (!split || !has_curved_cells(grid.cells)) return split;
-    return refined(*std::move(split), nullptr, {}, progress);
+    return refined(grid, *std::move(split), nullptr, {}, progress);
 }
 
 } // namespace linear

@@ -2,6 +2,7 @@
 // Values inside a Lagrange pyramid, from those at its nodes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -23,8 +24,12 @@ public:
 
     /// Of the nodes in VTK's order, at `place` / `steps` inside the cell.
     std::vector<double> at(const core::LatticePlace& place, unsigned steps) const;
+    /// The same at x, y, z of the unit pyramid, of which the base is a square from 0 to 1.
+    std::vector<double> at(const std::array<long double, 3>& place) const;
 
 private:
+    std::vector<double> weights(const std::array<long double, 3>& place, long double steps) const;
+
     unsigned degree_;
     std::vector<core::LatticePlace> nodes_;
     std::vector<std::size_t> from_top_;        ///< nodes by layer

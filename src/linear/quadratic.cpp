@@ -68,6 +68,9 @@ struct CurvedBlock {
     std::vector<QuadraticTet> tets;
     std::vector<std::uint8_t> odd;
     std::vector<std::uint64_t> sources;
+    std::vector<std::array<std::uint8_t, 4>> locals;
+    std::vector<std::uint64_t> cell_node_ends; ///< one a cell
+    std::vector<Node> cell_nodes;
     std::vector<std::uint64_t> row_ends, row_points;
     std::vector<double> row_weights;
     std::uint64_t curved = 0, left_out = 0, unknown = 0;
@@ -101,6 +104,13 @@ class CellNodes {
 public:
     CellNodes(const Grid& grid, const core::CellReader& cells, const SharedNodes& shared)
         : cells_(cells), shared_(shared), numbers_(grid.point_numbers), has_numbers_(!grid.point_numbers.empty()) {}
+
+    void split(std::size_t cell, CellNodeLists lists, CurvedBlock& out) {
+        split(cell, out);
+        if (lists == CellNodeLists::left_out) return;
+        if (layout_at(cell) && layout_.kind != core::CellKind::tetrahedron) add_nodes(out);
+        out.cell_node_ends.push_back(out.cell_nodes.size());
+    }
 
     void split(std::size_t cell, CurvedBlock& out) {
         const std::uint8_t type = cells_.type(cell);
@@ -230,6 +240,14 @@ private:
         return mean_node;
     }
 
+    /// All nodes of degree 2, of the cell that was read last.
+    void add_nodes(CurvedBlock& out) {
+        for (std::size_t i = 0; i < core::corner_count(layout_.kind); ++i) out.cell_nodes.push_back(nodes_[i]);
+        for (std::size_t i = 0; i < quadratic_edges(layout_.kind).size(); ++i) out.cell_nodes.push_back(edge_node(i));
+        for (std::size_t i = 0; i < quadratic_faces(layout_.kind).size(); ++i) out.cell_nodes.push_back(face_node(i));
+        if (layout_.kind == core::CellKind::hexahedron) out.cell_nodes.push_back(body_node());
+    }
+
     void add_tet(std::array<std::uint8_t, 4> corners, std::size_t cell) {
         std::uint8_t odd = 0;
         for (std::size_t end = 4; end > 1; --end)
@@ -245,6 +263,7 @@ private:
         out_->tets.push_back(tet);
         out_->odd.push_back(odd);
         out_->sources.push_back(cell);
+        out_->locals.push_back(corners);
     }
 
     static constexpr Node not_yet = 0xfffffffe;
@@ -314,14 +333,15 @@ Holes find_holes(const CellNodes& nodes, const core::CellReader& cells) {
 
 QuadraticTets joined_curved(std::vector<CurvedBlock>& blocks, std::uint64_t points) {
     struct Place {
-        std::uint64_t tet = 0, row = 0, term = 0;
+        std::uint64_t tet = 0, row = 0, term = 0, cell = 0, node = 0;
     };
     std::vector<Place> places(blocks.size() + 1);
     QuadraticTets out;
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         const CurvedBlock& block = blocks[b];
         places[b + 1] = {places[b].tet + block.tets.size(), places[b].row + block.row_ends.size(),
-                         places[b].term + block.row_points.size()};
+                         places[b].term + block.row_points.size(), places[b].cell + block.cell_node_ends.size(),
+                         places[b].node + block.cell_nodes.size()};
         out.curved += block.curved;
         out.left_out += block.left_out;
         out.unknown += block.unknown;
@@ -330,21 +350,31 @@ QuadraticTets joined_curved(std::vector<CurvedBlock>& blocks, std::uint64_t poin
     out.tets = core::Buffer<QuadraticTet>(total.tet);
     out.odd = core::Buffer<std::uint8_t>(total.tet);
     out.sources = core::Buffer<std::uint64_t>(total.tet);
+    out.locals = core::Buffer<std::array<std::uint8_t, 4>>(total.tet);
+    if (total.cell > 0) out.first_node.resize(total.cell + 1);
+    out.cell_nodes.resize(total.node);
     core::Buffer<std::uint64_t> first(total.row + 1), terms(total.term);
     core::Buffer<double> weights(total.term);
     first[0] = 0;
     core::parallel_each(blocks.size(), 1, [&](std::size_t b) {
         CurvedBlock& block = blocks[b];
         const Place& at = places[b];
+        const auto joined_node = [&](Node node) {
+            return node == mean_node || !(node & row_flag) ? node
+                                                           : static_cast<Node>(points + at.row + (node & ~row_flag));
+        };
         for (std::size_t i = 0; i < block.tets.size(); ++i) {
             QuadraticTet tet = block.tets[i];
-            for (std::size_t k = 4; k < 10; ++k)
-                if (tet[k] != mean_node && (tet[k] & row_flag))
-                    tet[k] = static_cast<Node>(points + at.row + (tet[k] & ~row_flag));
+            for (std::size_t k = 4; k < 10; ++k) tet[k] = joined_node(tet[k]);
             out.tets[at.tet + i] = tet;
         }
+        for (std::size_t i = 0; i < block.cell_nodes.size(); ++i)
+            out.cell_nodes[at.node + i] = joined_node(block.cell_nodes[i]);
+        for (std::size_t i = 0; i < block.cell_node_ends.size(); ++i)
+            out.first_node[at.cell + i + 1] = at.node + block.cell_node_ends[i];
         std::ranges::copy(block.odd, out.odd.begin() + at.tet);
         std::ranges::copy(block.sources, out.sources.begin() + at.tet);
+        std::ranges::copy(block.locals, out.locals.begin() + at.tet);
         for (std::size_t i = 0; i < block.row_ends.size(); ++i) first[at.row + i + 1] = at.term + block.row_ends[i];
         std::ranges::copy(block.row_points, terms.begin() + at.term);
         std::ranges::copy(block.row_weights, weights.begin() + at.term);
@@ -356,7 +386,7 @@ QuadraticTets joined_curved(std::vector<CurvedBlock>& blocks, std::uint64_t poin
 
 } // namespace
 
-Result<QuadraticTets> quadratic_tets(const Grid& grid, const Progress& progress) {
+Result<QuadraticTets> quadratic_tets(const Grid& grid, CellNodeLists lists, const Progress& progress) {
     const auto cells = core::CellReader::open(grid);
     if (!cells) return cells.error();
     if (auto sound = core::check_cells(grid, *cells, progress); !sound) return sound.error();
@@ -383,7 +413,7 @@ Result<QuadraticTets> quadratic_tets(const Grid& grid, const Progress& progress)
         CellNodes nodes(grid, *cells, shared);
         for (std::size_t b = begin; b < end; ++b) {
             const std::size_t last = std::min(cells->count(), (b + 1) * curved_cells_per_block);
-            for (std::size_t cell = b * curved_cells_per_block; cell < last; ++cell) nodes.split(cell, blocks[b]);
+            for (std::size_t cell = b * curved_cells_per_block; cell < last; ++cell) nodes.split(cell, lists, blocks[b]);
         }
     });
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "splitting curved cells was cancelled"};

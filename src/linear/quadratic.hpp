@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include <isotet/grid.hpp>
 #include <isotet/linear_cells.hpp>
@@ -32,11 +33,16 @@ struct QuadraticTets {
     core::Buffer<QuadraticTet> tets;
     core::Buffer<std::uint8_t> odd;      ///< 1: the corners are an odd permutation of those of the upright cell
     core::Buffer<std::uint64_t> sources; ///< the cell of each
+    core::Buffer<std::array<std::uint8_t, 4>> locals; ///< which corners of the cell the corners are
+    std::vector<std::uint64_t> first_node;            ///< of each cell in cell_nodes, and the end; with CellNodeLists::kept
+    std::vector<Node> cell_nodes; ///< the nodes of degree 2 of cells that are no tets, in VTK's order, made ones too
     DerivedPoints hidden;                ///< nodes in the middle of faces and cells, of the grid's points
     std::uint64_t curved = 0;            ///< cells of a curved type that are among them
     std::uint64_t left_out = 0;          ///< cells of all other types
     std::uint64_t unknown = 0;           ///< of these: curved cells of a degree or type that is not handled
 };
+
+enum class CellNodeLists : std::uint8_t { left_out, kept };
 
 /// Every linear and curved cell as quadratic tets, in the order of the cells; others are left out.
 ///
@@ -45,6 +51,6 @@ struct QuadraticTets {
 ///
 /// Errors   invalid_data: a number of nodes that does not fit the type, points out of range or not finite, more points
 ///          than 2^31, nothing left; cancelled
-Result<QuadraticTets> quadratic_tets(const Grid& grid, const Progress& progress);
+Result<QuadraticTets> quadratic_tets(const Grid& grid, CellNodeLists lists, const Progress& progress);
 
 } // namespace isotet::linear

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "linear/bisection.hpp"
+#include "linear/own_pieces.hpp"
 #include "linear/refine.hpp"
 #include "linear/weld.hpp"
 
@@ -69,13 +72,41 @@ RefinementReport reported(const std::vector<Bisected>& blocks, const QuadraticTe
         report.field_bound = std::max(report.field_bound, error_per_deviation * block.deviation);
         length2 = std::max(length2, block.length2);
         report.too_fine |= block.too_fine;
-        report.too_bent |= block.too_bent;
         distances.add(block.distances);
     }
     report.geometry_bound = error_per_deviation * std::sqrt(length2);
     report.largest_distance = distances.largest();
     report.distance = distances.not_exceeded_by(0.99);
     return report;
+}
+
+/// The difference of quadratic tets from the cells' own functions, of those of which something is kept.
+void add_own_bounds(const std::vector<Bisected>& blocks, const OwnBounds& own, RefinementReport& report) {
+    if (own.value.empty()) return;
+    double value = 0, length = 0;
+    std::size_t tet = 0;
+    for (const Bisected& block : blocks)
+        for (const std::uint32_t children : block.children) {
+            if (children > 0) {
+                value = std::max(value, own.value[tet]);
+                length = std::max(length, own.length[tet]);
+            }
+            ++tet;
+        }
+    report.field_bound += value;
+    report.geometry_bound += length;
+}
+
+/// Edges that bend too much are of cells that fold, or of sound ones that bend strongly: a look at some of them.
+bool has_folds(const std::vector<Bisected>& blocks, const Grid& user, const LinearGrid& before,
+               const QuadraticTets& tets, const std::array<NodeValues, 3>& points) {
+    constexpr std::size_t most = 1000;
+    std::vector<std::uint32_t> bent;
+    for (const Bisected& block : blocks)
+        for (const std::uint32_t tet : block.bent)
+            if (bent.size() < most && (bent.empty() || tets.sources[bent.back()] != tets.sources[tet]))
+                bent.push_back(tet);
+    return folded_cells(user, before, tets, points, bent) > 0;
 }
 
 /// Where isovalues meet nothing, what the first quadratic tet becomes stays: what contours takes no grid without cells.
@@ -97,9 +128,9 @@ void keep_one(std::vector<Bisected>& blocks, std::size_t count, std::size_t per_
 
 } // namespace
 
-Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOptions& options,
+Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* field, const RefineOptions& options,
                            const Progress& progress) {
-    auto tets = quadratic_tets(before.grid, progress);
+    auto tets = quadratic_tets(before.grid, field ? CellNodeLists::kept : CellNodeLists::left_out, progress);
     if (!tets) return tets.error();
     progress("refine", 0.1);
     std::array<NodeValues, 3> points;
@@ -114,6 +145,7 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     Array longer;
     NodeValues values;
     std::vector<double> deviations;
+    OwnBounds own;
     double tolerance = 0;
     if (field) {
         auto extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
@@ -123,7 +155,23 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
         const double range = range_of(*tets, values);
         tolerance = options.tolerance > 0 ? options.tolerance : options.relative_tolerance * range;
         constexpr double finest = 0x1p-44; // of the range: beyond, rounding is all that is left
-        rule.deviation = std::max(tolerance, finest * range) / error_per_deviation;
+        const double most_error = std::max(tolerance, finest * range);
+        constexpr double share = 3.0 / 8, reserve = 1.0 / 2; // of the tolerance, for the cells' own functions
+        OwnRule own_rule;
+        own_rule.value = share * (tolerance > 0 ? most_error : RefineOptions().relative_tolerance * range);
+        own_rule.length = share * options.geometry_tolerance;
+        own_rule.isovalues = isovalues;
+        auto found = follow_own_functions(user, before, *tets, values, points, own_rule, progress);
+        if (!found) return found.error();
+        own = *std::move(found);
+        if (before.grid.points.tuples() != longer.tuples()) {
+            extended = before.extend(*field, {.threads = core::threads_here(), .progress = {}});
+            if (!extended) return extended.error();
+            longer = *std::move(extended);
+            values = NodeValues(longer, tets->hidden);
+            for (std::size_t k = 0; k < 3; ++k) points[k] = NodeValues(before.grid.points, tets->hidden, k);
+        }
+        rule.deviation = (most_error - std::min(own.expected * reserve / share, reserve * most_error)) / error_per_deviation;
         if (options.distance > 0) {
             constexpr double finest_for_distance = 1e-5; // of the range: where the field is flat, no distance is kept
             const double most = tolerance > 0 ? rule.deviation : std::numeric_limits<double>::infinity();
@@ -133,6 +181,9 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
         }
     }
 
+    if (constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max(); tets->tets.size() > most)
+        return invalid_data(fmt::format("the cells are {} quadratic tets, but may be at most {} where cells are curved",
+                                        tets->tets.size(), most));
     BisectionLimits limits;
     const std::uint64_t free = core::free_memory();
     limits.max_tets = free / bytes_per_made_tet;
@@ -166,6 +217,8 @@ Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOp
     }
     progress("refine", 0.6);
     RefinementReport report = reported(blocks, *tets);
+    add_own_bounds(blocks, own, report);
+    report.too_bent = has_folds(blocks, user, before, *tets, points);
     auto made = welded(blocks, *tets, before.grid.points.tuples(), progress);
     if (!made) return made.error();
     progress("refine", 0.9);
@@ -210,7 +263,7 @@ Result<LinearGrid> refine(const Grid& grid, const PointField& field, const Refin
                             field.name, field.values.tuples(), field.values.components(), grid.points.tuples()));
         auto split = linear::split_polyhedra(grid, {}, progress);
         if (!split || !has_curved_cells(grid.cells)) return split;
-        return linear::refined(*std::move(split), &field.values, options, progress);
+        return linear::refined(grid, *std::move(split), &field.values, options, progress);
     });
 }
 

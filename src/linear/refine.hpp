@@ -15,8 +15,9 @@ Result<LinearGrid> split_polyhedra(const Grid& grid, const LinearizeOptions& opt
 
 /// All cells of what split_polyhedra() gave, as tets. Without a field each edge with a node is bisected once.
 ///
+/// `user`    the grid before that
 /// `field`   one scalar a user's point; may be null
-Result<LinearGrid> refined(LinearGrid before, const Array* field, const RefineOptions& options,
+Result<LinearGrid> refined(const Grid& user, LinearGrid before, const Array* field, const RefineOptions& options,
                            const Progress& progress);
 
 } // namespace isotet::linear

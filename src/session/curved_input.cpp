@@ -37,7 +37,7 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
     std::vector<std::string> out;
     if (report.curved_cells > 0 && report.refined)
         out.push_back(fmt::format(
-            "{} curved cells were refined to {} tets: the field is within {:.3g} of the cells' quadratic one{}, the "
+            "{} curved cells were refined to {} tets: the field is within {:.3g} of the cells' own{}, the "
             "tets within {:.3g} of their shape{}",
             report.curved_cells, report.tets, report.field_bound,
             report.tolerance > 0 ? fmt::format(" (asked for {:.3g})", report.tolerance) : "", report.geometry_bound,
@@ -54,8 +54,8 @@ std::vector<std::string> notes_on(const RefinementReport& report) {
         out.push_back("some edges could not be bisected any further: the bound is larger than the tolerance");
     if (report.too_bent)
         out.push_back(
-            "some cells bend more than bisecting can follow, as where they fold: there the tets are off their "
-            "shape");
+            "some cells fold: the determinant of their map has both signs, and their edges bend more than bisecting "
+            "can follow");
     if (report.not_finite > 0)
         out.push_back(fmt::format("{} of {} quadratic tets were left out: a node has no finite value",
                                   report.not_finite, report.quadratic_tets));
