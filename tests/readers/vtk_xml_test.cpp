@@ -16,6 +16,7 @@
 #include "io/own/byte_source.hpp"
 #include "io/own/number_text.hpp"
 #include "io/own/read_legacy_vtk.hpp"
+#include "io/own/text_scanner.hpp"
 #include "io/own/vtk_xml/base64.hpp"
 #include "io/own/vtk_xml/load.hpp"
 #include "support/temporary_folder.hpp"

@@ -349,6 +349,9 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     result.step = loaded.step;
     result.notes = std::move(loaded.notes);
     std::vector<Piece>& pieces = loaded.pieces;
+    if (std::ranges::all_of(pieces, [](const Piece& piece) { return piece.grid.cells.count() == 0; }))
+        for (const Piece& piece : pieces)
+            if (!piece.flat.empty()) return broken(piece.name, piece.flat + " has no cells with a volume");
     for (const Piece& piece : pieces)
         if (auto problem = misfit(piece))
             return Error{ErrorCode::invalid_data, fmt::format("piece \"{}\": {}", escaped(piece.name), *problem)};

@@ -2,7 +2,9 @@
 #include "io/own/legacy_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <utility>
 
 #include <fmt/core.h>
@@ -15,6 +17,19 @@
 
 namespace isotet::io {
 namespace {
+
+template <class Number>
+Number with_bytes_swapped(Number number) {
+    auto bytes = std::bit_cast<std::array<std::byte, sizeof(Number)>>(number);
+    std::ranges::reverse(bytes);
+    return std::bit_cast<Number>(bytes);
+}
+
+Error is_little_endian(std::string_view keyword) {
+    return invalid_data(fmt::format("the numbers of {} make sense only as little-endian ones, but binary legacy VTK "
+                                    "files are big-endian: the program that wrote it has to swap the bytes",
+                                    keyword));
+}
 
 class CellsOfLegacy {
 public:
@@ -61,6 +76,10 @@ public:
             if (type < 0 || type > 255) fit = false;
             return static_cast<std::uint8_t>(type);
         });
+        if (!fit && values_.binary() && std::ranges::all_of(types->as<std::int32_t>(), [](std::int32_t type) {
+                return static_cast<std::uint32_t>(with_bytes_swapped(type)) <= 255;
+            }))
+            return is_little_endian("CELL_TYPES");
         if (!fit) return invalid_data("CELL_TYPES: a type is not between 0 and 255");
         return {};
     }
@@ -78,6 +97,7 @@ private:
         if (!geometry_) return {};
         const auto numbers = values->as<std::int32_t>();
         const auto does_not_fit = [&](std::uint64_t cell) {
+            if (values_.binary() && fits_swapped(numbers, count)) return is_little_endian(keyword);
             return invalid_data(
                 fmt::format("{}: cell {} of {} does not fit into the {} numbers", keyword, cell, count, size));
         };
@@ -103,6 +123,28 @@ private:
         cells.connectivity = std::move(corners).to_array();
         cells.offsets = std::move(offsets).to_array();
         return {};
+    }
+
+    /// True where the numbers are whole cells once their bytes are swapped.
+    static bool fits_swapped(std::span<const std::int32_t> numbers, std::uint64_t count) {
+        std::uint64_t at = 0;
+        for (std::uint64_t cell = 0; cell < count && at < numbers.size(); ++cell)
+            at += 1 + static_cast<std::uint64_t>(
+                          static_cast<std::uint32_t>(with_bytes_swapped(numbers[static_cast<std::size_t>(at)])));
+        return count > 0 && at == numbers.size();
+    }
+
+    /// The same of offsets.
+    static bool fits_swapped(const Array& offsets, std::uint64_t size) {
+        return offsets.visit([&](auto all) {
+            std::uint64_t last = 0;
+            for (const auto stored : all) {
+                const auto offset = static_cast<std::uint64_t>(with_bytes_swapped(stored));
+                if (offset < last) return false;
+                last = offset;
+            }
+            return last == size;
+        });
     }
 
     /// Counts of numbers tell that all cells may have as many corners; each_of_corners() sees whether they have.
@@ -185,7 +227,9 @@ private:
                 }
             });
         });
-        return failed.result();
+        auto sound = failed.result();
+        if (!sound && values_.binary() && fits_swapped(cells.offsets, size)) return is_little_endian(keyword);
+        return sound;
     }
 
     /// Narrow ones where they fit.

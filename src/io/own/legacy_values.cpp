@@ -33,11 +33,23 @@ constexpr std::array legacy_types{LegacyType{"char", ScalarType::int8},
                                   LegacyType{"vtkidtype", ScalarType::int32, false, true},
                                   LegacyType{"unsigned_int", ScalarType::uint32},
                                   LegacyType{"long", ScalarType::int64},
-                                  LegacyType{"vtktypeint64", ScalarType::int64},
+                                  LegacyType{"long_long", ScalarType::int64},
+                                  LegacyType{"__int64", ScalarType::int64},
                                   LegacyType{"unsigned_long", ScalarType::uint64},
-                                  LegacyType{"vtktypeuint64", ScalarType::uint64},
+                                  LegacyType{"unsigned_long_long", ScalarType::uint64},
+                                  LegacyType{"unsigned___int64", ScalarType::uint64},
                                   LegacyType{"float", ScalarType::float32},
-                                  LegacyType{"double", ScalarType::float64}};
+                                  LegacyType{"double", ScalarType::float64},
+                                  LegacyType{"int8", ScalarType::int8},
+                                  LegacyType{"uint8", ScalarType::uint8},
+                                  LegacyType{"int16", ScalarType::int16},
+                                  LegacyType{"uint16", ScalarType::uint16},
+                                  LegacyType{"int32", ScalarType::int32},
+                                  LegacyType{"uint32", ScalarType::uint32},
+                                  LegacyType{"int64", ScalarType::int64},
+                                  LegacyType{"uint64", ScalarType::uint64},
+                                  LegacyType{"float32", ScalarType::float32},
+                                  LegacyType{"float64", ScalarType::float64}};
 
 } // namespace
 
@@ -58,10 +70,16 @@ Result<std::uint64_t> LegacyValues::read_count(std::string_view what) {
     return count;
 }
 
+std::optional<LegacyType> legacy_type(std::string_view name) {
+    if (name.starts_with("vtktype")) name.remove_prefix(7); // vtktypeint64 and so on
+    const auto* const known = std::ranges::find(legacy_types, name, &LegacyType::name);
+    return known == legacy_types.end() ? std::nullopt : std::optional(*known);
+}
+
 Result<LegacyType> LegacyValues::read_type() {
     const auto name = lower(scanner_.word());
-    const auto* const known = std::ranges::find(legacy_types, name, &LegacyType::name);
-    if (known == legacy_types.end()) return before_here(fmt::format("{} is not a type that is read", in_quotes(name)));
+    const auto known = legacy_type(name);
+    if (!known) return before_here(fmt::format("{} is not a type that is read", in_quotes(name)));
     return *known;
 }
 

@@ -38,6 +38,9 @@ constexpr std::size_t legacy_piece = std::size_t{1} << 16; ///< values: of 8 byt
 /// In lower case.
 std::string lower(std::string word);
 
+/// The type that VTK's legacy files, of any age, or other programs call so, in lower case.
+std::optional<LegacyType> legacy_type(std::string_view name);
+
 /// An array of the same shape of what convert() makes of each value.
 template <class To, class Convert>
 Array mapped(const Array& from, const Convert& convert) {

@@ -44,7 +44,8 @@ struct LegacyCells {
 struct LegacyFile {
     std::string dataset; ///< "polydata", "unstructured_grid" and so on
     bool has_points = false;
-    Array points; ///< float32 or float64
+    std::uint64_t point_count = 0; ///< that POINTS announces
+    Array points;                  ///< float32 or float64
     LegacyCells vertices, lines, polygons, strips, cells;
     Array cell_types;                     ///< uint8; empty where all are one_type
     std::optional<std::uint8_t> one_type; ///< of all cells
@@ -53,7 +54,12 @@ struct LegacyFile {
     std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};
     std::array<Array, 3> coordinates; ///< of a rectilinear grid
     std::vector<Attribute> point_data, cell_data;
-    FileInfo info; ///< of fields that were not asked for, too
+    FileInfo info; ///< of fields that were not asked for, too; with what is left out
+    std::vector<std::string> notes;
+
+    /// What the file announces; too large to be true: the highest number.
+    std::uint64_t points_announced() const;
+    std::uint64_t cells_announced() const;
 };
 
 /// What is wanted of a file.
@@ -65,9 +71,10 @@ struct LegacyWants {
 };
 
 /// Reads a whole file. Arrays that are not wanted are skipped; integers of type vtkIdType become int64, as in VTK.
+/// An array of data that cannot be read, has another length than the grid or no name is left out, and the rest read on.
 ///
-/// Errors   invalid_data: what was seen, where, and the rule; an array that is longer than the rest of the file, before
-///          memory is taken; as ByteSource::read(); cancelled
+/// Errors   invalid_data: what was seen, where, and the rule; points or cells that are longer than the rest of the file,
+///          before memory is taken; as ByteSource::read(); cancelled
 Result<LegacyFile> read_legacy_vtk(const ByteSource& source, const LegacyWants& wants, const Progress& progress);
 
 } // namespace isotet::io

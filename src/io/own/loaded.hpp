@@ -26,6 +26,7 @@ struct Piece {
     std::optional<std::uint64_t> cells_in_file = {}; ///< where the grid has only active cells
     /// Of a structured grid: first and last point along each axis, as the file numbers them.
     std::optional<std::array<std::int64_t, 6>> extent = {};
+    std::string flat = {}; ///< of a structured grid without cells that have a volume: "a plane of 3 x 4 points"
 };
 
 struct Loaded {

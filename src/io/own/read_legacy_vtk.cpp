@@ -14,6 +14,7 @@
 #include "io/own/active_filter.hpp"
 #include "io/own/join.hpp"
 #include "io/own/legacy_cells.hpp"
+#include "io/own/legacy_polyhedra.hpp"
 #include "io/own/legacy_vtk.hpp"
 #include "io/own/old_hexahedra.hpp"
 #include "io/own/text_scanner.hpp"
@@ -61,6 +62,7 @@ Result<Cells> cells_of(const LegacyFile& file) {
                       ? Array::own(std::vector<std::uint8_t>(static_cast<std::size_t>(list.count), *file.one_type))
                       : file.cell_types;
     cells.offsets = list.offsets.empty() ? offsets_of(list) : list.offsets;
+    if (auto taken = take_legacy_polyhedra(cells); !taken) return taken.error();
     if (list.interleaved) reorder_old_hexahedra(cells);
     vtk_xml::simplify(cells);
     return cells;
@@ -93,18 +95,13 @@ Result<void> take_structured(const LegacyFile& file, Piece& piece, std::vector<s
     constexpr std::uint64_t most = std::uint64_t{1} << 48;
     if (size.x * size.y > most / std::max<std::uint64_t>(size.z, 1))
         return invalid_data(fmt::format("DIMENSIONS are {} x {} x {}: too many points", size.x, size.y, size.z));
-    // Fields first: if they are as long as DIMENSIONS say, the file is as large as the grid.
-    for (const Attribute& attribute : file.point_data)
-        if (attribute.values.tuples() != size.x * size.y * size.z)
-            return invalid_data(fmt::format("point field {} has {} values, but DIMENSIONS are {} x {} x {}",
-                                            in_quotes(attribute.name), attribute.values.tuples(), size.x, size.y,
-                                            size.z));
     auto points = structured_points(file, size);
     if (!points) return points.error();
     auto cells = vtk_xml::hexahedra_of(size, notes);
     if (!cells) return cells.error();
     piece.grid.points = std::move(*points);
     piece.grid.cells = std::move(*cells);
+    piece.flat = vtk_xml::flatness(size);
     return {};
 }
 
@@ -171,6 +168,7 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     Loaded loaded;
     loaded.info = std::move(file->info);
     std::erase_if(loaded.info.fields, [](const FieldInfo& field) { return vtk_xml::is_ghost_array(field.name); });
+    loaded.notes = std::move(file->notes);
     if (depth == Depth::description) return loaded;
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();

@@ -17,6 +17,10 @@ Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progr
     if (!kind.empty() && kind != "polydata")
         return invalid_data(fmt::format("this is a dataset of kind {}, not a surface (POLYDATA)", in_quotes(kind)));
     if (!file) return file.error();
+    if (!file->info.left_out.empty()) {
+        const LeftOut& item = file->info.left_out.front();
+        return invalid_data(fmt::format("{} {} cannot be read: {}", item.what, in_quotes(item.name), item.reason));
+    }
     if (!file->has_points) return invalid_data("the file has no POINTS");
     SurfaceParts parts;
     parts.positions = std::move(file->points);

@@ -12,9 +12,9 @@
 
 namespace isotet::io {
 
-inline bool is_space(char c) noexcept {
-    return c == ' ' || (c >= '\t' && c <= '\r');
-}
+constexpr std::string_view utf_8_mark = "\xef\xbb\xbf"; ///< the byte order mark that some programs write before text
+
+inline bool is_space(char c) noexcept { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /// A cursor over text. Numbers are the same in every locale; "+5", "nan", "inf", "1.0D+05" and Fortran's "1.0-105" are
 /// numbers too, too large ones become infinite, too small ones zero. Integers must be written as integers.

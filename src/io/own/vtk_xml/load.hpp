@@ -98,6 +98,9 @@ ISOTET_API Result<Array> points_of(const GridSize& size, const ImagePoints& imag
 /// From coordinates along each axis.
 ISOTET_API Result<Array> points_of(const GridSize& size, const std::array<std::vector<double>, 3>& ticks);
 
+/// What a grid is whose cells have no volume: "a plane of 3 x 4 points"; empty where they have one.
+std::string flatness(const GridSize& points);
+
 /// The hexahedra of a box, and a note that says so.
 ISOTET_API Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& notes);
 

@@ -259,9 +259,23 @@ Result<Cells> hexahedra_of(const GridSize& points, std::vector<std::string>& not
             return fits.error();
         cells.connectivity = narrow ? hexahedra<std::int32_t>(points) : hexahedra<std::int64_t>(points);
     }
-    notes.push_back(fmt::format("a structured grid of {} x {} x {} points was read as {} hexahedra", points.x, points.y,
-                                points.z, cells.count()));
+    if (const std::string flat = flatness(points); !flat.empty())
+        notes.push_back(fmt::format("{} has no cells with a volume", flat));
+    else
+        notes.push_back(fmt::format("a structured grid of {} x {} x {} points was read as {} hexahedra", points.x,
+                                    points.y, points.z, cells.count()));
     return cells;
+}
+
+std::string flatness(const GridSize& points) {
+    std::vector<std::uint64_t> along;
+    for (const std::uint64_t count : {points.x, points.y, points.z}) {
+        if (count == 0) return {};
+        if (count > 1) along.push_back(count);
+    }
+    if (along.size() == 3) return {};
+    if (along.size() == 2) return fmt::format("a plane of {} x {} points", along[0], along[1]);
+    return along.size() == 1 ? fmt::format("a line of {} points", along[0]) : "a single point";
 }
 
 Result<std::uint64_t> count_structured(const Document& document) {
@@ -338,6 +352,7 @@ Result<Piece> load_structured(Document& document, const Wanted& wanted, const Pr
     auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), notes);
     if (!hexahedra_of_all) return hexahedra_of_all.error();
     piece.grid.cells = std::move(*hexahedra_of_all);
+    piece.flat = flatness(size_of_box(boxes->whole));
     if (piece.grid.cells.count() == 0) { // flat: its cells are not volumes
         piece.grid.cell_fields.clear();
         piece.cell_ids = Array();

@@ -1,0 +1,431 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Legacy VTK files as VTK and others write them: polyhedra, metadata, types, and one array that is broken beside others.
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "io/own/read_legacy_vtk.hpp"
+#include "readers/sample_bytes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::test {
+namespace {
+
+/// A file that grows at its end; numbers are ascii or big-endian.
+class LegacyText {
+public:
+    explicit LegacyText(bool binary, bool little = false) : binary_(binary), bytes_(!little) {}
+
+    LegacyText& text(std::string_view text) {
+        bytes_.text(text);
+        return *this;
+    }
+    template <class T>
+    LegacyText& numbers(std::initializer_list<double> values) {
+        for (const double value : values)
+            if (binary_) bytes_.number(static_cast<T>(value));
+            else bytes_.text(fmt::format("{} ", value));
+        return text("\n");
+    }
+    /// The points of the cube of sample_bytes.hpp, behind the header.
+    LegacyText& start(std::string_view version) {
+        text(fmt::format("# vtk DataFile Version {}\ntitle\n{}\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n", version,
+                         binary_ ? "BINARY" : "ASCII"));
+        for (const double coordinate : cube_points)
+            if (binary_) bytes_.number(coordinate);
+            else bytes_.text(fmt::format("{} ", coordinate));
+        return text("\n");
+    }
+    /// A tetrahedron.
+    LegacyText& tet() {
+        text("CELLS 1 5\n").numbers<std::int32_t>({4, 0, 1, 3, 4});
+        return text("CELL_TYPES 1\n").numbers<std::int32_t>({10});
+    }
+    /// Nine tuples, of numbers that count up.
+    LegacyText& nine(double first, int components = 1) {
+        for (int i = 0; i < 9 * components; ++i)
+            if (binary_) bytes_.number(static_cast<float>(first + i));
+            else bytes_.text(fmt::format("{} ", first + i));
+        return text("\n");
+    }
+    /// An array of a FIELD with the values 10 to 18.
+    LegacyText& sound_array(std::string_view name) { return text(fmt::format("{} 1 9 float\n", name)).nine(10); }
+    std::string str() const { return bytes_.str(); }
+
+private:
+    bool binary_;
+    SampleBytes bytes_;
+};
+
+io::Loaded load(const std::string& bytes, io::Depth depth = io::Depth::arrays) {
+    auto loaded = io::load_legacy(io::ByteSource(bytes), {}, depth, {});
+    EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().message);
+    return loaded ? *std::move(loaded) : io::Loaded{};
+}
+
+std::string legacy_error(const std::string& bytes) {
+    const auto loaded = io::load_legacy(io::ByteSource(bytes), {}, io::Depth::arrays, {});
+    return loaded ? "no error" : loaded.error().message;
+}
+
+const Grid& grid_of(const io::Loaded& loaded) {
+    static const Grid none;
+    EXPECT_EQ(loaded.pieces.size(), 1U);
+    return loaded.pieces.empty() ? none : loaded.pieces.front().grid;
+}
+
+/// "name: reason" of all that is left out.
+std::vector<std::string> left_out(const io::Loaded& loaded) {
+    std::vector<std::string> all;
+    for (const LeftOut& item : loaded.info.left_out)
+        all.push_back(fmt::format("{} {}: {}", item.what, item.name, item.reason));
+    return all;
+}
+
+/// The sound array is there with its values, and nothing else but what is left out.
+void expect_sound(const std::string& bytes, const std::vector<std::string>& expected_left_out) {
+    for (const io::Depth depth : {io::Depth::description, io::Depth::arrays}) {
+        const io::Loaded loaded = load(bytes, depth);
+        EXPECT_EQ(left_out(loaded), expected_left_out);
+        ASSERT_EQ(loaded.info.fields.size(), 1U);
+        EXPECT_EQ(loaded.info.fields[0].name, "sound");
+        if (depth == io::Depth::description) continue;
+        const Field* field = find(grid_of(loaded).point_fields, "sound");
+        ASSERT_NE(field, nullptr);
+        EXPECT_EQ(values_of(field->values), (std::vector<double>{10, 11, 12, 13, 14, 15, 16, 17, 18}));
+    }
+}
+
+class ReadLegacyForm : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Forms, ReadLegacyForm, testing::Bool(),
+                         [](const auto& form) { return form.param ? "Binary" : "Ascii"; });
+
+const std::vector<double> cube_faces{6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4,
+                                     4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7};
+
+void expect_polyhedra(const Grid& grid) {
+    EXPECT_EQ(types_of(grid.cells), (std::vector<int>{10, 42, 14}));
+    EXPECT_EQ(values_of(grid.cells.connectivity),
+              (std::vector<double>{0, 1, 3, 4, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 8}));
+    EXPECT_EQ(values_of(grid.cells.offsets), (std::vector<double>{0, 4, 12, 17}));
+    EXPECT_EQ(values_of(grid.cells.faces), cube_faces);
+    EXPECT_EQ(values_of(grid.cells.face_offsets), (std::vector<double>{0, 0, 31, 31}));
+    EXPECT_TRUE(check(grid));
+}
+
+TEST_P(ReadLegacyForm, HasPolyhedraAsFacesAmongOtherCells) {
+    const std::string bytes =
+        LegacyText(GetParam())
+            .start("4.2")
+            .text("CELLS 3 43\n")
+            .numbers<std::int32_t>({4, 0, 1, 3, 4, 31, 6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4,
+                                    4, 1, 2, 6, 5, 4,  2, 3, 7, 6, 4, 3, 0, 4, 7, 5, 4, 5, 6, 7, 8})
+            .text("\nCELL_TYPES 3\n")
+            .numbers<std::int32_t>({10, 42, 14})
+            .str();
+    expect_polyhedra(grid_of(load(bytes)));
+    EXPECT_EQ(legacy_error(replaced(bytes, "CELLS 3 43", "CELLS 3 42")).substr(0, 6), "cells:");
+}
+
+TEST_P(ReadLegacyForm, HasPolyhedraInConnectivitySinceVersion5) {
+    const std::string bytes = LegacyText(GetParam())
+                                  .start("5.1")
+                                  .text("CELLS 4 40\nOFFSETS vtktypeint64\n")
+                                  .numbers<std::int64_t>({0, 4, 35, 40})
+                                  .text("CONNECTIVITY vtktypeint64\n")
+                                  .numbers<std::int64_t>({0, 1, 3, 4, 6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4,
+                                                          4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7, 4, 5, 6, 7, 8})
+                                  .text("CELL_TYPES 3\n")
+                                  .numbers<std::int32_t>({10, 42, 14})
+                                  .str();
+    expect_polyhedra(grid_of(load(bytes)));
+}
+
+TEST_P(ReadLegacyForm, MayHaveNothingButPolyhedraOfOneSize) {
+    const std::string bytes = LegacyText(GetParam())
+                                  .start("2.0")
+                                  .text("CELLS 2 36\n")
+                                  .numbers<std::int32_t>({17, 4, 3, 0, 1, 2, 3, 0, 1, 4, 3, 0, 2, 4, 3, 1, 2, 4,
+                                                          17, 4, 3, 4, 5, 6, 3, 4, 5, 8, 3, 4, 6, 8, 3, 5, 6, 8})
+                                  .text("CELL_TYPES 2\n")
+                                  .numbers<std::int32_t>({42, 42})
+                                  .str();
+    ReadOptions options;
+    options.active_cells = ReadActiveCells{};
+    for (const ReadOptions& each : {ReadOptions(), options}) {
+        const auto loaded = io::load_legacy(io::ByteSource(bytes), each, io::Depth::arrays, {});
+        ASSERT_TRUE(loaded) << loaded.error().message;
+        const Grid& grid = grid_of(*loaded);
+        EXPECT_EQ(values_of(grid.cells.connectivity), (std::vector<double>{0, 1, 2, 4, 4, 5, 6, 8}));
+        EXPECT_EQ(values_of(grid.cells.face_offsets), (std::vector<double>{0, 17, 34}));
+    }
+}
+
+TEST_P(ReadLegacyForm, RefusesPolyhedraWhoseNumbersAreNoFaces) {
+    for (const double wrong : {5.0, 3.0, 0.0, -1.0, 2e9}) {
+        const std::string bytes =
+            LegacyText(GetParam())
+                .start("4.2")
+                .text("CELLS 1 18\n")
+                .numbers<std::int32_t>({17, wrong, 3, 0, 1, 2, 3, 0, 1, 4, 3, 0, 2, 4, 3, 1, 2, 4})
+                .text("CELL_TYPES 1\n")
+                .numbers<std::int32_t>({42})
+                .str();
+        EXPECT_EQ(legacy_error(bytes),
+                  "cell 0 is a polyhedron, but its 17 numbers are not the number of its faces and, "
+                  "for each face, its number of points and these points")
+            << wrong;
+    }
+}
+
+TEST_P(ReadLegacyForm, StepsOverMetadataOfEveryKind) {
+    for (const char* metadata :
+         {"METADATA\nCOMPONENT_NAMES\n\nINFORMATION 0\n\n", "METADATA\nCOMPONENT_NAMES\n\n\n",
+          "METADATA\nCOMPONENT_NAMES\na%20b\n\n", "METADATA\nINFORMATION 0\n\n", "METADATA\n\n",
+          "METADATA\nCOMPONENT_NAMES\n\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1 \n\n",
+          "METADATA\nCOMPONENT_NAMES\nINFORMATION%202\nINFORMATION 2\nNAME UNITS LOCATION me\nDATA 2\nm\n\n"
+          "NAME ID LOCATION me\nDATA 7\n\n"}) {
+        const std::string bytes = LegacyText(GetParam())
+                                      .start("4.2")
+                                      .text("METADATA\nCOMPONENT_NAMES\n\ny\n\nINFORMATION 0\n\n")
+                                      .tet()
+                                      .text("POINT_DATA 9\nFIELD FieldData 3\na 1 9 float\n")
+                                      .nine(0)
+                                      .text(metadata)
+                                      .text("b 1 9 float\n")
+                                      .nine(1)
+                                      .text(metadata)
+                                      .sound_array("sound")
+                                      .text(metadata)
+                                      .text("SCALARS c float\nLOOKUP_TABLE default\n")
+                                      .nine(2)
+                                      .text(metadata)
+                                      .str();
+        const io::Loaded loaded = load(bytes);
+        EXPECT_EQ(loaded.info.fields.size(), 4U) << metadata;
+        EXPECT_TRUE(left_out(loaded).empty()) << metadata;
+        ASSERT_NE(find(grid_of(loaded).point_fields, "c"), nullptr) << metadata;
+        EXPECT_EQ(find(grid_of(loaded).point_fields, "c")->values.at(8), 10) << metadata;
+    }
+}
+
+TEST_P(ReadLegacyForm, KnowsTheTypesOfVtkOfAnyAge) {
+    for (const char* type : {"long_long", "long", "vtktypeint64", "vtkTypeInt64", "__int64", "int64"}) {
+        const std::string bytes = LegacyText(GetParam())
+                                      .start("3.0")
+                                      .tet()
+                                      .text(fmt::format("CELL_DATA 1\nSCALARS s {} 2\nLOOKUP_TABLE default\n", type))
+                                      .numbers<std::int64_t>({-5, 7})
+                                      .str();
+        const io::Loaded loaded = load(bytes);
+        ASSERT_EQ(grid_of(loaded).cell_fields.size(), 1U) << type;
+        EXPECT_EQ(grid_of(loaded).cell_fields[0].values.type(), ScalarType::int64) << type;
+        EXPECT_EQ(values_of(grid_of(loaded).cell_fields[0].values), (std::vector<double>{-5, 7})) << type;
+    }
+    for (const char* type : {"unsigned_long_long", "unsigned_long", "vtktypeuint64"})
+        EXPECT_EQ(load(LegacyText(GetParam())
+                           .start("3.0")
+                           .tet()
+                           .text(fmt::format("CELL_DATA 1\nFIELD f 1\ns 1 1 {}\n", type))
+                           .numbers<std::uint64_t>({7})
+                           .str())
+                      .info.fields.at(0)
+                      .type,
+                  ScalarType::uint64)
+            << type;
+}
+
+TEST_P(ReadLegacyForm, LeavesOutAnArrayOfUnknownTypeAlone) {
+    const std::string type = "its type 'quad' is not known";
+    const auto field = [&] {
+        return LegacyText(GetParam()).start("3.0").tet().text("POINT_DATA 9\nFIELD FieldData 2\n");
+    };
+    expect_sound(field().text("odd 2 9 quad\n").nine(1, 2).sound_array("sound").str(), {"point field odd: " + type});
+    expect_sound(field().sound_array("sound").text("odd 1 9 quad\n").nine(1).str(), {"point field odd: " + type});
+    expect_sound(LegacyText(GetParam())
+                     .start("3.0")
+                     .tet()
+                     .text("POINT_DATA 9\nSCALARS odd quad\nLOOKUP_TABLE default\n")
+                     .nine(1)
+                     .text("SCALARS sound float 1\nLOOKUP_TABLE default\n")
+                     .nine(10)
+                     .text("CELL_DATA 1\nVECTORS v quad\n")
+                     .numbers<double>({1, 2, 3})
+                     .str(),
+                 {"point field odd: " + type, "cell field v: " + type});
+}
+
+TEST_P(ReadLegacyForm, LeavesOutArraysOfAnotherLengthOrWithoutName) {
+    const auto file = [&] { return LegacyText(GetParam()).start("3.0").tet(); };
+    expect_sound(file()
+                     .text("POINT_DATA 9\nFIELD f 3\nshort 1 2 float\n")
+                     .numbers<float>({1, 2})
+                     .sound_array("sound")
+                     .text(" 1 9 float\n")
+                     .nine(1)
+                     .str(),
+                 {"point field short: it has 2 values, but the grid has 9 points", "point field : it has no name"});
+    expect_sound(file()
+                     .text("CELL_DATA 2\nSCALARS c float\nLOOKUP_TABLE default\n")
+                     .numbers<float>({1, 2})
+                     .text("POINT_DATA 9\nVECTORS  float\n")
+                     .nine(0, 3)
+                     .text("SCALARS sound float\nLOOKUP_TABLE default\n")
+                     .nine(10)
+                     .text("POINT_DATA 0\nFIELD empty 1\nnothing 1 0 float\n\n")
+                     .str(),
+                 {"cell field c: it has 2 values, but the grid has 1 cells", "point field : it has no name",
+                  "point field nothing: it has 0 values, but the grid has 9 points"});
+}
+
+TEST_P(ReadLegacyForm, LeavesOutAnArrayThatTheFileCutsShort) {
+    const std::string bytes = LegacyText(GetParam())
+                                  .start("3.0")
+                                  .tet()
+                                  .text("POINT_DATA 9\nFIELD f 3\n")
+                                  .sound_array("sound")
+                                  .text("cut 1 9 double\n")
+                                  .numbers<double>({1, 2, 3})
+                                  .str();
+    const auto reasons = left_out(load(bytes));
+    ASSERT_EQ(reasons.size(), 1U);
+    expect_sound(bytes, reasons);
+    EXPECT_TRUE(reasons[0].starts_with("point field cut: 'cut'")) << reasons[0];
+}
+
+TEST_P(ReadLegacyForm, TakesTheLastOfTwoArraysOfOneName) {
+    const std::string bytes = LegacyText(GetParam())
+                                  .start("3.0")
+                                  .tet()
+                                  .text("POINT_DATA 9\nFIELD f 3\nsound 1 9 double\n")
+                                  .numbers<double>({1, 2, 3, 4, 5, 6, 7, 8, 9})
+                                  .sound_array("sound")
+                                  .text("sound 1 1 float\n")
+                                  .numbers<float>({1})
+                                  .str();
+    expect_sound(bytes, {"point field sound: it has 1 values, but the grid has 9 points"});
+    const io::Loaded loaded = load(bytes);
+    EXPECT_EQ(loaded.notes,
+              std::vector<std::string>{"point field 'sound' occurs twice: the values of the last one were taken"});
+    EXPECT_EQ(loaded.info.fields[0].type, ScalarType::float32);
+}
+
+TEST_P(ReadLegacyForm, MayHaveDataBeforeCellsAndUnknownSections) {
+    expect_sound(LegacyText(GetParam())
+                     .start("3.0")
+                     .text("POINT_DATA 9\nSCALARS sound float\nLOOKUP_TABLE default\n")
+                     .nine(10)
+                     .text("CELL_TYPES 1\n")
+                     .numbers<std::int32_t>({10})
+                     .text("CELLS 1 5\n")
+                     .numbers<std::int32_t>({4, 0, 1, 3, 4})
+                     .text("EXTRA 3\n1 2 3\n")
+                     .str(),
+                 {"section extra: it is not known"});
+}
+
+TEST(ReadLegacyAscii, GoesOnBehindAnArrayWithTooFewOrTooManyOrOddNumbers) {
+    const std::string head = LegacyText(false).start("3.0").tet().text("POINT_DATA 9\n").str();
+    const std::string sound = "SCALARS sound float\nLOOKUP_TABLE default\n10 11 12 13 14 15 16 17 18\n";
+    const std::string odd = "SCALARS odd float\nLOOKUP_TABLE default\n";
+    expect_sound(head + odd + "1 2 3 4 5 6 7 8\n" + sound,
+                 {"point field odd: 'odd': 'SCALARS', number 8 of 9, is not float32"});
+    expect_sound(head + odd + "1 2 3 4 x 6 7 8 9\n" + sound,
+                 {"point field odd: 'odd': 'x', number 4 of 9, is not float32"});
+    expect_sound(head + odd + "1 2 3 4 5 6 7 8 9\n10\n" + sound,
+                 {"point field odd: '10' stands behind its 9 x 1 values, where a section should begin"});
+    expect_sound(head + "FIELD f 2\nodd 1 9 float\n1 2 3 4 5 6 7 8 9 10\nsound 1 9 float\n" +
+                     "10 11 12 13 14 15 16 17 18\n",
+                 {"point field odd: '10' stands behind its 9 x 1 values, where a section should begin"});
+    expect_sound(head + "FIELD f 2\nodd 1 9 float\n1 2 3 4 5 6 7 8\nsound 1 9 float\n10 11 12 13 14 15 16 17 18\n",
+                 {"point field odd: 'odd': 'sound', number 8 of 9, is not float32"});
+    expect_sound(head + sound + "VECTORS v float\n", {"point field v: 'v': 9 x 3 numbers were announced, but only 1 "
+                                                      "bytes are left"});
+}
+
+TEST(ReadLegacyBinary, DoesNotGuessWhatFollowsAnArrayOfUnknownLength) {
+    // Behind an array of an unknown type of 3 bytes nothing can be found again.
+    const std::string bytes = LegacyText(true)
+                                  .start("3.0")
+                                  .tet()
+                                  .text("POINT_DATA 9\nFIELD f 3\n")
+                                  .sound_array("sound")
+                                  .text("odd 1 9 triple\n")
+                                  .text("123456789123456789123456789\n")
+                                  .sound_array("lost")
+                                  .str();
+    expect_sound(bytes, {"point field odd: its type 'triple' is not known"});
+    ASSERT_EQ(load(bytes).notes.size(), 1U);
+    EXPECT_TRUE(load(bytes).notes[0].starts_with("what follows byte ")) << load(bytes).notes[0];
+}
+
+TEST(ReadLegacyBinary, OfLittleEndianNumbersIsNamed) {
+    const std::string message =
+        " make sense only as little-endian ones, but binary legacy VTK files are big-endian: the "
+        "program that wrote it has to swap the bytes";
+    EXPECT_EQ(legacy_error(LegacyText(true, true).start("3.0").tet().str()), "the numbers of cells" + message);
+    EXPECT_EQ(legacy_error(LegacyText(true, true)
+                               .start("5.1")
+                               .text("CELLS 2 4\nOFFSETS vtktypeint64\n")
+                               .numbers<std::int64_t>({0, 4})
+                               .text("CONNECTIVITY vtktypeint64\n")
+                               .numbers<std::int64_t>({0, 1, 3, 4})
+                               .text("CELL_TYPES 1\n")
+                               .numbers<std::int32_t>({10})
+                               .str()),
+              "the numbers of cells" + message);
+    EXPECT_EQ(legacy_error(LegacyText(true)
+                               .start("3.0")
+                               .text("CELLS 1 5\n")
+                               .numbers<std::int32_t>({4, 0, 1, 3, 4})
+                               .text("CELL_TYPES 1\n")
+                               .numbers<std::int32_t>({10 << 24})
+                               .str()),
+              "the numbers of CELL_TYPES" + message);
+}
+
+TEST(ReadLegacyPlanes, AreToldAsWhatTheyAre) {
+    const TemporaryFolder folder;
+    const auto message = [&](std::string_view dataset) {
+        const auto result =
+            read(folder.write("flat.vtk", fmt::format("# vtk DataFile Version 3.0\nx\nASCII\n{}\n", dataset)));
+        return result ? "no error" : result.error().message.substr(folder.file("flat.vtk").size());
+    };
+    const std::string end = " has no cells with a volume";
+    EXPECT_EQ(
+        message("DATASET RECTILINEAR_GRID\nDIMENSIONS 3 4 1\nX_COORDINATES 3 float\n0 1 2\nY_COORDINATES 4 float\n"
+                "0 1 2 3\nZ_COORDINATES 1 float\n0\nCELL_DATA 6\nSCALARS c int\nLOOKUP_TABLE default\n1 2 3 4 5 6"),
+        ": a plane of 3 x 4 points" + end);
+    EXPECT_EQ(message("DATASET STRUCTURED_POINTS\nDIMENSIONS 1 5 1\nORIGIN 0 0 0\nSPACING 1 1 1"),
+              ": a line of 5 points" + end);
+    EXPECT_EQ(message("DATASET STRUCTURED_GRID\nDIMENSIONS 2 1 2\nPOINTS 4 float\n0 0 0 1 0 0 0 0 1 1 0 1"),
+              ": a plane of 2 x 2 points" + end);
+    EXPECT_EQ(message("DATASET STRUCTURED_POINTS\nDIMENSIONS 1 1 1\nORIGIN 0 0 0\nSPACING 1 1 1"),
+              ": a single point" + end);
+}
+
+TEST(ReadLegacyNotes, NameWhatIsLeftOutAndAskingForItIsAnErrorWithTheReason) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("odd.vtk", LegacyText(false)
+                                                         .start("3.0")
+                                                         .tet()
+                                                         .text("POINT_DATA 9\nFIELD f 2\nodd 1 9 quad\n")
+                                                         .nine(1)
+                                                         .sound_array("sound")
+                                                         .str());
+    const auto whole = read(path);
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_EQ(whole->notes, std::vector<std::string>{"point field 'odd' is left out: its type 'quad' is not known"});
+    ReadOptions options;
+    options.point_fields = {"odd"};
+    const auto asked = read(path, options);
+    ASSERT_FALSE(asked);
+    EXPECT_EQ(asked.error().message, "point field 'odd' cannot be read: its type 'quad' is not known");
+}
+
+} // namespace
+} // namespace isotet::test
