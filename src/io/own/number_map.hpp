@@ -44,6 +44,9 @@ public:
     /// Cost     O(n), or O(n log n) for sparse numbers
     ISOTET_API Result<void> close(std::string_view what);
 
+    /// True where the same numbers have the same positions; both were closed.
+    bool operator==(const NumberMap&) const = default;
+
     /// The position of a number, or `none`.
     std::uint64_t find(std::int64_t number) const noexcept {
         const std::uint64_t from_first = static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(first_);

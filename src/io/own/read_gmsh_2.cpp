@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// $Nodes, $ParametricNodes and $Elements of MSH 2.0 to 2.2, ascii and binary.
+// $Nodes, $ParametricNodes and $Elements of MSH 2.0 to 2.2, ascii and binary; $NOD and $ELM of 1.0, always ascii.
 #include <fmt/core.h>
 
 #include "io/own/read_gmsh_parts.hpp"
@@ -22,7 +22,7 @@ bool skip_parameters(Source& source) {
 }
 
 template <class Source>
-Result<void> read_nodes_2(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
+Result<void> read_nodes_from(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
     const bool parametric = section.name == "ParametricNodes";
     std::int64_t count = 0;
     if (!source.count_line(count)) return broken(section, "has no number of nodes, at " + source.where());
@@ -54,16 +54,40 @@ struct ElementBlock {
 };
 
 template <class Source>
-bool read_block_header(Source& source, ElementBlock& block) {
+bool read_block_header(Source& source, Version version, ElementBlock& block) {
     if constexpr (Source::is_text) {
-        return source.number(block.number) && source.integer(block.type) && source.integer(block.tags);
+        if (!source.number(block.number) || !source.integer(block.type)) return false;
+        block.tags = 2;
+        return version == Version::v1 || source.integer(block.tags);
     } else {
         return source.integer(block.type) && source.integer(block.count) && source.integer(block.tags);
     }
 }
 
+/// Physical group, entity, number of partitions, those partitions, of which the first has the element; files before
+/// version 2.2 have the partition in place of their number.
 template <class Source>
-Result<void> read_elements_2(const Section& section, Source& source, const Wants& wants, Mesh& mesh, Pace& pace) {
+bool read_tags(Source& source, std::int32_t count, Tags& tags) {
+    for (std::int32_t t = 0; t < count; ++t) {
+        std::int32_t tag = 0;
+        if (!source.integer(tag)) return false;
+        if (t == 0) tags.physical = tag;
+        if (t == 1) tags.geometrical = tag;
+        if (t == 2 || t == 3) tags.partition = tag;
+    }
+    return true;
+}
+
+/// Version 1.0 says how many nodes an element has.
+template <class Source>
+bool read_node_count(Source& source, Version version, const ElementType& type, std::int32_t& nodes) {
+    nodes = static_cast<std::int32_t>(type.nodes);
+    return version != Version::v1 || source.integer(nodes);
+}
+
+template <class Source>
+Result<void> read_elements_from(const Section& section, Source& source, Version version, const Wants& wants, Mesh& mesh,
+                                Pace& pace) {
     std::int64_t count = 0;
     if (!source.count_line(count)) return broken(section, "has no number of elements, at " + source.where());
     const std::uint64_t most = source.records_left(0, 2, 0);
@@ -78,7 +102,7 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
     std::vector<std::uint64_t> points;
     for (std::int64_t done = 0; done < count;) {
         ElementBlock block;
-        if (!read_block_header(source, block)) return missing(done);
+        if (!read_block_header(source, version, block)) return missing(done);
         const auto type = element_type(block.type);
         if (!type)
             return broken(section,
@@ -90,13 +114,13 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
         for (std::int32_t i = 0; i < block.count; ++i, ++done) {
             std::int64_t number = block.number;
             if (!Source::is_text && !source.number(number)) return missing(done);
-            std::int32_t physical = 0, geometrical = 0;
-            for (std::int32_t t = 0; t < block.tags; ++t) {
-                std::int32_t tag = 0;
-                if (!source.integer(tag)) return missing(done);
-                if (t == 0) physical = tag;
-                if (t == 1) geometrical = tag;
-            }
+            Tags tags;
+            std::int32_t stated = 0;
+            if (!read_tags(source, block.tags, tags) || !read_node_count(source, version, *type, stated))
+                return missing(done);
+            if (stated != static_cast<std::int32_t>(type->nodes))
+                return broken(section, fmt::format("element {} of type {} states {} nodes, but has {}", number,
+                                                   block.type, stated, type->nodes));
             points.clear();
             for (std::uint32_t n = 0; n < type->nodes; ++n) {
                 std::int64_t node = 0;
@@ -108,10 +132,7 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
                 }
                 points.push_back(point);
             }
-            add_element(mesh.cells, *type, points);
-            if (wants.element_numbers) mesh.elements.add(number);
-            if (wants.physical) mesh.physical.push_back(physical);
-            if (wants.geometrical) mesh.geometrical.push_back(geometrical);
+            mesh.add_element(wants, *type, number, points, tags);
             if (!pace.goes_on(source.position())) return Pace::cancelled();
         }
     }
@@ -121,31 +142,29 @@ Result<void> read_elements_2(const Section& section, Source& source, const Wants
 } // namespace
 
 Result<Wants> tags_of_2(const File& file) {
-    const auto section = only_section(file, "Elements");
+    const auto section = first_section(file, file.name_of_elements());
     if (!section) return section.error();
     // The first element tells: Gmsh writes the same tags for all.
-    return with_source(file, **section, [](auto& source) {
+    return with_source(**section, [&](auto& source) {
         std::int64_t count = 0;
         ElementBlock block;
-        if (!source.count_line(count) || count < 1 || !read_block_header(source, block)) return Result<Wants>(Wants{});
-        return Result<Wants>(Wants{block.tags >= 1, block.tags >= 2, false});
+        Wants wants;
+        if (!source.count_line(count) || count < 1 || !read_block_header(source, file.version, block))
+            return Result<Wants>(wants);
+        wants.physical = block.tags >= 1;
+        wants.geometrical = block.tags >= 2;
+        wants.partition = block.tags >= 3;
+        return Result<Wants>(wants);
     });
 }
 
-Result<Mesh> read_mesh_2(const File& file, const Wants& wants, Pace& pace) {
-    const auto nodes = only_section(file, file.find("ParametricNodes") ? "ParametricNodes" : "Nodes");
-    if (!nodes) return nodes.error();
-    const auto elements = only_section(file, "Elements");
-    if (!elements) return elements.error();
+Result<void> read_nodes_2(const File&, const Section& nodes, Mesh& mesh, Pace& pace) {
+    return with_source(nodes, [&](auto& source) { return read_nodes_from(nodes, source, mesh, pace); });
+}
 
-    Mesh mesh;
-    auto read = with_source(file, **nodes, [&](auto& source) { return read_nodes_2(**nodes, source, mesh, pace); });
-    if (!read) return read.error();
-    mesh.cells = CellList(mesh.nodes.size());
-    read = with_source(file, **elements,
-                       [&](auto& source) { return read_elements_2(**elements, source, wants, mesh, pace); });
-    if (!read) return read.error();
-    return mesh;
+Result<void> read_elements_2(const File& file, const Section& elements, const Wants& wants, Mesh& mesh, Pace& pace) {
+    return with_source(
+        elements, [&](auto& source) { return read_elements_from(elements, source, file.version, wants, mesh, pace); });
 }
 
 } // namespace isotet::io::gmsh

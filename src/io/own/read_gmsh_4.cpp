@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-// $Entities, $Nodes and $Elements of MSH 4.1, ascii and binary.
+// $Entities, $PartitionedEntities, $Nodes and $Elements of MSH 4.0 and 4.1, ascii and binary.
 #include <map>
 #include <utility>
 
@@ -11,15 +11,16 @@ namespace isotet::io::gmsh {
 
 namespace {
 
-/// Dimension and number of an entity -> its first physical group.
-using PhysicalGroups = std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>;
+/// Dimension and number of an entity -> what its elements have; of the physical groups and partitions the first.
+using Entities = std::map<std::pair<std::int32_t, std::int32_t>, Tags>;
+
+constexpr std::int32_t volume = 3; ///< the dimension
 
 /// Reads a count and as many integers; gives the first.
 template <class Source>
-bool read_list(Source& source, std::int32_t& first, bool& any) {
+bool read_list(Source& source, std::int32_t& first) {
     std::int64_t count = 0;
-    if (!source.number(count) || count < 0) return false;
-    any = count > 0;
+    if (!source.count(count) || count < 0) return false;
     for (std::int64_t i = 0; i < count; ++i) {
         std::int32_t value = 0;
         if (!source.integer(value)) return false;
@@ -28,45 +29,74 @@ bool read_list(Source& source, std::int32_t& first, bool& any) {
     return true;
 }
 
+/// An entity of $PartitionedEntities has that which was cut, and partitions.
 template <class Source>
-bool read_entity(Source& source, std::int32_t dimension, PhysicalGroups& groups) {
-    std::int32_t number = 0, group = 0, bound = 0;
+bool read_entity(Source& source, const File& file, std::int32_t dimension, bool partitioned, Entities& entities) {
+    std::int32_t number = 0, bound = 0, parent_dimension = 0, parent = 0;
     if (!source.integer(number)) return false;
+    Tags tags;
+    tags.geometrical = number;
+    if (partitioned) {
+        if (!source.integer(parent_dimension) || !source.integer(parent) || !read_list(source, tags.partition))
+            return false;
+        if (parent_dimension == dimension) {
+            const auto whole = entities.find({dimension, parent});
+            if (whole != entities.end()) tags.physical = whole->second.physical;
+            tags.geometrical = parent;
+        }
+    }
     double coordinate = 0;
-    for (int i = 0; i < (dimension == 0 ? 3 : 6); ++i) {
+    for (int i = 0; i < (dimension == 0 && file.version == Version::v41 ? 3 : 6); ++i) {
         if (!source.real(coordinate)) return false;
     }
-    bool has_group = false, has_bounds = false;
-    if (!read_list(source, group, has_group)) return false;
-    if (has_group) groups[{dimension, number}] = group;
-    return dimension == 0 || read_list(source, bound, has_bounds);
+    if (!read_list(source, tags.physical)) return false;
+    entities[{dimension, number}] = tags;
+    return dimension == 0 || read_list(source, bound);
 }
 
 template <class Source>
-Result<PhysicalGroups> read_entities(const Section& section, Source& source) {
-    PhysicalGroups groups;
+Result<void> read_entities(const Section& section, Source& source, const File& file, bool partitioned,
+                           Entities& entities) {
+    if (partitioned) {
+        std::int64_t partitions = 0, ghosts = 0;
+        bool whole = source.count(partitions) && source.count(ghosts) && ghosts >= 0;
+        for (std::int64_t i = 0; whole && i < ghosts; ++i) {
+            std::int32_t number = 0;
+            Tags tags;
+            tags.ghost = true;
+            whole = source.integer(number) && source.integer(tags.partition);
+            entities[{volume, number}] = tags;
+        }
+        if (!whole) return broken(section, "has no numbers of partitions and ghost entities");
+    }
     std::int64_t counts[4];
     for (std::int64_t& count : counts) {
-        if (!source.number(count) || count < 0)
+        if (!source.count(count) || count < 0)
             return broken(section, "has no numbers of points, curves, surfaces and volumes");
     }
     for (std::int32_t dimension = 0; dimension < 4; ++dimension) {
         for (std::int64_t i = 0; i < counts[dimension]; ++i) {
-            if (!read_entity(source, dimension, groups)) {
+            if (!read_entity(source, file, dimension, partitioned, entities)) {
                 return broken(
                     section, fmt::format("states {} entities of dimension {}, but entity {} is broken or missing at {}",
                                          counts[dimension], dimension, i + 1, source.where()));
             }
         }
     }
-    if (const auto finished = finish_section(section, source); !finished) return finished.error();
-    return groups;
+    return finish_section(section, source);
 }
 
-Result<PhysicalGroups> physical_groups(const File& file) {
-    const Section* section = file.find("Entities");
-    if (!section) return PhysicalGroups{};
-    return with_source(file, *section, [&](auto& source) { return read_entities(*section, source); });
+Result<Entities> entities_of(const File& file) {
+    Entities entities;
+    for (const char* name : {"Entities", "PartitionedEntities"}) {
+        const Section* section = file.find(name);
+        if (!section) continue;
+        const bool partitioned = section->name != "Entities";
+        auto read = with_source(
+            *section, [&](auto& source) { return read_entities(*section, source, file, partitioned, entities); });
+        if (!read) return read.error();
+    }
+    return entities;
 }
 
 /// The numbers that $Nodes and $Elements start with; lowest and highest number are not needed.
@@ -75,12 +105,12 @@ struct Counts {
 };
 
 template <class Source>
-Result<Counts> read_counts(const Section& section, Source& source, const char* what, std::size_t numbers,
-                           std::size_t reals) {
+Result<Counts> read_counts(const File& file, const Section& section, Source& source, const char* what,
+                           std::size_t numbers, std::size_t reals) {
     Counts counts;
     std::int64_t lowest = 0, highest = 0;
-    if (!source.number(counts.blocks) || !source.number(counts.total) || !source.number(lowest) ||
-        !source.number(highest)) {
+    if (!source.count(counts.blocks) || !source.count(counts.total) ||
+        (file.version == Version::v41 && (!source.count(lowest) || !source.count(highest)))) {
         return broken(section, fmt::format("has no numbers of blocks and {}s, at {}", what, source.where()));
     }
     const std::uint64_t max_blocks = source.records_left(3, 1, 0), most = source.records_left(0, numbers, reals);
@@ -102,11 +132,13 @@ struct Block {
 };
 
 template <class Source>
-Result<Block> read_block(const Section& section, Source& source, const Counts& counts, std::int64_t index,
-                         std::int64_t done) {
+Result<Block> read_block(const File& file, const Section& section, Source& source, const Counts& counts,
+                         std::int64_t index, std::int64_t done) {
     Block block;
-    if (!source.integer(block.dimension) || !source.integer(block.entity) || !source.integer(block.kind) ||
-        !source.number(block.count)) {
+    const bool entity_first = file.version == Version::v40;
+    if (!source.integer(entity_first ? block.entity : block.dimension) ||
+        !source.integer(entity_first ? block.dimension : block.entity) || !source.integer(block.kind) ||
+        !source.count(block.count)) {
         return broken(section, fmt::format("states {} blocks, but block {} is broken or missing at {}", counts.blocks,
                                            index + 1, source.where()));
     }
@@ -121,35 +153,43 @@ Result<Block> read_block(const Section& section, Source& source, const Counts& c
     return block;
 }
 
+/// Numbers of a block's nodes, then their coordinates; in 4.0 number and coordinates of each node.
 template <class Source>
-Result<void> read_nodes_4(const Section& section, Source& source, Mesh& mesh, Pace& pace) {
-    const auto counts = read_counts(section, source, "node", 1, 3);
+bool read_nodes_of_block(Source& source, const Block& block, bool by_node, Mesh& mesh, Pace& pace, std::int64_t& done) {
+    const std::int32_t parameters = block.kind != 0 ? block.dimension : 0;
+    const auto read_number = [&] {
+        std::int64_t number = 0;
+        if (!source.number(number)) return false;
+        mesh.nodes.add(number);
+        return true;
+    };
+    for (std::int64_t i = 0; !by_node && i < block.count; ++i)
+        if (!read_number() || !pace.goes_on(source.position())) return false;
+    for (std::int64_t i = 0; i < block.count; ++i, ++done) {
+        if (by_node && !read_number()) return false;
+        double x = 0, y = 0, z = 0, parameter = 0;
+        bool whole = source.real(x) && source.real(y) && source.real(z);
+        for (std::int32_t p = 0; p < parameters; ++p) whole = whole && source.real(parameter);
+        if (!whole) return false;
+        mesh.points.insert(mesh.points.end(), {x, y, z});
+        if (!pace.goes_on(source.position())) return false;
+    }
+    return true;
+}
+
+template <class Source>
+Result<void> read_nodes_from(const File& file, const Section& section, Source& source, Mesh& mesh, Pace& pace) {
+    const auto counts = read_counts(file, section, source, "node", 1, 3);
     if (!counts) return counts.error();
     mesh.points.reserve(3 * static_cast<std::size_t>(counts->total));
     std::int64_t done = 0;
-    const auto missing = [&](std::int64_t entry) {
-        return broken(section, fmt::format("states {} nodes, but node {} is broken or missing at {}", counts->total,
-                                           entry + 1, source.where()));
-    };
     for (std::int64_t index = 0; index < counts->blocks; ++index) {
-        const auto block = read_block(section, source, *counts, index, done);
+        const auto block = read_block(file, section, source, *counts, index, done);
         if (!block) return block.error();
-        for (std::int64_t i = 0; i < block->count; ++i) {
-            std::int64_t number = 0;
-            if (!source.number(number)) return missing(done + i);
-            mesh.nodes.add(number);
-            if (!pace.goes_on(source.position())) return Pace::cancelled();
-        }
-        const std::int32_t parameters = block->kind != 0 ? block->dimension : 0;
-        for (std::int64_t i = 0; i < block->count; ++i) {
-            double x = 0, y = 0, z = 0, parameter = 0;
-            bool whole = source.real(x) && source.real(y) && source.real(z);
-            for (std::int32_t p = 0; p < parameters; ++p) whole = whole && source.real(parameter);
-            if (!whole) return missing(done + i);
-            mesh.points.insert(mesh.points.end(), {x, y, z});
-            if (!pace.goes_on(source.position())) return Pace::cancelled();
-        }
-        done += block->count;
+        if (read_nodes_of_block(source, *block, file.version == Version::v40, mesh, pace, done)) continue;
+        if (!pace.goes_on(source.position())) return Pace::cancelled();
+        return broken(section, fmt::format("states {} nodes, but node {} is broken or missing at {}", counts->total,
+                                           done + 1, source.where()));
     }
     if (done != counts->total)
         return broken(section, fmt::format("states {} nodes, but its blocks hold {}", counts->total, done));
@@ -158,15 +198,15 @@ Result<void> read_nodes_4(const Section& section, Source& source, Mesh& mesh, Pa
 }
 
 template <class Source>
-Result<void> read_elements_4(const Section& section, Source& source, const Wants& wants, const PhysicalGroups& groups,
-                             Mesh& mesh, Pace& pace) {
-    const auto counts = read_counts(section, source, "element", 2, 0);
+Result<void> read_elements_from(const File& file, const Section& section, Source& source, const Wants& wants,
+                                const Entities& entities, Mesh& mesh, Pace& pace) {
+    const auto counts = read_counts(file, section, source, "element", 2, 0);
     if (!counts) return counts.error();
     mesh.cells.reserve(4 * static_cast<std::uint64_t>(counts->total));
     std::vector<std::uint64_t> points;
     std::int64_t done = 0;
     for (std::int64_t index = 0; index < counts->blocks; ++index) {
-        const auto block = read_block(section, source, *counts, index, done);
+        const auto block = read_block(file, section, source, *counts, index, done);
         if (!block) return block.error();
         const auto type = element_type(block->kind);
         if (!type)
@@ -177,6 +217,8 @@ Result<void> read_elements_4(const Section& section, Source& source, const Wants
             return broken(section, fmt::format("block {} states {} elements, but there is room for {} at most",
                                                index + 1, block->count, most));
         }
+        const auto entity = entities.find({block->dimension, block->entity});
+        const Tags tags = entity == entities.end() ? Tags{0, block->entity, 0, false} : entity->second;
         for (std::int64_t i = 0; i < block->count; ++i, ++done) {
             std::int64_t number = 0, node = 0;
             bool whole = source.number(number);
@@ -194,13 +236,9 @@ Result<void> read_elements_4(const Section& section, Source& source, const Wants
                 }
                 points.push_back(point);
             }
-            add_element(mesh.cells, *type, points);
-            if (wants.element_numbers) mesh.elements.add(number);
+            mesh.add_element(wants, *type, number, points, tags);
             if (!pace.goes_on(source.position())) return Pace::cancelled();
         }
-        const auto group = groups.find({block->dimension, block->entity});
-        if (wants.physical) mesh.physical.resize(mesh.cells.size(), group == groups.end() ? 0 : group->second);
-        if (wants.geometrical) mesh.geometrical.resize(mesh.cells.size(), block->entity);
     }
     if (done != counts->total) {
         return broken(section, fmt::format("states {} elements, but its blocks hold {}", counts->total, done));
@@ -211,27 +249,27 @@ Result<void> read_elements_4(const Section& section, Source& source, const Wants
 } // namespace
 
 Result<Wants> tags_of_4(const File& file) {
-    const auto groups = physical_groups(file);
-    if (!groups) return groups.error();
-    return Wants{!groups->empty(), true, false};
+    const auto entities = entities_of(file);
+    if (!entities) return entities.error();
+    Wants wants;
+    wants.geometrical = true;
+    for (const auto& [entity, tags] : *entities) {
+        wants.physical = wants.physical || tags.physical != 0;
+        wants.partition = wants.partition || tags.partition != 0;
+    }
+    return wants;
 }
 
-Result<Mesh> read_mesh_4(const File& file, const Wants& wants, Pace& pace) {
-    const auto nodes = only_section(file, "Nodes");
-    if (!nodes) return nodes.error();
-    const auto elements = only_section(file, "Elements");
-    if (!elements) return elements.error();
-    const auto groups = physical_groups(file);
-    if (!groups) return groups.error();
+Result<void> read_nodes_4(const File& file, const Section& nodes, Mesh& mesh, Pace& pace) {
+    return with_source(nodes, [&](auto& source) { return read_nodes_from(file, nodes, source, mesh, pace); });
+}
 
-    Mesh mesh;
-    auto read = with_source(file, **nodes, [&](auto& source) { return read_nodes_4(**nodes, source, mesh, pace); });
-    if (!read) return read.error();
-    mesh.cells = CellList(mesh.nodes.size());
-    read = with_source(file, **elements,
-                       [&](auto& source) { return read_elements_4(**elements, source, wants, *groups, mesh, pace); });
-    if (!read) return read.error();
-    return mesh;
+Result<void> read_elements_4(const File& file, const Section& elements, const Wants& wants, Mesh& mesh, Pace& pace) {
+    const auto entities = entities_of(file);
+    if (!entities) return entities.error();
+    return with_source(elements, [&](auto& source) {
+        return read_elements_from(file, elements, source, wants, *entities, mesh, pace);
+    });
 }
 
 } // namespace isotet::io::gmsh

@@ -84,12 +84,4 @@ std::optional<ElementType> element_type(std::int32_t number) {
     return ElementType{found->vtk_type, found->nodes, node_order(number)};
 }
 
-void add_element(CellList& cells, const ElementType& type, std::span<const std::uint64_t> points) {
-    cells.start(type.vtk_type, type.nodes);
-    if (type.order.empty())
-        for (const std::uint64_t point : points) cells.corner(point);
-    else
-        for (const std::uint16_t position : type.order) cells.corner(points[position]);
-}
-
 } // namespace isotet::io::gmsh
