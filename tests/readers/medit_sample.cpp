@@ -117,4 +117,24 @@ std::string medit_solution_sample(const MeditVariant& variant) {
     return out.finish();
 }
 
+std::string medit_cell_solution_sample(const MeditVariant& variant) {
+    MeditWriter out(variant);
+    out.section("Dimension", 3).small(3);
+    out.section("SolAtTriangles", 64).integer(1).small(1).small(1).real(9);
+    out.section("SolAtVertices", 62).integer(9).small(1).small(1);
+    for (int n = 0; n < 9; ++n) out.real(7);
+    struct Kind {
+        const char* name;
+        std::int32_t keyword;
+        int cell;
+    };
+    constexpr Kind kinds[] = {
+        {"SolAtPyramids", 26, 4}, {"SolAtTetrahedra", 66, 1}, {"SolAtPrisms", 67, 3}, {"SolAtHexahedra", 68, 2}};
+    for (const Kind& kind : kinds) {
+        out.section(kind.name, kind.keyword).integer(1).small(2).small(1).small(2);
+        out.real(kind.cell).real(kind.cell).real(kind.cell + 0.25).real(kind.cell + 0.5);
+    }
+    return out.finish();
+}
+
 } // namespace isotet::test

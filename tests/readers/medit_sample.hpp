@@ -22,4 +22,7 @@ std::string medit_sample(const MeditVariant& variant);
 /// Three fields: scalar n, vector (n, n + 0.25, n + 0.5), symmetric tensor (n, ..., n + 5), of point n.
 std::string medit_solution_sample(const MeditVariant& variant);
 
+/// Values 7 at vertices, and for cell c (1 to 4; not the triangle) the scalar c and the vector c, c + 0.25, c + 0.5.
+std::string medit_cell_solution_sample(const MeditVariant& variant);
+
 } // namespace isotet::test

@@ -11,12 +11,13 @@
 
 namespace isotet::io {
 
-/// Tells what the two files hold: `medit:ref` on points and cells, and the fields of SolAtVertices, in the order of the
-/// file `sol`, `sol_1`, `sol_2` and so on.
+/// Tells what the two files hold: `medit:ref` on points and cells, and the fields of SolAtVertices, SolAtTetrahedra and so
+/// on, on points and on cells in the order of the file `sol`, `sol_1`, `sol_2` and so on.
 Result<FileInfo> inspect_medit(std::string_view mesh, std::optional<std::string_view> solution,
                                const Progress& progress);
 
-/// Reads a mesh, and the values at its vertices where there are any.
+/// Reads a mesh, and the values at its vertices and in its cells with a volume where there are any. A cell field is NaN
+/// where the file gives no value. Values that do not fit the mesh, or are broken, are left out.
 ///
 /// Text or binary is told by the content of each file. Cells come in the order of the file's sections; Edges,
 /// Triangles, Quadrilaterals and the quadratic kinds are cells, too. Points are float64, in binary files of version 1

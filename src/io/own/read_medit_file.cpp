@@ -26,8 +26,16 @@ struct Name {
     std::string_view name;
     std::int32_t keyword;
 };
-constexpr Name names[] = {
-    {"Dimension", dimension}, {"Vertices", vertices}, {"End", end}, {"SolAtVertices", sol_at_vertices}};
+constexpr Name names[] = {{"Dimension", dimension}, {"Vertices", vertices}, {"End", end}};
+
+constexpr SolutionKind solution_kinds[] = {
+    {"SolAtVertices", sol_at_vertices, 0, 0},      {"SolAtEdges", sol_at_edges, 0, 0},
+    {"SolAtTriangles", sol_at_triangles, 0, 0},    {"SolAtQuadrilaterals", sol_at_quadrilaterals, 0, 0},
+    {"SolAtTetrahedra", sol_at_tetrahedra, 8, 30}, {"SolAtPrisms", sol_at_prisms, 9, 86},
+    {"SolAtHexahedra", sol_at_hexahedra, 10, 33},  {"SolAtPyramids", sol_at_pyramids, 49, 87},
+    {"SolAtPentahedra", sol_at_prisms, 9, 86}, // as older programs write them
+    {"SolAtHexaedra", sol_at_hexahedra, 10, 33},
+};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -53,8 +61,10 @@ Result<bool> visit_text(std::string_view bytes, const SectionVisitor& visitor) {
             return Error{ErrorCode::invalid_data,
                          "a keyword should stand at " + scanner.where() + ": a section holds more than it states"};
         }
-        const std::int32_t keyword = keyword_of(scanner.word());
+        const std::string_view name = scanner.word();
+        const std::int32_t keyword = keyword_of(name);
         if (keyword == end) return true;
+        if (keyword == other && visitor.unknown) visitor.unknown(name);
         if (keyword == other || visitor.skips(keyword)) {
             skip_numbers(scanner);
             continue;
@@ -114,9 +124,18 @@ const CellKind* cell_kind(std::int32_t keyword) {
     return found == std::end(cell_kinds) ? nullptr : found;
 }
 
+const SolutionKind* solution_kind(std::int32_t keyword) {
+    const auto found = std::find_if(std::begin(solution_kinds), std::end(solution_kinds),
+                                    [&](const SolutionKind& kind) { return kind.keyword == keyword; });
+    return found == std::end(solution_kinds) ? nullptr : found;
+}
+
 std::int32_t keyword_of(std::string_view name) {
     for (const Name& known : names) {
         if (known.name == name) return known.keyword;
+    }
+    for (const SolutionKind& kind : solution_kinds) {
+        if (kind.name == name) return kind.keyword;
     }
     for (const CellKind& kind : cell_kinds) {
         if (kind.name == name) return kind.keyword;
@@ -128,6 +147,7 @@ std::string_view name_of_keyword(std::int32_t keyword) {
     for (const Name& known : names) {
         if (known.keyword == keyword) return known.name;
     }
+    if (const SolutionKind* solution = solution_kind(keyword)) return solution->name;
     const CellKind* kind = cell_kind(keyword);
     return kind ? kind->name : std::string_view();
 }

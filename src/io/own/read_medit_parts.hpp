@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include <isotet/result.hpp>
 
 #include "io/own/byte_reader.hpp"
@@ -16,7 +18,29 @@
 namespace isotet::io::medit {
 
 /// libMeshb's keyword numbers of what is not a kind of cell.
-enum Keyword : std::int32_t { other = 0, dimension = 3, vertices = 4, end = 54, sol_at_vertices = 62 };
+enum Keyword : std::int32_t {
+    other = 0,
+    dimension = 3,
+    vertices = 4,
+    sol_at_pyramids = 26,
+    end = 54,
+    sol_at_vertices = 62,
+    sol_at_edges = 63,
+    sol_at_triangles = 64,
+    sol_at_quadrilaterals = 65,
+    sol_at_tetrahedra = 66,
+    sol_at_prisms = 67,
+    sol_at_hexahedra = 68
+};
+
+/// A section of values.
+struct SolutionKind {
+    std::string_view name; ///< "SolAtTetrahedra"
+    std::int32_t keyword;
+    std::int32_t of, of_higher_order; ///< keywords of what has the values, cells with a volume; 0: vertices, or no such
+};
+/// The kind behind a keyword; null if it is none.
+const SolutionKind* solution_kind(std::int32_t keyword);
 
 /// A section that holds cells.
 struct CellKind {
@@ -36,6 +60,33 @@ Error not_medit(std::string_view bytes);
 
 /// "Vertices: message".
 Error broken(std::int32_t keyword, const std::string& message);
+
+/// A section's count, checked against what the rest of the file can hold.
+template <class Source>
+Result<std::uint64_t> read_count(std::int32_t keyword, Source& source, std::size_t integers, std::size_t reals) {
+    std::int64_t count = 0;
+    if (!source.count(count)) return broken(keyword, "has no count, at " + source.where());
+    const std::uint64_t most = source.records_left(integers, reals);
+    if (count < 0 || static_cast<std::uint64_t>(count) > most) {
+        return broken(keyword, fmt::format("states {} entries, but there is room for {} at most", count, most));
+    }
+    return static_cast<std::uint64_t>(count);
+}
+
+template <class Source>
+Error missing(std::int32_t keyword, std::uint64_t count, std::uint64_t index, const Source& source) {
+    return broken(keyword, fmt::format("states {} entries, but entry {} is broken or missing at {}", count, index + 1,
+                                       source.where()));
+}
+
+template <class Source>
+Result<int> read_dimension(Source& source) {
+    std::int64_t value = 0;
+    if (!source.small(value) || (value != 2 && value != 3)) {
+        return broken(dimension, fmt::format("is {}, but 2 or 3 is the rule, at {}", value, source.where()));
+    }
+    return static_cast<int>(value);
+}
 
 /// Numbers of a text file.
 class TextSource {
@@ -97,7 +148,8 @@ struct SectionVisitor {
     std::function<Result<void>(std::int32_t keyword, TextSource& source)> text;
     std::function<Result<void>(std::int32_t keyword, BinarySource& source)> binary;
     std::function<bool(std::int32_t keyword)> skips;
-    bool headers_only = false; ///< the visitor does not read sections up to their end
+    std::function<void(std::string_view name)> unknown = {}; ///< told of keywords of a text file that are skipped
+    bool headers_only = false;                               ///< the visitor does not read sections up to their end
 };
 
 /// How a file begins.
