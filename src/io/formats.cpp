@@ -122,6 +122,13 @@ Result<Head> read_head(const std::string& path) {
     return Head{std::string(buffer.data(), static_cast<std::size_t>(count)), false};
 }
 
+/// "little-endian" or "big-endian" where a byte order mark says that text is UTF-16, else empty.
+std::string_view utf_16_order(std::string_view bytes) {
+    if (bytes.starts_with("\xff\xfe")) return "little-endian";
+    if (bytes.starts_with("\xfe\xff")) return "big-endian";
+    return {};
+}
+
 Error nobody_knows(const std::string& path, const Head& head, const std::string& extension) {
     const std::string seen =
         head.folder ? "it is a folder" : "it begins with " + in_quotes(std::string_view(head.bytes).substr(0, 20));
@@ -152,13 +159,21 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
     }
     const auto head = read_head(path);
     if (!head) return head.error();
+    if (const auto order = utf_16_order(head->bytes); !order.empty())
+        return Error{
+            ErrorCode::file,
+            fmt::format("{} is text in UTF-16 ({}), as PowerShell's > writes it, but isotet reads UTF-8: write it "
+                        "again with Out-File -Encoding utf8, or by iconv -f UTF-16 -t UTF-8",
+                        path, order)};
+    const std::string_view text =
+        std::string_view(head->bytes).substr(head->bytes.starts_with(utf_8_mark) ? utf_8_mark.size() : 0);
     const std::string extension = extension_of(path);
     const bool is_case = head->folder && is_openfoam_case(path);
     const GridReader* best = nullptr;
     int best_score = 0;
     for (const GridReader* reader : readers) {
         if (is_case && reader->format.name == "openfoam") return reader;
-        const int recognized = reader->recognizes(head->bytes, extension);
+        const int recognized = reader->recognizes(text, extension);
         const auto& extensions = reader->format.extensions;
         const bool named = std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
         const int score = 2 * recognized + (recognized > 0 && named ? 1 : 0);

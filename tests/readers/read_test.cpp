@@ -83,6 +83,31 @@ TEST_F(ReadFile, OfNoKnownFormatIsAnErrorThatListsTheFormats) {
     EXPECT_NE(result.error().message.find("tetgen"), std::string::npos);
 }
 
+TEST_F(ReadFile, MayBeginWithAByteOrderMark) {
+    const std::string mark = "\xef\xbb\xbf";
+    EXPECT_EQ(format_of(write("a.msh", mark + gmsh_sample({}))), "gmsh");
+    EXPECT_EQ(format_of(write("b.txt", mark + medit_sample({}))), "medit");
+    EXPECT_EQ(format_of(write("c.vtk", mark + "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n")),
+              "vtk");
+    write("d.node", mark + nodes);
+    write("d.ele", mark + elements);
+    for (const char* name : {"a.msh", "b.txt", "d.node"}) EXPECT_TRUE(read(path(name))) << name;
+}
+
+TEST_F(ReadFile, InUtf16IsNamedAsThat) {
+    const std::string text = "# vtk DataFile";
+    std::string little = "\xff\xfe", big = "\xfe\xff";
+    for (const char c : text) {
+        little += {c, '\0'};
+        big += {'\0', c};
+    }
+    for (const std::string& bytes : {little, big}) {
+        const auto result = read(write("a.vtk", bytes));
+        ASSERT_FALSE(result);
+        EXPECT_NE(result.error().message.find("is text in UTF-16"), std::string::npos) << result.error().message;
+    }
+}
+
 TEST_F(ReadFile, ThatIsNoPlainFileOrEmptyIsAnError) {
     EXPECT_EQ(read(path("missing.msh")).error().code, ErrorCode::file);
     EXPECT_EQ(read(write("empty.msh", "")).error().code, ErrorCode::file);

@@ -10,6 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "io/own/escape.hpp"
 #include "io/own/read_gmsh.hpp"
 #include "io/own/read_gocad.hpp"
 #include "io/own/read_grdecl.hpp"
@@ -41,6 +44,22 @@ std::string beside(const std::string& path, const char* extension) {
     return std::filesystem::path(path).replace_extension(extension).string();
 }
 
+/// A file that is read because it has the name of `path`, with another extension: links must not lead it out of the folder.
+Result<void> check_companion(const std::string& path, const std::string& companion, const ReadOptions& options) {
+    if (options.allow_outside || companion == path) return {};
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path parent = fs::path(path).parent_path();
+    const fs::path folder = fs::canonical(parent.empty() ? fs::path(".") : parent, error);
+    const fs::path file = fs::canonical(companion, error);
+    if (error) return {}; // opening it tells
+    if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end()) return {};
+    return Error{ErrorCode::invalid_data,
+                 fmt::format("{} is a link to {}: only files below the folder of {} are read, unless --allow-outside "
+                             "(ReadOptions::allow_outside) is given",
+                             escaped(companion), escaped(file.string()), escaped(path))};
+}
+
 bool is_there(const std::string& path) {
     struct stat status{};
     return ::stat(path.c_str(), &status) == 0;
@@ -49,11 +68,15 @@ bool is_there(const std::string& path) {
 /// Enough for what a file says before its first points.
 constexpr std::size_t head_bytes = std::size_t{16} << 20;
 
+std::string_view without_byte_order_mark(std::string_view text) {
+    return text.starts_with(utf_8_mark) ? text.substr(utf_8_mark.size()) : text;
+}
+
 template <class Value, class Parse>
 Result<Value> with_file(const std::string& path, const Progress& progress, std::size_t most, const Parse& parse) {
     const auto file = WholeFile::read(path, progress, most);
     if (!file) return file.error();
-    return in_file<Value>(path, parse(file->text()));
+    return in_file<Value>(path, parse(without_byte_order_mark(file->text())));
 }
 
 int recognizes_gmsh(std::string_view head, std::string_view extension) {
@@ -68,9 +91,33 @@ Result<FileInfo> inspect_gmsh_file(const std::string& path, const ReadOptions&, 
                                [&](std::string_view text) { return inspect_gmsh(text, progress); });
 }
 
+/// The files that Gmsh wrote beside this one, each of one partition: name_1.msh, name_2.msh and so on; the first of them.
+std::optional<std::string> other_partition(const std::string& path) {
+    const std::filesystem::path whole(path);
+    const std::string stem = whole.stem().string();
+    const std::size_t bar = stem.rfind('_');
+    if (bar == std::string::npos || bar + 1 == stem.size() ||
+        stem.find_first_not_of("0123456789", bar + 1) != std::string::npos)
+        return std::nullopt;
+    for (const char* number : {"1", "2"}) {
+        const auto other = stem.substr(0, bar + 1) + number + whole.extension().string();
+        if (other != whole.filename() && is_there((whole.parent_path() / other).string())) return other;
+    }
+    return std::nullopt;
+}
+
 Result<ReadResult> read_gmsh_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_file<ReadResult>(path, progress, WholeFile::all,
-                                 [&](std::string_view text) { return parse_gmsh(text, options, progress); });
+    auto result = with_file<ReadResult>(path, progress, WholeFile::all,
+                                        [&](std::string_view text) { return parse_gmsh(text, options, progress); });
+    if (!result ||
+        std::ranges::find(result->info.fields, "gmsh:partition", &FieldInfo::name) == result->info.fields.end())
+        return result;
+    if (const auto other = other_partition(path))
+        result->notes.push_back(
+            fmt::format("the mesh was saved in a file for each partition: {} and others of the name "
+                        "are not read",
+                        escaped(*other)));
+    return result;
 }
 
 int recognizes_medit(std::string_view head, std::string_view extension) {
@@ -91,30 +138,32 @@ void add_file(ReadResult& result, const std::string& file) { result.info.files.p
 
 /// `most`   bytes of the mesh
 template <class Value, class Parse>
-Result<Value> with_mesh_and_solution(const std::string& path, const Progress& progress, std::size_t most,
-                                     const Parse& parse) {
+Result<Value> with_mesh_and_solution(const std::string& path, const ReadOptions& options, const Progress& progress,
+                                     std::size_t most, const Parse& parse) {
     const auto solution_path = solution_beside(path);
     if (!solution_path)
         return with_file<Value>(path, progress, most, [&](std::string_view mesh) { return parse(mesh, std::nullopt); });
+    if (auto allowed = check_companion(path, *solution_path, options); !allowed) return allowed.error();
     const auto solution = WholeFile::read(*solution_path, progress);
     if (!solution) return solution.error();
-    auto result = with_file<Value>(path, progress, most,
-                                   [&](std::string_view mesh) { return parse(mesh, std::optional(solution->text())); });
+    auto result = with_file<Value>(path, progress, most, [&](std::string_view mesh) {
+        return parse(mesh, std::optional(without_byte_order_mark(solution->text())));
+    });
     if (result) add_file(*result, *solution_path);
     return result;
 }
 
 using OptionalText = std::optional<std::string_view>;
 
-Result<FileInfo> inspect_medit_file(const std::string& path, const ReadOptions&, const Progress& progress) {
+Result<FileInfo> inspect_medit_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
     return with_mesh_and_solution<FileInfo>(
-        path, progress, head_bytes,
+        path, options, progress, head_bytes,
         [&](std::string_view mesh, OptionalText solution) { return inspect_medit(mesh, solution, progress); });
 }
 
 Result<ReadResult> read_medit_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
     return with_mesh_and_solution<ReadResult>(
-        path, progress, WholeFile::all,
+        path, options, progress, WholeFile::all,
         [&](std::string_view mesh, OptionalText solution) { return parse_medit(mesh, solution, options, progress); });
 }
 
@@ -125,26 +174,29 @@ int recognizes_tetgen(std::string_view, std::string_view extension) {
 
 /// `most`   bytes of each
 template <class Value, class Parse>
-Result<Value> with_nodes_and_elements(const std::string& path, const Progress& progress, std::size_t most,
-                                      const Parse& parse) {
+Result<Value> with_nodes_and_elements(const std::string& path, const ReadOptions& options, const Progress& progress,
+                                      std::size_t most, const Parse& parse) {
+    for (const char* extension : {".node", ".ele"})
+        if (auto allowed = check_companion(path, beside(path, extension), options); !allowed) return allowed.error();
     const auto nodes = WholeFile::read(beside(path, ".node"), progress, most);
     if (!nodes) return nodes.error();
     const auto elements = WholeFile::read(beside(path, ".ele"), progress, most);
     if (!elements) return elements.error();
-    auto result = in_file<Value>(path, parse(nodes->text(), elements->text()));
+    auto result =
+        in_file<Value>(path, parse(without_byte_order_mark(nodes->text()), without_byte_order_mark(elements->text())));
     for (const char* extension : {".node", ".ele"})
         if (result) add_file(*result, beside(path, extension));
     return result;
 }
 
-Result<FileInfo> inspect_tetgen_files(const std::string& path, const ReadOptions&, const Progress& progress) {
+Result<FileInfo> inspect_tetgen_files(const std::string& path, const ReadOptions& options, const Progress& progress) {
     return with_nodes_and_elements<FileInfo>(
-        path, progress, head_bytes,
+        path, options, progress, head_bytes,
         [&](std::string_view nodes, std::string_view elements) { return inspect_tetgen(nodes, elements, progress); });
 }
 
 Result<ReadResult> read_tetgen_files(const std::string& path, const ReadOptions& options, const Progress& progress) {
-    return with_nodes_and_elements<ReadResult>(path, progress, WholeFile::all,
+    return with_nodes_and_elements<ReadResult>(path, options, progress, WholeFile::all,
                                                [&](std::string_view nodes, std::string_view elements) {
                                                    return parse_tetgen(nodes, elements, options, progress);
                                                });
@@ -182,7 +234,7 @@ std::span<const GridReader> own_readers() {
         all.push_back(openfoam_reader());
         all.push_back(grdecl_reader());
         all.insert(all.end(), {
-                                  GridReader{grid_format("gmsh", "Gmsh MSH 2.2 and 4.1", {".msh"}), recognizes_gmsh,
+                                  GridReader{grid_format("gmsh", "Gmsh MSH 1.0 to 4.1", {".msh"}), recognizes_gmsh,
                                              inspect_gmsh_file, read_gmsh_file},
                                   GridReader{grid_format("medit", "Medit mesh with its .sol", {".mesh", ".meshb"}),
                                              recognizes_medit, inspect_medit_file, read_medit_file},
