@@ -67,7 +67,7 @@ io::Loaded load(const std::string& bytes, io::Depth depth = io::Depth::arrays) {
     return loaded ? *std::move(loaded) : io::Loaded{};
 }
 
-std::string legacy_error(const std::string& bytes) {
+std::string error_in_legacy(const std::string& bytes) {
     const auto loaded = io::load_legacy(io::ByteSource(bytes), {}, io::Depth::arrays, {});
     return loaded ? "no error" : loaded.error().message;
 }
@@ -128,7 +128,7 @@ TEST_P(ReadLegacyForm, HasPolyhedraAsFacesAmongOtherCells) {
             .numbers<std::int32_t>({10, 42, 14})
             .str();
     expect_polyhedra(grid_of(load(bytes)));
-    EXPECT_EQ(legacy_error(replaced(bytes, "CELLS 3 43", "CELLS 3 42")).substr(0, 6), "cells:");
+    EXPECT_EQ(error_in_legacy(replaced(bytes, "CELLS 3 43", "CELLS 3 42")).substr(0, 6), "cells:");
 }
 
 TEST_P(ReadLegacyForm, HasPolyhedraInConnectivitySinceVersion5) {
@@ -175,7 +175,7 @@ TEST_P(ReadLegacyForm, RefusesPolyhedraWhoseNumbersAreNoFaces) {
                 .text("CELL_TYPES 1\n")
                 .numbers<std::int32_t>({42})
                 .str();
-        EXPECT_EQ(legacy_error(bytes),
+        EXPECT_EQ(error_in_legacy(bytes),
                   "cell 0 is a polyhedron, but its 17 numbers are not the number of its faces and, "
                   "for each face, its number of points and these points")
             << wrong;
@@ -367,24 +367,24 @@ TEST(ReadLegacyBinary, OfLittleEndianNumbersIsNamed) {
     const std::string message =
         " make sense only as little-endian ones, but binary legacy VTK files are big-endian: the "
         "program that wrote it has to swap the bytes";
-    EXPECT_EQ(legacy_error(LegacyText(true, true).start("3.0").tet().str()), "the numbers of cells" + message);
-    EXPECT_EQ(legacy_error(LegacyText(true, true)
-                               .start("5.1")
-                               .text("CELLS 2 4\nOFFSETS vtktypeint64\n")
-                               .numbers<std::int64_t>({0, 4})
-                               .text("CONNECTIVITY vtktypeint64\n")
-                               .numbers<std::int64_t>({0, 1, 3, 4})
-                               .text("CELL_TYPES 1\n")
-                               .numbers<std::int32_t>({10})
-                               .str()),
+    EXPECT_EQ(error_in_legacy(LegacyText(true, true).start("3.0").tet().str()), "the numbers of cells" + message);
+    EXPECT_EQ(error_in_legacy(LegacyText(true, true)
+                                  .start("5.1")
+                                  .text("CELLS 2 4\nOFFSETS vtktypeint64\n")
+                                  .numbers<std::int64_t>({0, 4})
+                                  .text("CONNECTIVITY vtktypeint64\n")
+                                  .numbers<std::int64_t>({0, 1, 3, 4})
+                                  .text("CELL_TYPES 1\n")
+                                  .numbers<std::int32_t>({10})
+                                  .str()),
               "the numbers of cells" + message);
-    EXPECT_EQ(legacy_error(LegacyText(true)
-                               .start("3.0")
-                               .text("CELLS 1 5\n")
-                               .numbers<std::int32_t>({4, 0, 1, 3, 4})
-                               .text("CELL_TYPES 1\n")
-                               .numbers<std::int32_t>({10 << 24})
-                               .str()),
+    EXPECT_EQ(error_in_legacy(LegacyText(true)
+                                  .start("3.0")
+                                  .text("CELLS 1 5\n")
+                                  .numbers<std::int32_t>({4, 0, 1, 3, 4})
+                                  .text("CELL_TYPES 1\n")
+                                  .numbers<std::int32_t>({10 << 24})
+                                  .str()),
               "the numbers of CELL_TYPES" + message);
 }
 
