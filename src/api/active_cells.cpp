@@ -59,6 +59,7 @@ Result<ActiveCellFilter> ActiveCellFilter::create(const Array& points, const Poi
 }
 
 void ActiveCellFilter::add(std::uint64_t first, const Array& corners) {
+    if (!data_) return;
     try {
         data_->filter->add(first, corners);
     } catch (const std::bad_alloc&) {
@@ -68,6 +69,7 @@ void ActiveCellFilter::add(std::uint64_t first, const Array& corners) {
 
 Result<Cells> ActiveCellFilter::finish() {
     return core::guarded("looking for active cells", [&]() -> Result<Cells> {
+        if (!data_) return moved_from("the filter of active cells");
         if (data_->out_of_memory) return Error{ErrorCode::out_of_memory, "looking for active cells ran out of memory"};
         auto cells = data_->filter->finish();
         if (!cells)

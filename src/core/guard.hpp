@@ -20,6 +20,8 @@ auto guarded(std::string_view what, Work&& work) -> decltype(work()) {
         return Error{ErrorCode::out_of_memory, std::string(what) + " ran out of memory"};
     } catch (const std::exception& e) {
         return Error{ErrorCode::internal, std::string(what) + " failed: " + e.what()};
+    } catch (...) { // by a callback of the caller
+        return Error{ErrorCode::internal, std::string(what) + " failed: something was thrown that is no std::exception"};
     }
 }
 

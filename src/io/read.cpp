@@ -232,6 +232,9 @@ Result<Value> without_exceptions(const std::string& path, const Run& run, const 
         return Error{ErrorCode::out_of_memory, path + " needs more memory than is free"};
     } catch (const std::exception& exception) {
         return Error{ErrorCode::internal, fmt::format("reading {} failed: {}", path, exception.what())};
+    } catch (...) { // by a callback of the caller
+        return Error{ErrorCode::internal,
+                     fmt::format("reading {} failed: something was thrown that is no std::exception", path)};
     }
 }
 

@@ -125,6 +125,7 @@ Result<ContourUpdate> Contour::set(ContourInput given, const ContourOptions& opt
         ContourInput input = *std::move(enough);
         const std::lock_guard lock(data_->mutex);
         Data& data = *data_;
+        ++data.set_count;
         if (options.refine && has_curved_cells(input.grid.cells)) {
             if (auto taken = data.take_curved(std::move(input), options); !taken) return taken.error();
             return ContourUpdate::grid;
@@ -183,8 +184,12 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
         if (auto ok = data.prepare(0, run); !ok) return ok.error();
         auto start = std::chrono::steady_clock::now();
         const Method method = data.method_of_next(0);
-        const std::shared_ptr<const LinearGrid> linear = data.linear_grid();
-        ContourInput input = data.input; // shares the arrays
+        // All that is needed of the session, which another thread may set meanwhile; it shares the arrays.
+        std::shared_ptr<const LinearGrid> linear = data.linear_grid();
+        ContourInput input = data.input;
+        const session::MetInput met = data.met;
+        const session::LinearInput linear_input = data.linear;
+        const std::uint64_t set_count = data.set_count;
         const ContourOptions options = data.options;
         const std::optional<FieldReport> whole = data.curved ? std::optional(data.field_of_curved()) : std::nullopt;
         const std::optional<ValueRange> range = data.met ? std::optional(data.met.range()) : std::nullopt;
@@ -196,10 +201,13 @@ Result<ContourResult> Contour::extract(std::span<const double> isovalues, const 
             lock.unlock();
             Result<std::optional<ContourResult>> found = extract_directly(input, options, isovalues, run);
             if (found && !*found) {
+                Result<Data::Completed> all = Data::completed(input, met, linear_input, options, run);
+                if (!all) return all.error();
+                input = all->input;
+                linear = all->linear.grid();
+                head.pack_seconds += std::exchange(all->seconds, 0);
                 lock.lock();
-                if (auto ok = data.complete(run); !ok) return ok.error();
-                head.pack_seconds += std::exchange(data.update_seconds, 0);
-                input = data.input;
+                if (data.set_count == set_count && (data.met || data.input.all_cells)) data.take(*std::move(all));
                 lock.unlock();
                 start = std::chrono::steady_clock::now();
                 found = extract_directly(input, options, isovalues, run);

@@ -99,21 +99,34 @@ bool Contour::Data::is_enough_for(std::span<const double> isovalues) const {
     });
 }
 
-/// Gets the cells that were left out, or makes them linear, too.
-Result<void> Contour::Data::complete(const Run& run) {
-    if (!met && !input.all_cells) return {};
+/// Gets the cells that were left out, or makes them linear, too. Calls no member that `set` may change meanwhile.
+Result<Contour::Data::Completed> Contour::Data::completed(const ContourInput& input, const session::MetInput& met,
+                                                          session::LinearInput linear, const ContourOptions& options,
+                                                          const Run& run) {
     const auto start = std::chrono::steady_clock::now();
     Result<ContourInput> all = met ? Result<ContourInput>(met.user()) : input.all_cells(run);
     if (!all) return all.error();
     Result<ContourInput> made = linear.make(*std::move(all), run);
     if (!made) return made.error();
-    Result<FieldSample> sample_of_all = FieldSample::create(made->grid, made->field, options.split_cells);
-    if (!sample_of_all) return sample_of_all.error();
-    sample = *std::move(sample_of_all);
-    input = *std::move(made);
+    Result<FieldSample> sample = FieldSample::create(made->grid, made->field, options.split_cells);
+    if (!sample) return sample.error();
+    return Completed{*std::move(made), std::move(linear), *std::move(sample), session::seconds_since(start)};
+}
+
+void Contour::Data::take(Completed all) {
+    sample = std::move(all.sample);
+    input = std::move(all.input);
+    linear = std::move(all.linear);
     met = {};
     note_new_cells();
-    update_seconds += session::seconds_since(start);
+    update_seconds += all.seconds;
+}
+
+Result<void> Contour::Data::complete(const Run& run) {
+    if (!met && !input.all_cells) return {};
+    Result<Completed> all = completed(input, met, linear, options, run);
+    if (!all) return all.error();
+    take(*std::move(all));
     return {};
 }
 

@@ -36,7 +36,8 @@ struct Contour::Data {
     ContourInput input;          ///< with linear cells; without the grid when that is packed
     ContourOptions options;
     FieldSample sample;
-    std::uint64_t asked = 0; ///< surfaces so far
+    std::uint64_t asked = 0;    ///< surfaces so far
+    std::uint64_t set_count = 0; ///< how often `input` was set
     bool direct_for_memory = false;
     std::optional<PackedGrid> packed; ///< of the input, but for what `behind` says
     ContourUpdate behind = ContourUpdate::grid;
@@ -52,6 +53,16 @@ struct Contour::Data {
     void start_over(FieldSample next_sample, const ContourOptions& next_options);
     Result<Met> take_met(const ContourInput& next, const ContourOptions& next_options, const Run& run);
     bool is_enough_for(std::span<const double> isovalues) const;
+    /// An input with all of its cells.
+    struct Completed {
+        ContourInput input;
+        session::LinearInput linear;
+        FieldSample sample;
+        double seconds = 0;
+    };
+    static Result<Completed> completed(const ContourInput& input, const session::MetInput& met,
+                                       session::LinearInput linear, const ContourOptions& options, const Run& run);
+    void take(Completed all);
     Result<void> complete(const Run& run);
     Result<void> take_curved(ContourInput next, const ContourOptions& next_options);
     ContourUpdate what_changed(const ContourInput& next, const ContourOptions& next_options, const Run& run);

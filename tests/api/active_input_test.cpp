@@ -1,5 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // A session that is given active cells only gives the surfaces of all, and asks for all when it needs them.
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include <isotet/active_cells.hpp>
@@ -102,6 +104,46 @@ TEST_F(ActiveInput, CanFollowAnotherOneInASession) {
     ASSERT_TRUE(contour.set(some({0.1}), packed));
     EXPECT_TRUE(bytes_of(contour.extract(0.2).value().surfaces[0].surface) == bytes_of_all(0.2, packed));
     EXPECT_EQ(asked, 1);
+}
+
+TEST_F(ActiveInput, IsCompletedAsItWasWhenAnotherGridIsSetMeanwhile) {
+    // A point that no cell uses, far away in place and value: what is stored follows from cells that were left out.
+    std::vector<double> points, values;
+    for (std::size_t i = 0; i < grid.points.size(); ++i) points.push_back(grid.points.as<float>()[i]);
+    for (std::size_t i = 0; i < grid.points.tuples(); ++i) values.push_back(field.values.at(i) / 3);
+    points.insert(points.end(), {1e9, 1e9, 1e9});
+    values.push_back(1e30);
+    grid.points = Array::own(std::move(points), 3);
+    grid.point_fields.clear();
+    field = field_of(std::move(values));
+    const ContourOptions chosen = options({0.1});
+    const std::string wanted = bytes_of_all(0.1, chosen);
+    Contour contour = Contour::create(some({0.1}), chosen).value();
+    EXPECT_TRUE(bytes_of(contour.extract(0.1).value().surfaces[0].surface) == wanted);
+    ASSERT_EQ(asked, 1);
+
+    const Grid other = make_grid({.shape = "kuhn", .side = 3, .fields = {"sphere"}}).value();
+    ASSERT_TRUE(contour.set(some({0.1}), chosen));
+    bool was_set = false;
+    isotet::Run meanwhile; // as another thread would, while nothing is locked
+    meanwhile.progress.report = [&](std::string_view, double) {
+        if (!std::exchange(was_set, true)) EXPECT_TRUE(contour.set({other, point_field(other), {}, {}}, chosen));
+    };
+    const auto found = contour.extract(0.1, meanwhile);
+    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_TRUE(was_set);
+    EXPECT_TRUE(bytes_of(found->surfaces[0].surface) == wanted) << "of one grid, with the options of the other";
+    EXPECT_TRUE(bytes_of(contour.extract(0.5).value().surfaces[0].surface) ==
+                bytes_of(Contour::create({other, point_field(other), {}, {}}, chosen).value().extract(0.5).value().surfaces[0].surface));
+}
+
+TEST_F(ActiveInput, FiltersThatWereMovedFromAnswerPolitely) {
+    auto filter = ActiveCellFilter::create(grid.points, field, std::vector<double>{0.1}, CellType::tetrahedron).value();
+    const ActiveCellFilter other = std::move(filter);
+    filter.add(0, grid.cells.connectivity); // NOLINT(bugprone-use-after-move): that is what is tested
+    const auto cells = filter.finish();
+    ASSERT_FALSE(cells);
+    EXPECT_EQ(cells.error().code, ErrorCode::invalid_argument);
 }
 
 TEST_F(ActiveInput, PassesOnTheErrorOfReadingAll) {

@@ -79,6 +79,22 @@ TEST(Cancelling, BeforeTheStartEndsEveryOperation) {
     for (const auto& [name, operation] : operations.all()) EXPECT_EQ(operation(progress), ErrorCode::cancelled) << name;
 }
 
+TEST(Progress, WhateverItThrowsIsAnError) {
+    struct NoException {};
+    Operations operations;
+    for (const auto& [name, operation] : operations.all()) {
+        for (const int what : {0, 1}) {
+            Progress progress;
+            progress.report = [&](std::string_view, double) {
+                if (what == 0) throw 42;
+                throw NoException{};
+            };
+            const bool is_quiet = name == "split" || name == "set_field";
+            EXPECT_EQ(operation(progress), is_quiet ? std::nullopt : std::optional(ErrorCode::internal)) << name;
+        }
+    }
+}
+
 TEST(Cancelling, MidwayEndsPackingAtEveryStep) {
     const Grid grid = made_grid("kuhn", 24, {"gyroid"});
     std::vector<double> fractions;

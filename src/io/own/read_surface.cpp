@@ -83,6 +83,8 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
         return Error{ErrorCode::out_of_memory, "no memory left to read a surface"};
     } catch (const std::exception& exception) {
         return Error{ErrorCode::internal, exception.what()};
+    } catch (...) { // by a callback of the caller
+        return Error{ErrorCode::internal, "something was thrown that is no std::exception"};
     }
 }
 

@@ -73,6 +73,8 @@ Result<WriteReport> guarded(const std::string& path, const Run& run, std::vector
         return Error{ErrorCode::out_of_memory, fmt::format("no memory left to write {}", path)};
     } catch (const std::exception& exception) {
         return Error{ErrorCode::internal, fmt::format("{}: {}", path, exception.what())};
+    } catch (...) { // by a callback of the caller
+        return Error{ErrorCode::internal, path + ": something was thrown that is no std::exception"};
     }
 }
 
