@@ -10,6 +10,7 @@
 #include "core/cells.hpp"
 #include "core/errors.hpp"
 #include "core/frame.hpp"
+#include "core/grid_size.hpp"
 #include "core/parallel.hpp"
 #include "core/renumber.hpp"
 #include "cpu/direct/direct.hpp"
@@ -113,6 +114,9 @@ Result<DirectExtraction> extract_direct(const Grid& grid, const PointField& fiel
         if (auto ok = core::find_in_frame(options.frame, field.name, field.values.type()); !ok) return ok.error();
         if (options.frame)
             if (auto ok = core::check_point_type(*options.frame, grid.points.type()); !ok) return ok.error();
+        if (auto ok = core::check_grid_size(grid.points, options.precision, options.frame ? &*options.frame : nullptr);
+            !ok)
+            return ok.error();
         const auto arrays = arrays_by_number(grid, *cells, field, options.extract.point_fields, progress);
         if (!arrays) return arrays.error();
         const auto reader = core::CellReader::open(arrays->grid);

@@ -8,6 +8,7 @@
 
 #include "core/bounds.hpp"
 #include "core/frame.hpp"
+#include "core/grid_size.hpp"
 #include "core/orientation.hpp"
 #include "core/pack_draft.hpp"
 #include "core/parallel.hpp"
@@ -65,6 +66,8 @@ template <class Real>
 Result<void> store_positions(const Array& array, Packed& packed) {
     const PointReader points(array);
     const bool unchanged = array.type() == ScalarType::float32 || sizeof(Real) == sizeof(double);
+    constexpr Precision precision = sizeof(Real) == sizeof(float) ? Precision::float32 : Precision::float64;
+    if (auto ok = check_grid_size(array, precision, packed.frame ? &*packed.frame : nullptr); !ok) return ok;
     packed.origin = {};
     packed.point_type = array.type();
     if (packed.frame)

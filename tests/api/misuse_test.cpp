@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <isotet/extract.hpp>
+#include <isotet/extract_direct.hpp>
 #include <isotet/pack.hpp>
 
 #include "support/small_grid.hpp"
@@ -33,6 +34,42 @@ void expect_bad_grid(const Grid& grid, const std::string& message) {
     expect_error(pack(grid, field), ErrorCode::invalid_data, message);
     expect_error(survey(grid), ErrorCode::invalid_data, message);
     expect_error(split(grid), ErrorCode::invalid_data, message);
+}
+
+TEST(TinyGrids, AreRefusedAndNeverPutAtTheOrigin) {
+    const auto is_taken = [](const Grid& grid, Precision precision) {
+        PackOptions packing;
+        packing.precision = precision;
+        DirectOptions direct;
+        direct.precision = precision;
+        const double isovalue = 0.5;
+        const PointField field = some_field();
+        const auto packed = pack(grid, field, packing);
+        const auto found = extract_direct(grid, field, {&isovalue, 1}, direct);
+        EXPECT_EQ(static_cast<bool>(packed), static_cast<bool>(found));
+        if (!packed) {
+            EXPECT_EQ(packed.error().code, ErrorCode::invalid_data);
+            EXPECT_EQ(packed.error().message, found.error().message);
+            EXPECT_NE(packed.error().message.find("give them in a smaller unit"), std::string::npos);
+        }
+        return static_cast<bool>(packed);
+    };
+    for (const Precision precision : {Precision::float32, Precision::float64})
+        for (const double size : {1e-300, 1e-38, 1e-30, 1e-22, 1e-21, 1e-17, 1e-14, 1e-6, 1.0}) {
+            SCOPED_TRACE(size);
+            std::vector<double> points;
+            for (const auto& point : unit)
+                for (const double x : point) points.push_back(x * size);
+            std::vector<float> single;
+            for (const double x : points) single.push_back(static_cast<float>(x));
+            Grid grid = one_tet();
+            grid.points = Array::own(std::move(points), 3);
+            EXPECT_EQ(is_taken(grid, precision), size > 1e-15);
+            grid.points = Array::own(std::move(single), 3);
+            EXPECT_EQ(is_taken(grid, precision), size > 1e-15 || size < 1e-100) << "as float32, where 1e-300 is 0";
+        }
+    const Grid thin = tet_grid({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1e-30}, {5, 5, 5}}, {{0, 1, 2, 3}});
+    EXPECT_TRUE(is_taken(thin, Precision::float32));
 }
 
 TEST(Pack, RefusesAFieldThatDoesNotFit) {
