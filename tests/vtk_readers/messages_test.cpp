@@ -18,12 +18,14 @@ ReadResult made_result() {
     result.info.fields = {{"p", Association::point, ScalarType::float32, 1}};
     result.info.times = {0.5, 1.5};
     result.info.blocks = {{10, "steel", "element block", 1}};
+    result.info.regions = {{"material", 10, "steel"}};
     result.info.left_out = {{"point field", "q", "its type is 'Foo'"}};
     result.step = 1;
     result.notes = {"a note"};
     result.grid.points = Array::own(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 3);
     result.grid.cells.connectivity = Array::own(std::vector<std::int32_t>{0, 1, 2, 3});
     result.grid.point_fields = {{"p", Array::own(std::vector<float>{1, 2, 3, 4})}};
+    result.grid.point_numbers = Array::own(std::vector<std::int64_t>{7, 8, 9, 10});
     return result;
 }
 
@@ -71,6 +73,10 @@ TEST(Reply, ComesBackAsItWasWritten) {
     EXPECT_EQ(result->grid.points.at(3, 2), 1);
     EXPECT_EQ(result->grid.cells.connectivity.type(), ScalarType::int32);
     EXPECT_EQ(result->grid.point_fields.at(0).values.at(3), 4);
+    EXPECT_EQ(result->grid.point_numbers.at(3), 10);
+    ASSERT_EQ(result->info.regions.size(), 1U);
+    EXPECT_EQ(result->info.regions[0].field + result->info.regions[0].name, "materialsteel");
+    EXPECT_EQ(result->info.regions[0].number, 10);
 }
 
 TEST(Reply, CannotBeChangedOnceItIsMapped) {

@@ -20,7 +20,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr std::uint64_t magic = 0x3330795f74657469; // "itet_y03", and the byte order with it
+constexpr std::uint64_t magic = 0x3430795f74657469; // "itet_y04", and the byte order with it
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -86,6 +86,8 @@ public:
         out_.text(error.message);
     }
     void describe(const FileInfo& info) {
+        // A member that is not sent is an error here: this counts them.
+        [[maybe_unused]] const auto& [format, field_infos, times, files, blocks, regions, left_out] = info;
         out_.text(info.format);
         out_.list(info.fields, [&](const FieldInfo& field) {
             out_.text(field.name);
@@ -101,6 +103,11 @@ public:
             out_.text(block.kind);
             out_.number(block.cells);
         });
+        out_.list(info.regions, [&](const RegionName& region) {
+            out_.text(region.field);
+            out_.number(region.number);
+            out_.text(region.name);
+        });
         out_.list(info.left_out, [&](const LeftOut& item) {
             out_.text(item.what);
             out_.text(item.name);
@@ -108,6 +115,9 @@ public:
         });
     }
     void describe(ReadResult& result) {
+        [[maybe_unused]] const auto& [whole, info, step, cells_in_file, notes] = result;
+        [[maybe_unused]] const auto& [points, cells, point_fields, cell_fields, point_numbers] = result.grid;
+        [[maybe_unused]] const auto& [connectivity, offsets, types, uniform_type, faces, face_offsets] = result.grid.cells;
         describe(result.info);
         out_.number<std::uint64_t>(result.step);
         out_.number<std::uint8_t>(result.cells_in_file.has_value());
@@ -123,6 +133,7 @@ public:
         array(grid.cells.face_offsets);
         fields(grid.point_fields);
         fields(grid.cell_fields);
+        array(grid.point_numbers);
     }
 
 private:
@@ -182,6 +193,12 @@ public:
             block.cells = in_.number<std::uint64_t>();
         });
         in_.list([&] {
+            RegionName& region = result.regions.emplace_back();
+            region.field = in_.text();
+            region.number = in_.number<decltype(region.number)>();
+            region.name = in_.text();
+        });
+        in_.list([&] {
             LeftOut& item = result.left_out.emplace_back();
             item.what = in_.text();
             item.name = in_.text();
@@ -207,6 +224,7 @@ public:
         grid.cells.face_offsets = array();
         grid.point_fields = fields();
         grid.cell_fields = fields();
+        grid.point_numbers = array();
         return result;
     }
 
