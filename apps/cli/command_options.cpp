@@ -51,13 +51,16 @@ points, weighted by volume (ParaView's Cell Data to Point Data takes the plain m
 OUT ends in .vtp, .ply, .stl, .obj, .vtk or .ts. Several isovalues in one OUT make one surface with a cell field
 isovalue. With {value}, {time} or {step} in OUT there is one file each: values and times are the shortest decimals that
 read back, steps are numbers of equal length, from 0. Beside the .vtp files of several time steps a collection is
-written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times. Files that were complete
-when Ctrl-C came stay. Without OUT only the numbers are printed. Without an isovalue the middle of the range is taken.
+written, front.pvd for front-{step}.vtp, which ParaView opens as one series with its times, unless there is one that
+isotet has not written. Files that were complete when Ctrl-C came stay. Without OUT only the numbers are printed.
+Without an isovalue the middle of the range is taken.
 
 A point whose value equals the isovalue counts as above it. Triangles face the side of higher values. The methods give
-the same vertices and triangles in a different order. auto chooses by a fixed rule: clusters from 32 surfaces on
-(isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same command gives the
-same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a note.
+the same vertices and triangles in a different order; but of cells that repeat others direct gives the triangles again,
+and clusters drops them (`isotet info --survey` counts such cells). auto chooses by a fixed rule: clusters from 32
+surfaces on (isovalues times time steps), from 4 with gradient normals, or with a device; else direct. So the same
+command gives the same bytes on every machine, unless packing finds too little memory: direct is taken instead, with a
+note.
 
 A solid (--solid) is closed: its boundary has the vertices of the isosurface. Triangles face outwards; those of the
 isosurface come first. The report tells its volume, and that of the grid. Polyhedra and curved cells are taken as the

@@ -36,4 +36,7 @@ struct CollectionEntry {
 ISOTET_API Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
                               const Run& run = {});
 
+/// Whether a file begins as those that write_collection() writes. Other programs' begin otherwise.
+ISOTET_API bool is_written_collection(const std::string& path);
+
 } // namespace isotet

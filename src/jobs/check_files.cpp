@@ -71,7 +71,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
     options.weld = file->format == "stl" || !job.more.empty(); // without vertex numbers that say what is the same
     std::optional<Origin> origin;
     if (!job.grid.file.empty()) {
-        if (file->surface.edge_ends.empty())
+        if (file->surface.edge_ends.empty() && file->surface.vertex_count() > 0)
             return refusal("{} has no point array edge_ends, but `grid` needs it: isotet extract `edge_ends` writes it "
                            "into .vtp and .vtk",
                            job.surface);

@@ -2,7 +2,9 @@
 #include "jobs/extract_plan.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/levels.hpp>
 #include <isotet/linear_cells.hpp>
+#include <isotet/write_file.hpp>
 
 #include "jobs/refuse.hpp"
 
@@ -63,6 +66,11 @@ Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& pl
     std::string collection = plan.names.collection();
     if (same_file(collection, job.grid.file)) {
         caller.note(fmt::format("no collection of the series is written: '{}' is the input", collection));
+        return std::string();
+    }
+    std::error_code ignored;
+    if (std::filesystem::exists(collection, ignored) && !is_written_collection(collection)) {
+        caller.note(fmt::format("no collection of the series is written: '{}' is there already, and not of isotet", collection));
         return std::string();
     }
     if (auto paths = check_output_paths({job.grid.file}, with_others(job, collection)); !paths) return paths.error();

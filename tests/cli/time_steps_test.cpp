@@ -125,5 +125,25 @@ TEST_F(ProgramWithTimes, ACollectionIsWrittenForASeriesOfVtpOnlyAndNeverOverTheI
     EXPECT_TRUE(std::filesystem::is_symlink(path("g.pvd")));
 }
 
+TEST_F(ProgramWithTimes, ACollectionReplacesOneOfIsotetAndNoOther) {
+    const auto extract = [&] { return isotet({"extract", grid, path("s-{step}.vtp"), "-f", "p", "-i", "1", "--all-steps"}); };
+    ASSERT_EQ(extract().status, 0);
+    const std::string own = content_of(path("s.pvd"));
+    const RunResult again = extract();
+    EXPECT_EQ(again.err.find("no collection"), std::string::npos) << again.err;
+    const std::string other = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+                              "  <Collection>\n  </Collection>\n</VTKFile>\n";
+    for (const std::string& content : {other, std::string("mine"), std::string()}) {
+        std::ofstream(path("s.pvd")) << content;
+        const RunResult run = extract();
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.err.find("is there already, and not of isotet"), std::string::npos) << run.err;
+        EXPECT_EQ(content_of(path("s.pvd")), content);
+    }
+    std::filesystem::remove(path("s.pvd"));
+    ASSERT_EQ(extract().status, 0);
+    EXPECT_EQ(content_of(path("s.pvd")), own);
+}
+
 } // namespace
 } // namespace isotet::test

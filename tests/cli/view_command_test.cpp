@@ -2,20 +2,12 @@
 // `isotet view` and the browser that it starts: a script in place of xdg-open, which ends isotet.
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-
-#include <sys/stat.h>
 
 #include "program.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {
-
-std::string content_of(const std::string& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 TEST(ViewCommand, StartsTheBrowserWithAFileOfTheUserAndTellsTheTokenToNobodyElse) {
     const TemporaryFolder folder;

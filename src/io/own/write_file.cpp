@@ -2,6 +2,7 @@
 #include <isotet/write_file.hpp>
 
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,9 @@
 namespace isotet {
 
 namespace {
+
+constexpr std::string_view collection_begin =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
 
 std::string in_xml_attribute(std::string_view text) {
     std::string out;
@@ -54,12 +58,18 @@ Result<void> check_writable(const std::string& path) {
 Result<void> write_collection(const std::vector<CollectionEntry>& entries, const std::string& path,
                               const Run& run) {
     return core::guarded("writing a collection", [&] {
-        std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
+        std::string text(collection_begin);
         for (const CollectionEntry& entry : entries)
             text += fmt::format("    <DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"{}\"/>\n", entry.time,
                                 entry.part, in_xml_attribute(relative_to_folder_of(path, entry.file)));
         return write_text(text + "  </Collection>\n</VTKFile>\n", path, run);
     });
+}
+
+bool is_written_collection(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string begin(collection_begin.size(), '\0');
+    return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == collection_begin;
 }
 
 } // namespace isotet
