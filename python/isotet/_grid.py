@@ -5,17 +5,16 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from . import _isotet
 from ._arrays import cells_in, fields_in, isovalues_in, numbers_in, points_in, scalars_in, tolerances_in, words_in
+from ._call import Progress, call_options
 from ._pieces import Frame
-from ._surface import Surface, call_options
-
-Progress = Callable[[str, float], object]
+from ._surface import Surface
 
 
 class Grid:

@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _isotet
-from ._surface import Surface, call_options
-
-if TYPE_CHECKING:
-    from ._grid import Progress
+from ._call import Progress, call_options
+from ._surface import Surface
 
 
 def _camera(view, parallel: bool) -> tuple[_isotet.Camera, bool]:

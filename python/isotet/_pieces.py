@@ -4,16 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _isotet
 from ._arrays import points_in
-from ._surface import call_options
-
-if TYPE_CHECKING:
-    from ._grid import Progress
+from ._call import Progress, call_options
 
 
 class Frame:

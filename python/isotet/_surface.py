@@ -10,17 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _isotet
-from ._arrays import fields_in, number_in, points_in, values_in
+from ._arrays import fields_in, points_in, values_in
+from ._call import Progress, call_options
 
 if TYPE_CHECKING:
-    from ._grid import Grid, Progress
-
-
-def call_options(threads: int, progress: Progress | None) -> _isotet.CallOptions:
-    count = number_in("threads", threads)
-    if not 0 <= count < 2**31:
-        raise ValueError(f"threads is {threads}, but must be 0, for all, or a number of threads")
-    return _isotet.CallOptions(count, progress)
+    from ._grid import Grid
 
 
 class Surface:

@@ -21,9 +21,10 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkDemandDrivenPipe
 
 from . import _isotet
 from ._arrays import points_in, scalars_in, values_in
+from ._call import call_options
 from ._grid import Grid
 from ._ranks import Ranks
-from ._surface import Surface, call_options
+from ._surface import Surface
 
 __all__ = ["IsotetContour", "grid_of", "to_polydata"]
 
