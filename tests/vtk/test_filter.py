@@ -124,6 +124,27 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(run(sphere(), value=9).GetOutput().GetNumberOfCells(), 0)
         self.assertEqual(run(grid_of(np.zeros((0, 3), np.float32), np.zeros((0, 4), int), {"r": np.zeros(0, np.float32)})).GetOutput().GetNumberOfCells(), 0)
 
+    def test_gives_nothing_without_isovalues(self):
+        for normals in (0, 1):
+            contour = start(sphere())
+            contour.SetComputeNormals(normals)
+            contour.SetNumberOfContours(0)
+            contour.Update()
+            self.assertEqual((contour.GetOutput().GetNumberOfPoints(), contour.GetOutput().GetNumberOfCells()), (0, 0))
+            self.assertEqual(contour.GetOutput().GetPoints().GetData().GetNumberOfComponents(), 3)
+            self.assertEqual(contour.said, [])
+
+    def test_gives_points_of_the_type_of_the_input_also_around_the_origin(self):
+        points, cells, field = lattice(6)
+        points -= (points.min(axis=0) + points.max(axis=0)) / 2
+        for dtype in (np.float32, np.float64):
+            for middle in (0, 1):
+                contour = start(grid_of(points.astype(dtype) + dtype(middle), cells, {"r": field}))
+                for precision, wanted in ((2, dtype), (0, np.float32), (1, np.float64)):
+                    contour.SetOutputPointsPrecision(precision)
+                    contour.Update()
+                    self.assertEqual(points_of(contour.GetOutput()).dtype, wanted)
+
     def test_gives_points_in_the_precision_asked_for(self):
         grid = sphere()
         for precision, wanted in ((0, np.float32), (1, np.float64), (2, np.float32)):
