@@ -16,8 +16,7 @@ namespace isotet {
 
 struct WriteReport {
     std::uint64_t bytes = 0;
-    std::vector<std::string> notes; ///< what the format could not hold: "STL holds float32: the origin (4.3e6, ...) was
-                                    ///< left out"
+    std::vector<std::string> notes; ///< what the format could not hold
 };
 
 /// How arrays of vtp and vtu are packed, in blocks that are packed and can be unpacked in parallel.
@@ -41,8 +40,8 @@ struct WriteOptions {
 /// the options name one.
 ///
 /// The file is written beside `path` under another name, flushed, checked, and renamed: at every moment `path` is the
-/// old file or the whole new one. The origin is added in double where the format can hold it. Nothing in the file
-/// differs between runs. A symbolic link stays: what it points to is replaced. Permission bits of an old file are kept.
+/// old file or the whole new one. Nothing in the file differs between runs. A symbolic link stays: what it points to is
+/// replaced. Permission bits of an old file are kept.
 ///
 /// Errors   invalid_argument: unknown format, one that has no compression where one is asked for, arrays that do not fit
 ///          together, `path` is a folder or not a plain file;
