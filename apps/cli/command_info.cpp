@@ -1,7 +1,11 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // `isotet info`: what a grid file holds.
+#include <algorithm>
+#include <cstdint>
+
 #include <fmt/format.h>
 
+#include <isotet/contour.hpp>
 #include <isotet/jobs/look_into.hpp>
 #include <isotet/jobs/number_text.hpp>
 
@@ -64,6 +68,17 @@ Json json_of(const CurvedSummary& found) {
     return {{"cells", found.cells}, {"cells_left_out", found.left_out}, {"split_at_nodes", std::move(costs)}};
 }
 
+/// Polyhedra among the cells that are left out.
+std::size_t open_polyhedra(const GridReport& report) {
+    std::size_t of_other_types = 0;
+    for (const auto& [type, count] : report.cells_by_type)
+        if (!Contour::contours(type)) of_other_types += count;
+    constexpr std::uint8_t polyhedron = 42;
+    const auto polyhedra = report.cells_by_type.find(polyhedron);
+    if (polyhedra == report.cells_by_type.end() || report.cells_left_out < of_other_types) return 0;
+    return std::min(polyhedra->second, report.cells_left_out - of_other_types);
+}
+
 std::string grid_table(const GridSummary& found, const std::string& path) {
     const GridReport& report = found.report;
     Table table = facts();
@@ -74,7 +89,8 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
         table.row({"", fmt::format("{} {}", grouped(count), name_of_cell_type(type))});
     table.row({"tets", grouped(report.tets)});
     for (const auto& [count, what] :
-         {std::pair{report.cells_left_out, "cells left out: their type is not contoured"},
+         {std::pair{report.cells_left_out - open_polyhedra(report), "cells left out: their type is not contoured"},
+          {open_polyhedra(report), "polyhedra left out: their faces do not close"},
           {report.collapsed_tets, "collapsed tets, dropped"},
           {report.repeated_tets, "repeated tets"},
           {report.negative_tets, "tets of negative volume in the order of the file"},

@@ -56,7 +56,8 @@ public:
     struct Storage {
         std::vector<hsize_t> chunk = {};
         bool shuffled = false, deflated = false, checksums = false, big_endian = false;
-        hsize_t unwritten = 0; ///< rows at the end, which are filled
+        hsize_t unwritten = 0;      ///< rows at the end, which are filled
+        bool never_filled = false;  ///< they are not: reading leaves memory as it was
     };
     template <class T>
     void stored(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions,
@@ -68,6 +69,7 @@ public:
         if (storage.shuffled) H5Pset_shuffle(list);
         if (storage.deflated) H5Pset_deflate(list, 4);
         if (storage.checksums) H5Pset_fletcher32(list);
+        if (storage.never_filled) H5Pset_fill_time(list, H5D_FILL_TIME_NEVER);
         const hid_t file_type = H5Tcopy(type<T>());
         if (storage.big_endian) H5Tset_order(file_type, H5T_ORDER_BE);
         const hid_t space = H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr);
@@ -76,7 +78,7 @@ public:
         written[0] -= storage.unwritten;
         const hid_t memory = H5Screate_simple(static_cast<int>(written.size()), written.data(), nullptr);
         H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, written.data(), nullptr);
-        H5Dwrite(set, type<T>(), memory, space, H5P_DEFAULT, values.data());
+        if (written[0] > 0) H5Dwrite(set, type<T>(), memory, space, H5P_DEFAULT, values.data());
         H5Sclose(memory);
         H5Sclose(space);
         H5Dclose(set);
@@ -86,6 +88,10 @@ public:
     void attribute(const std::string& group, const char* name, const std::vector<std::int64_t>& values) {
         const hsize_t count = values.size();
         attach(group, name, H5Screate_simple(1, &count, nullptr), H5T_NATIVE_INT64, values.data());
+    }
+    void real_attribute(const std::string& group, const char* name, const std::vector<double>& values) {
+        const hsize_t count = values.size();
+        attach(group, name, H5Screate_simple(1, &count, nullptr), H5T_NATIVE_DOUBLE, values.data());
     }
     void attribute(const std::string& group, const char* name, const std::string& text) {
         const hid_t type = H5Tcopy(H5T_C_S1);

@@ -241,7 +241,7 @@ TEST(VtkhdfCollections, AreBlocksThatFitAndCanBeChosen) {
         EXPECT_EQ(all->grid.cells.count(), cells);
         expect_sound_polyhedra(all->grid);
         ASSERT_FALSE(all->notes.empty());
-        EXPECT_NE(all->notes[0].find("\"surface\" is left out: it is of type PolyData"), std::string::npos)
+        EXPECT_NE(all->notes.back().find("'surface' is left out: it is of type PolyData"), std::string::npos)
             << all->notes[0];
         ReadOptions options;
         options.blocks = {"fault", "3"};

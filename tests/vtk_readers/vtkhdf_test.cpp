@@ -378,11 +378,13 @@ TEST(ReadVtkhdf, RefusesChunksThatAreBroken) {
     }
     std::string content = content_of(folder.file("a.vtkhdf"));
     std::size_t changed = 0;
+    ReadOptions asked;
+    asked.point_fields = {"p"};
     for (std::size_t at = 0; at + 2 < content.size(); ++at) { // zlib's first two bytes, by this level
         if (content[at] != '\x78' || content[at + 1] != '\x5e') continue;
         std::string broken = content;
         for (std::size_t i = 20; i < 40; ++i) broken[at + i] = static_cast<char>(~broken[at + i]);
-        const auto result = read(folder.write("b.vtkhdf", broken));
+        const auto result = read(folder.write("b.vtkhdf", broken), asked);
         if (result) continue; // the two bytes stood elsewhere
         ++changed;
         EXPECT_NE(result.error().message.find("\"/VTKHDF/PointData/p\" the chunk at byte " + std::to_string(at) +

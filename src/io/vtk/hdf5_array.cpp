@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <fmt/core.h>
 #include <hdf5.h>
@@ -8,6 +9,7 @@
 #include "io/own/escape.hpp"
 #include "io/vtk/hdf5_array.hpp"
 #include "io/vtk/hdf5_handle.hpp"
+#include "io/vtk/hdf5_unwritten.hpp"
 #include "io/vtk/length_check.hpp"
 #include "io/own/loaded.hpp"
 
@@ -113,9 +115,10 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
     return Array(result.values).visit([&](auto none) -> Result<ShapedValues> {
         using T = typename decltype(none)::value_type;
         std::vector<std::remove_const_t<T>> values(count);
-        if (count > 0 &&
-            H5Dread(data, native_type<std::remove_const_t<T>>(), memory, space, H5P_DEFAULT, values.data()) < 0)
-            return failed("cannot be read");
+        const HdfRead read = read_written(data, native_type<std::remove_const_t<T>>(), memory, space,
+                                          std::as_writable_bytes(std::span(values)));
+        if (read == HdfRead::failed) return failed("cannot be read");
+        if (read == HdfRead::unwritten) return failed("has values that were never written");
         result.values = Array::own(std::move(values));
         return std::move(result);
     });
@@ -152,6 +155,13 @@ std::vector<std::string> data_sets_of(const std::string& file, const std::string
 
 std::vector<std::string> groups_of(const std::string& file, const std::string& group) {
     return objects_of(file, group, H5I_GROUP);
+}
+
+bool is_written(const std::string& file, const std::string& name) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    const Handle data(opened.good() ? H5Dopen2(opened, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
+    return data.good() && !may_be_unwritten(data);
 }
 
 std::optional<std::int64_t> integer_attribute(const std::string& file, const std::string& group, const char* name) {

@@ -33,6 +33,9 @@ Result<ShapedValues> read_hdf5_array(const std::string& file, const std::string&
 /// Names of the data sets in a group; none where there is no such group.
 std::vector<std::string> data_sets_of(const std::string& file, const std::string& group);
 
+/// False where a data set has values that were never written and that nothing stands for.
+bool is_written(const std::string& file, const std::string& name);
+
 /// Names of the groups in a group.
 std::vector<std::string> groups_of(const std::string& file, const std::string& group);
 

@@ -20,6 +20,7 @@
 #include "io/own/narrow_indices.hpp"
 #include "io/own/vtk_xml/codec.hpp"
 #include "io/vtk/hdf5_handle.hpp"
+#include "io/vtk/hdf5_unwritten.hpp"
 
 namespace isotet::io::vtk {
 namespace {
@@ -207,11 +208,12 @@ Result<void> read_plain(const ByteSource& source, std::uint64_t address, const R
 }
 
 /// By HDF5, into the type that memory has.
-bool read_by_library(hid_t data, hid_t space, hid_t type, int rank, const RowRange& range) {
+HdfRead read_by_library(hid_t data, hid_t space, hid_t type, int rank, const RowRange& range) {
     const std::array<hsize_t, 2> start{range.first, 0}, count{range.rows, range.columns};
-    if (H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0) return false;
+    if (H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0)
+        return HdfRead::failed;
     const Handle memory(H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
-    return H5Dread(data, type, memory, space, H5P_DEFAULT, range.to) >= 0;
+    return read_written(data, type, memory, space, {range.to, range.bytes()});
 }
 
 /// Links may lead to another file.
@@ -323,8 +325,11 @@ Result<Array> Hdf5Rows::read(const std::string& name, std::uint64_t first, std::
                 done = *read;
             }
         }
-        if (!done && !read_by_library(set->data, set->space, native_type<T>(), set->rank, range))
-            return failed("cannot be read");
+        if (!done) {
+            const HdfRead by_library = read_by_library(set->data, set->space, native_type<T>(), set->rank, range);
+            if (by_library == HdfRead::failed) return failed("cannot be read");
+            if (by_library == HdfRead::unwritten) return failed("has values that were never written");
+        }
         return std::move(values).to_array(shape.columns);
     });
 }

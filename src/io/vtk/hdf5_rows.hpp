@@ -36,8 +36,8 @@ public:
 
     /// Some rows of a data set, in the type of the file, one tuple a row.
     ///
-    /// Errors   invalid_data: no such data set, rows that it does not have, what cannot be inflated;
-    ///          out_of_memory
+    /// Errors   invalid_data: no such data set, rows that it does not have or that were never written, what cannot be
+    ///          inflated; out_of_memory
     /// Cost     chunks that are stored as they are, deflated or shuffled are read side by side; others by HDF5, one after
     ///          another
     Result<Array> read(const std::string& name, std::uint64_t first, std::uint64_t rows) const;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <fmt/core.h>
+#include <vtkDataArraySelection.h>
 #include <vtkHDFReader.h>
 #include <vtkNew.h>
 
@@ -30,15 +31,13 @@ Result<Loaded> load_grid(const std::string& path, const ReadOptions& options, De
     const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
-    auto pieces = grid.load(options, *step, "");
-    if (!pieces) return pieces.error();
-    if (pieces->empty()) return broken(path, "it has no part");
-    loaded.pieces = *std::move(pieces);
+    if (auto done = grid.load(options, *step, "", loaded); !done) return done.error();
+    if (loaded.pieces.empty()) return broken(path, "it has no part");
     return loaded;
 }
 
 /// The unstructured grids of a collection, in its order.
-std::vector<std::string> grids_of(const std::string& path, std::vector<std::string>& notes) {
+std::vector<std::string> grids_of(const std::string& path, FileInfo& info) {
     std::vector<std::pair<std::int64_t, std::string>> found;
     for (const std::string& name : groups_of(path, "/VTKHDF")) {
         const std::string type = text_attribute(path, "/VTKHDF/" + name, "Type");
@@ -46,8 +45,7 @@ std::vector<std::string> grids_of(const std::string& path, std::vector<std::stri
         if (type == "UnstructuredGrid")
             found.emplace_back(index.value_or(std::numeric_limits<std::int64_t>::max()), name);
         else if (!type.empty())
-            notes.push_back(fmt::format("\"{}\" is left out: it is of type {}, not UnstructuredGrid", escaped(name),
-                                        escaped(type)));
+            leave_out(info, {"block", name, fmt::format("it is of type {}, not UnstructuredGrid", escaped(type))});
     }
     std::ranges::sort(found);
     std::vector<std::string> names;
@@ -60,7 +58,7 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     const auto rows = Hdf5Rows::open(path);
     if (!rows) return rows.error();
     Loaded loaded;
-    const std::vector<std::string> names = grids_of(path, loaded.notes);
+    const std::vector<std::string> names = grids_of(path, loaded.info);
     std::vector<HdfGrid> grids;
     for (const std::string& name : names) {
         const HdfGrid& grid = grids.emplace_back(path, *rows, "/VTKHDF/" + name + "/");
@@ -81,11 +79,21 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
     if (!chosen) return chosen.error();
     for (std::size_t i = 0; i < grids.size() && depth == Depth::arrays; ++i) {
         if (!(*chosen)[i]) continue;
-        auto pieces = grids[i].load(options, loaded.step, names[i] + ", ");
-        if (!pieces) return pieces.error();
-        for (Piece& piece : *pieces) loaded.pieces.push_back(std::move(piece));
+        if (auto done = grids[i].load(options, loaded.step, names[i] + ", ", loaded); !done) return done.error();
     }
     return loaded;
+}
+
+/// VTK's reader gives what memory held where values were never written.
+void leave_out_unwritten(const std::string& path, Association association, vtkDataArraySelection& arrays,
+                         FileInfo& info) {
+    const std::string group = association == Association::point ? "/VTKHDF/PointData" : "/VTKHDF/CellData";
+    for (const std::string& name : data_sets_of(path, group)) {
+        if (is_written(path, group + "/" + name)) continue;
+        arrays.DisableArray(name.c_str());
+        leave_out(info, {association == Association::point ? "point field" : "cell field", name,
+                         "it has values that were never written"});
+    }
 }
 
 Result<Loaded> load_by_vtk(const std::string& path, const ReadOptions& options, Depth depth) {
@@ -100,6 +108,8 @@ Result<Loaded> load_by_vtk(const std::string& path, const ReadOptions& options, 
                 announce(info, {reader->GetCellArrayName(i), Association::cell, ScalarType::float64, 1});
         choose_arrays(reader->GetPointDataArraySelection(), chosen, Association::point);
         choose_arrays(reader->GetCellDataArraySelection(), chosen, Association::cell);
+        leave_out_unwritten(path, Association::point, *reader->GetPointDataArraySelection(), info);
+        leave_out_unwritten(path, Association::cell, *reader->GetCellDataArraySelection(), info);
     });
 }
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "core/cell_faces.hpp"
 #include "core/parallel.hpp"
 #include "io/own/active_filter.hpp"
+#include "io/own/escape.hpp"
 #include "io/own/shared_faces.hpp"
 #include "io/own/vtk_xml/columns.hpp"
 #include "io/own/vtk_xml/uniform_cells.hpp"
@@ -17,6 +19,10 @@
 
 namespace isotet::io::vtk {
 namespace {
+
+const char* kind_of_field(Association association) {
+    return association == Association::point ? "point field" : "cell field";
+}
 
 const char* data_group_of(Association association) {
     return association == Association::point ? "PointData" : "CellData";
@@ -37,8 +43,9 @@ Result<void> HdfGrid::announce_all(FileInfo& info) const {
     for (const auto association : {Association::point, Association::cell})
         for (const std::string& name : data_sets_of(path_, group_ + data_group_of(association))) {
             const auto shape = rows_.shape(group_ + data_group_of(association) + "/" + name);
-            if (!shape || is_ghost_array(name)) continue; // texts, and tensors of higher rank
-            announce(info, {name, association, shape->type, shape->columns});
+            if (is_ghost_array(name)) continue;
+            if (shape) announce(info, {name, association, shape->type, shape->columns});
+            else leave_out(info, {kind_of_field(association), name, "it is no table of numbers of 1, 2, 4 or 8 bytes"});
         }
     if (!has_steps()) return {};
     const auto times = rows_.read(group_ + "Steps/Values");
@@ -74,6 +81,10 @@ Result<HdfStepPlace> HdfGrid::find_step(std::size_t step) const {
     HdfStepPlace place;
     const auto parts = rows_.shape(group_ + "NumberOfPoints");
     if (!parts) return wrong("\"NumberOfPoints\" is not there, or holds no numbers");
+    for (const char* other : {"NumberOfCells", "NumberOfConnectivityIds"})
+        if (const auto shape = rows_.shape(group_ + other); shape && shape->rows != parts->rows)
+            return wrong(fmt::format("\"NumberOfPoints\" has {} entries, but \"{}\" has {}: each has one a part",
+                                     parts->rows, other, shape->rows));
     place.parts = parts->rows;
     if (!has_steps()) return place;
     const auto take = [&](const char* name, std::uint64_t& to) -> Result<void> {
@@ -100,6 +111,11 @@ Result<std::vector<HdfPartition>> HdfGrid::find_partitions(const HdfStepPlace& p
     if (!cells) return cells.error();
     const auto corners = counts("NumberOfConnectivityIds", place.first_part, place.parts);
     if (!corners) return corners.error();
+    // Some writers give parts without cells no offset, others one.
+    const auto offsets = rows_.shape(group_ + "Offsets");
+    const auto all = std::accumulate(cells->begin(), cells->end(), std::uint64_t{0});
+    const auto filled = place.parts - static_cast<std::uint64_t>(std::ranges::count(*cells, std::uint64_t{0}));
+    const bool skips_empty = !has_steps() && offsets && filled < place.parts && offsets->rows == all + filled;
     std::vector<HdfPartition> out;
     HdfPartition next;
     next.first_point = place.first_point;
@@ -114,9 +130,37 @@ Result<std::vector<HdfPartition>> HdfGrid::find_partitions(const HdfStepPlace& p
         next.first_point += next.points; // below 2^52 each, and there are fewer parts than values in the file
         next.first_cell += next.cells;
         next.first_corner += next.corners;
-        next.first_offset += next.cells + 1;
+        next.first_offset += next.cells + (next.cells == 0 && skips_empty ? 0 : 1);
     }
     return out;
+}
+
+/// Without steps every row is that of a part.
+void HdfGrid::note_rows_left_over(const std::vector<HdfPartition>& parts, std::vector<std::string>& notes) const {
+    if (has_steps() || parts.empty()) return;
+    const HdfPartition& last = parts.back();
+    std::vector<std::pair<std::string, std::uint64_t>> expected{{"Points", last.first_point + last.points},
+                                                                {"Types", last.first_cell + last.cells},
+                                                                {"Connectivity", last.first_corner + last.corners},
+                                                                {"Offsets", last.first_offset + last.cells + 1}};
+    for (const auto association : {Association::point, Association::cell})
+        for (const std::string& name : data_sets_of(path_, group_ + data_group_of(association)))
+            expected.emplace_back(std::string(data_group_of(association)) + "/" + name,
+                                  association == Association::point ? expected[0].second : expected[1].second);
+    std::vector<std::string> more;
+    for (const auto& [name, rows] : expected)
+        if (const auto shape = rows_.shape(group_ + name); shape && shape->rows > rows)
+            more.push_back(fmt::format("\"{}\" has {} rows for {}", escaped(name), shape->rows, rows));
+    if (!more.empty()) notes.push_back(fmt::format("rows that belong to no part were not read: {}", fmt::join(more, ", ")));
+}
+
+/// Coordinates as integers become float64.
+Result<Array> HdfGrid::read_points(const HdfPartition& part) const {
+    auto points = rows_.read(group_ + "Points", part.first_point, part.points);
+    if (!points || is_floating(points->type())) return points;
+    std::vector<double> places(points->size());
+    points->visit([&](auto from) { std::ranges::transform(from, places.begin(), [](auto x) { return static_cast<double>(x); }); });
+    return Array::own(std::move(places), points->components());
 }
 
 /// The faces of a step begin behind those of the parts before it. Steps has tables of it, too; VTK's writer gives them
@@ -160,6 +204,7 @@ Result<void> HdfGrid::find_faces(const HdfStepPlace& place, std::size_t step, st
 
 /// Neither types nor offsets, where they say nothing.
 Result<void> HdfGrid::load_types(const HdfPartition& part, Cells& cells) const {
+    if (part.cells == 0) return {};
     auto offsets = rows_.read_indices(group_ + "Offsets", part.first_offset, part.cells + 1);
     if (!offsets) return offsets.error();
     auto types = rows_.read(group_ + "Types", part.first_cell, part.cells);
@@ -197,7 +242,11 @@ Result<std::optional<Cells>> HdfGrid::active_cells(const HdfPartition& part, con
 
 Result<void> HdfGrid::load_corners(const HdfPartition& part, const ReadOptions& options, bool alone,
                                    Piece& piece) const {
-    if (alone && options.active_cells && part.cells > 0) {
+    if (part.cells == 0) {
+        piece.grid.cells.connectivity = Array(ScalarType::int32, nullptr, 0, 1, nullptr);
+        return {};
+    }
+    if (alone && options.active_cells) {
         auto active = active_cells(part, options, piece);
         if (!active) return active.error();
         if (*active) {
@@ -236,25 +285,33 @@ Result<void> HdfGrid::load_faces(const HdfPartition& part, Cells& cells) const {
 }
 
 Result<void> HdfGrid::load_fields(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
-                                  Association association, const ReadOptions& options, Piece& piece) const {
+                                  Association association, const ReadOptions& options, Piece& piece,
+                                  FileInfo& info) const {
     const bool of_points = association == Association::point;
     const std::string group = data_group_of(association);
     for (const std::string& name : data_sets_of(path_, group_ + group)) {
         const bool ghost = is_ghost_array(name);
         if ((!wanted(options, association, name) && !(ghost && !of_points)) || (ghost && of_points)) continue;
         if (!has(group + "/" + name)) continue;
-        const std::uint64_t in_step =
-            of_points ? part.first_point - place.first_point : part.first_cell - place.first_cell;
-        const std::uint64_t otherwise = of_points ? place.first_point : place.first_cell;
-        const std::string offsets = "Steps/" + group + "Offsets/" + name;
-        const auto first = has_steps() ? number_or(offsets, step, otherwise) : Result<std::uint64_t>(otherwise);
-        if (!first) return first.error();
-        auto values = rows_.read(group_ + group + "/" + name, *first + in_step, of_points ? part.points : part.cells);
-        if (!values) return values.error();
-        if (ghost) vtk_xml::mark_left_out(*values, name, piece.left_out);
+        auto values = read_field(part, place, step, association, name);
+        if (!values && (ghost || values.error().code != ErrorCode::invalid_data)) return values.error();
+        if (!values) leave_out(info, {kind_of_field(association), name, values.error().message});
+        else if (ghost) vtk_xml::mark_left_out(*values, name, piece.left_out);
         else (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, *std::move(values)});
     }
     return {};
+}
+
+Result<Array> HdfGrid::read_field(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
+                                  Association association, const std::string& name) const {
+    const bool of_points = association == Association::point;
+    const std::string group = data_group_of(association);
+    const std::uint64_t in_step = of_points ? part.first_point - place.first_point : part.first_cell - place.first_cell;
+    const std::uint64_t otherwise = of_points ? place.first_point : place.first_cell;
+    const std::string offsets = "Steps/" + group + "Offsets/" + name;
+    const auto first = has_steps() ? number_or(offsets, step, otherwise) : Result<std::uint64_t>(otherwise);
+    if (!first) return first.error();
+    return rows_.read(group_ + group + "/" + name, *first + in_step, of_points ? part.points : part.cells);
 }
 
 Result<std::uint64_t> HdfGrid::count_cells(std::size_t step) const {
@@ -265,25 +322,27 @@ Result<std::uint64_t> HdfGrid::count_cells(std::size_t step) const {
     return std::accumulate(cells->begin(), cells->end(), std::uint64_t{0});
 }
 
-Result<std::vector<Piece>> HdfGrid::load(const ReadOptions& options, std::size_t step, const std::string& name) const {
+Result<void> HdfGrid::load(const ReadOptions& options, std::size_t step, const std::string& name,
+                           Loaded& loaded) const {
     const auto place = find_step(step);
     if (!place) return place.error();
     auto parts = find_partitions(*place);
     if (!parts) return parts.error();
-    if (auto done = find_faces(*place, step, *parts); !done) return done.error();
-    std::vector<Piece> pieces;
+    if (auto done = find_faces(*place, step, *parts); !done) return done;
+    note_rows_left_over(*parts, loaded.notes);
+    std::size_t number = 0;
     for (const HdfPartition& part : *parts) {
-        Piece& piece = pieces.emplace_back();
-        piece.name = fmt::format("{}part {}", name, pieces.size());
-        auto points = rows_.read(group_ + "Points", part.first_point, part.points);
+        Piece& piece = loaded.pieces.emplace_back();
+        piece.name = fmt::format("{}part {}", name, ++number);
+        auto points = read_points(part);
         if (!points) return points.error();
         piece.grid.points = *std::move(points);
-        if (auto done = load_types(part, piece.grid.cells); !done) return done.error();
+        if (auto done = load_types(part, piece.grid.cells); !done) return done;
         for (const auto association : {Association::point, Association::cell})
-            if (auto done = load_fields(part, *place, step, association, options, piece); !done) return done.error();
-        if (auto done = load_corners(part, options, parts->size() == 1, piece); !done) return done.error();
+            if (auto done = load_fields(part, *place, step, association, options, piece, loaded.info); !done) return done;
+        if (auto done = load_corners(part, options, parts->size() == 1, piece); !done) return done;
     }
-    return pieces;
+    return {};
 }
 
 } // namespace isotet::io::vtk

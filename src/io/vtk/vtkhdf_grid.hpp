@@ -43,8 +43,8 @@ public:
     Result<void> announce_all(FileInfo& info) const;
     /// Of one step.
     Result<std::uint64_t> count_cells(std::size_t step) const;
-    /// One piece a partition. `name` begins the names of the pieces.
-    Result<std::vector<Piece>> load(const ReadOptions& options, std::size_t step, const std::string& name) const;
+    /// Adds one piece a partition. `name` begins the names of the pieces. A field that cannot be read is left out.
+    Result<void> load(const ReadOptions& options, std::size_t step, const std::string& name, Loaded& loaded) const;
 
 private:
     Error wrong(const std::string& what) const { return broken(path_, what); }
@@ -55,6 +55,8 @@ private:
     Result<std::uint64_t> number_or(const std::string& name, std::uint64_t place, std::uint64_t otherwise) const;
     Result<HdfStepPlace> find_step(std::size_t step) const;
     Result<std::vector<HdfPartition>> find_partitions(const HdfStepPlace& place) const;
+    void note_rows_left_over(const std::vector<HdfPartition>& parts, std::vector<std::string>& notes) const;
+    Result<Array> read_points(const HdfPartition& part) const;
     Result<void> find_faces(const HdfStepPlace& place, std::size_t step, std::vector<HdfPartition>& parts) const;
     Result<void> load_types(const HdfPartition& part, Cells& cells) const;
     Result<void> load_corners(const HdfPartition& part, const ReadOptions& options, bool alone, Piece& piece) const;
@@ -62,7 +64,9 @@ private:
                                               const Piece& piece) const;
     Result<void> load_faces(const HdfPartition& part, Cells& cells) const;
     Result<void> load_fields(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
-                             Association association, const ReadOptions& options, Piece& piece) const;
+                             Association association, const ReadOptions& options, Piece& piece, FileInfo& info) const;
+    Result<Array> read_field(const HdfPartition& part, const HdfStepPlace& place, std::size_t step,
+                             Association association, const std::string& name) const;
 
     std::string path_;
     const Hdf5Rows& rows_;
