@@ -10,6 +10,7 @@
 #include "io/own/escape.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/reader.hpp"
+#include "io/vtk/xdmf_finite_element.hpp"
 
 namespace isotet::io::vtk {
 namespace {
@@ -27,6 +28,7 @@ std::string without_time(std::string name, std::optional<double> time) {
 }
 
 std::optional<Association> association_of(pugi::xml_node attribute) {
+    if (is_finite_element_function(attribute)) return association_of_function(attribute);
     const std::string_view center = attribute.attribute("Center").as_string("Node");
     if (same_word(center, "Node")) return Association::point;
     if (same_word(center, "Cell")) return Association::cell;
@@ -73,11 +75,20 @@ Result<void> XdmfFieldReader::read_values(const XdmfField& field, XdmfMesh& mesh
         return Error{ErrorCode::invalid_data, fmt::format("its Center is \"{}\", but Node and Cell are read",
                                                           escaped(field.node.attribute("Center").as_string()))};
     const bool on_points = *field.association == Association::point;
-    auto& fields = on_points ? mesh.grid.point_fields : mesh.grid.cell_fields;
-    const std::uint64_t tuples = on_points ? mesh.points : mesh.cells;
     const bool want = depth == Depth::arrays && wanted(options_, *field.association, field.name);
-    const auto values =
-        file_.data.read(file_.document.child(field.node, "DataItem"), want ? Depth::arrays : Depth::description);
+    auto& fields = on_points ? mesh.grid.point_fields : mesh.grid.cell_fields;
+    const Depth of_field = want ? Depth::arrays : Depth::description;
+    if (is_finite_element_function(field.node)) {
+        auto function = read_function_values(file_, field.node, mesh, of_field);
+        if (!function) return function.error();
+        announce(loaded.info, {field.name, *field.association, ScalarType::float64, function->components});
+        if (want) fields.push_back({field.name, std::move(function->values)});
+        if (!function->note.empty())
+            loaded.notes.push_back(fmt::format("function \"{}\" {}", escaped(field.name), function->note));
+        return {};
+    }
+    const std::uint64_t tuples = on_points ? mesh.points : mesh.cells;
+    const auto values = file_.data.read(file_.document.child(field.node, "DataItem"), of_field);
     if (!values) return values.error();
     if (tuples == 0) return {};
     if (values->count() % tuples != 0 || values->count() == 0)
