@@ -3,13 +3,15 @@
 
     python3 tests/corruption/make_samples.py tests/corruption/samples
 
-Needs VTK's Python package, which writes VTK's own formats: 9.4 or later for VTKHDF. Polyhedra in
-other formats are written by make_polyhedral_samples.cpp; blocks.vtm and times.vtm.series are text that names these files.
+Needs VTK's Python package, which writes VTK's own formats: 9.4 or later for VTKHDF; and h5py. Polyhedra in
+other formats are written by make_polyhedral_samples.cpp; blocks.vtm, times.vtm.series and xdmf/*.xdmf are text that names these files.
 """
 import os
 import struct
 import sys
 
+import h5py
+import numpy
 import vtk
 
 SIDE = 3
@@ -306,6 +308,18 @@ def write_corner_points(folder):
             file.write(content)
 
 
+def write_xdmf_series(path):
+    """What xdmf/series.xdmf names: two tets, a field with three steps, a function of degree 1."""
+    with h5py.File(path, 'w', libver=('earliest', 'v108')) as file:
+        file['Mesh/mesh/topology'] = numpy.array([[0, 1, 2, 3], [0, 2, 1, 4]])
+        file['Mesh/mesh/geometry'] = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, -1]], float)
+        file.create_dataset('u', data=numpy.arange(15.0).reshape(3, 5), chunks=(1, 5), compression='gzip')
+        file['f/cell_dofs'] = numpy.arange(8).reshape(8, 1)
+        file['f/vector'] = numpy.array([1, 2, 3, 4, 1.5, 3, 2, 5]).reshape(8, 1)
+        file['f/x_cell_dofs'] = numpy.array([[0], [4], [8]])
+        file['f/cells'] = numpy.array([[0], [1]])
+
+
 def main():
     folder = sys.argv[1]
     os.makedirs(folder, exist_ok=True)
@@ -318,6 +332,8 @@ def main():
     write_xml(vtk.vtkXMLUnstructuredGridWriter(), unstructured(False), at('appended_lz4.vtu'), 'Appended', 'LZ4')
     os.makedirs(at('polyhedra'), exist_ok=True)
     write_vtkhdf_polyhedra(at('polyhedra/partitions.vtkhdf'))
+    os.makedirs(at('xdmf'), exist_ok=True)
+    write_xdmf_series(at('xdmf/series.h5'))
     os.makedirs(at('ensight'), exist_ok=True)
     write_ensight(at('ensight'))
     write_ensight_6(at('ensight'))
