@@ -64,7 +64,7 @@ void say_left_out(ReadResult& result) {
 /// Why a field is not read; empty where nothing is known about it.
 std::string reason_left_out(const FileInfo& info, std::string_view what, const std::string& name) {
     for (const LeftOut& item : info.left_out)
-        if (item.name == name && item.what == what) return item.reason;
+        if (item.name == name && (item.what == what || item.what == "field")) return item.reason;
     return {};
 }
 

@@ -95,8 +95,8 @@ TEST_F(ReadOpenfoamZones, AreListedWithTheirCounts) {
         for (const auto& [name, content] : foam_case(box_, number_of, {}, processors)) folder.write(name, content);
         const auto info = inspect(folder.file(""));
         ASSERT_TRUE(info) << info.error().message;
-        ASSERT_EQ(info->blocks.size(), 3u);
-        for (std::size_t i = 0; i < 3; ++i) {
+        ASSERT_EQ(info->blocks.size(), 2u) << "the third has no cells";
+        for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_EQ(info->blocks[i].name, box_.zones[i].name);
             EXPECT_EQ(info->blocks[i].number, static_cast<std::int64_t>(i + 1));
             EXPECT_EQ(info->blocks[i].kind, "zone");

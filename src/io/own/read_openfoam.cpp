@@ -39,18 +39,32 @@ bool is_field_class(std::string_view type) {
     return (type.starts_with("vol") || type.starts_with("point")) && foam::components_of(type) > 0;
 }
 
+/// Why a file without a header may be meant as a field; empty where it is something else.
+std::string fault_without_header(const foam::CaseText& text, const std::string& name) {
+    for (const char* word : {"FoamFile", "internalField"})
+        if (text.text.find(word) != std::string_view::npos)
+            return fmt::format("{} does not begin with FoamFile {{ }}", escaped(name));
+    return {};
+}
+
 /// The fields in a folder, by the headers of files that were not looked at before.
 Result<std::vector<AnnouncedField>> fields_in(const CaseFiles& files, const std::string& folder,
-                                              std::set<std::string>& seen) {
+                                              std::set<std::string>& seen, FileInfo& info) {
     constexpr std::size_t head_bytes = 8192;
     std::vector<AnnouncedField> fields;
     for (const std::string& name : files.list(folder).files) {
-        if (!seen.insert(name).second) continue;
+        if (!seen.insert(name).second || name.starts_with(".")) continue;
         auto text = files.open(folder + name, head_bytes);
-        if (!text)
-            continue; // an empty file, or one that may not be read: no field; it is an error when it is asked for
+        if (!text) {
+            leave_out(info, {"field", name, text.error().message});
+            continue;
+        }
+        const std::string fault = fault_without_header(*text, folder + name);
         foam::Scanner scanner(std::move(*text));
-        if (!scanner.is_foam()) continue;
+        if (!scanner.is_foam()) {
+            if (!fault.empty()) leave_out(info, {"field", name, fault});
+            continue;
+        }
         auto header = scanner.header();
         if (!header) return header.error();
         if (is_field_class(header->type)) fields.push_back({name, std::move(*header)});
@@ -69,13 +83,22 @@ void announce_field(FileInfo& info, const AnnouncedField& field) {
     if (!field.of_points()) announce(info, {field.name, Association::cell, type, components});
 }
 
-Result<void> describe(const CaseFiles& files, const CaseLayout& layout, FileInfo& info) {
-    info.format = "openfoam";
-    for (const auto& [time, name] : layout.times) info.times.push_back(time);
-    for (const std::string& region : layout.regions) {
+/// What is wanted of a region.
+struct RegionChoice {
+    bool whole = true;
+    std::vector<std::string> zones; ///< else
+
+    bool empty() const { return !whole && zones.empty(); }
+};
+
+Result<void> announce_fields(const CaseFiles& files, const CaseLayout& layout,
+                             const std::vector<RegionChoice>& choices, FileInfo& info) {
+    for (std::size_t region = 0; region < choices.size(); ++region) {
+        if (choices[region].empty()) continue;
         std::set<std::string> seen;
         for (std::size_t step = 0; step < layout.times.size(); ++step) {
-            auto fields = fields_in(files, layout.prefixes.front() + field_folder(layout, region, step), seen);
+            auto fields = fields_in(
+                files, layout.prefixes.front() + field_folder(layout, layout.regions[region], step), seen, info);
             if (!fields) return fields.error();
             for (const AnnouncedField& field : *fields) announce_field(info, field);
         }
@@ -94,30 +117,38 @@ Result<std::vector<foam::MeshPlace>> places_of(const CaseFiles& files, const Cas
     return places;
 }
 
-/// What is wanted of a region.
-struct RegionChoice {
-    bool whole = true;
-    std::vector<std::string> zones; ///< else
-
-    bool empty() const { return !whole && zones.empty(); }
-};
-
-/// What the blocks of the description are: regions where there are several, then the zones of all.
+/// What the blocks of the description are: regions where there are several, then the zones of all. Zones without cells can
+/// be chosen, too, and are not in the description.
 struct CaseBlocks {
     struct Block {
         std::size_t region = 0;
         std::string zone; ///< empty: all of the region
     };
     std::vector<Block> blocks;
+    std::vector<BlockInfo> infos; ///< one each
 
-    /// One a region.
-    Result<std::vector<RegionChoice>> chosen(const std::vector<BlockInfo>& listed, const ReadOptions& options,
-                                             std::size_t regions) const {
-        std::vector<RegionChoice> choices(regions);
+    void add(Block block, const std::string& name, const char* kind, std::uint64_t cells) {
+        blocks.push_back(std::move(block));
+        infos.push_back({static_cast<std::int64_t>(blocks.size()), name, kind, cells});
+    }
+
+    /// One a region. The name of a region means that region alone, whatever zones are called so.
+    Result<std::vector<RegionChoice>> chosen(const CaseLayout& layout, const ReadOptions& options) const {
+        std::vector<RegionChoice> choices(layout.regions.size());
+        if (layout.has_base_mesh()) choices.front().whole = false;
         if (options.blocks.empty()) return choices;
-        const auto flags = chosen_blocks(listed, options);
-        if (!flags) return flags.error();
         for (RegionChoice& choice : choices) choice.whole = false;
+        ReadOptions others;
+        for (const std::string& asked : options.blocks) {
+            std::size_t region = 0;
+            while (region < choices.size() && !(layout.has_several_regions() && layout.name_of(region) == asked))
+                ++region;
+            if (region < choices.size()) choices[region].whole = true;
+            else others.blocks.push_back(asked);
+        }
+        if (others.blocks.empty()) return choices;
+        const auto flags = chosen_blocks(infos, others);
+        if (!flags) return flags.error();
         for (std::size_t i = 0; i < blocks.size(); ++i) {
             if (!(*flags)[i]) continue;
             RegionChoice& choice = choices[blocks[i].region];
@@ -128,31 +159,39 @@ struct CaseBlocks {
     }
 };
 
-Result<CaseBlocks> announce_blocks(const CaseFiles& files, const CaseLayout& layout, std::size_t step, FileInfo& info) {
-    CaseBlocks found;
-    const auto add = [&](CaseBlocks::Block block, const std::string& name, const char* kind, std::uint64_t cells) {
-        found.blocks.push_back(std::move(block));
-        info.blocks.push_back({static_cast<std::int64_t>(found.blocks.size()), name, kind, cells});
-    };
-    const bool several = layout.regions.size() > 1;
-    for (std::size_t region = 0; region < layout.regions.size() && several; ++region)
-        add({region, {}}, layout.regions[region], "region", 0);
-    for (std::size_t region = 0; region < layout.regions.size(); ++region) {
-        const auto places = places_of(files, layout, layout.regions[region], step);
-        if (!places) return places.error();
-        std::vector<foam::CellZone> zones; // of all parts
-        for (const foam::MeshPlace& place : *places) {
-            const auto of_part = foam::read_cell_zones(files, place.faces, {});
-            if (!of_part) return of_part.error();
-            for (const foam::CellZone& zone : *of_part) {
-                const auto known = std::ranges::find(zones, zone.name, &foam::CellZone::name);
-                if (known == zones.end()) zones.push_back(zone);
-                else known->count += zone.count;
-            }
+/// The zones of a region, of all parts together.
+Result<std::vector<foam::CellZone>> zones_of(const CaseFiles& files, const CaseLayout& layout,
+                                             const std::string& region, std::size_t step) {
+    const auto places = places_of(files, layout, region, step);
+    if (!places) return places.error();
+    std::vector<foam::CellZone> zones;
+    for (const foam::MeshPlace& place : *places) {
+        const auto of_part = foam::read_cell_zones(files, place.faces, {});
+        if (!of_part) return of_part.error();
+        for (const foam::CellZone& zone : *of_part) {
+            const auto known = std::ranges::find(zones, zone.name, &foam::CellZone::name);
+            if (known == zones.end()) zones.push_back(zone);
+            else known->count += zone.count;
         }
-        for (const foam::CellZone& zone : zones)
-            add({region, zone.name}, (several ? layout.regions[region] + "/" : "") + zone.name, "zone", zone.count);
     }
+    return zones;
+}
+
+Result<CaseBlocks> find_blocks(const CaseFiles& files, const CaseLayout& layout, std::size_t step, FileInfo& info) {
+    CaseBlocks found, empty;
+    const bool several = layout.has_several_regions();
+    for (std::size_t region = 0; region < layout.regions.size() && several; ++region)
+        found.add({region, {}}, layout.name_of(region), "region", 0);
+    for (std::size_t region = 0; region < layout.regions.size(); ++region) {
+        const auto zones = zones_of(files, layout, layout.regions[region], step);
+        if (!zones) return zones.error();
+        for (const foam::CellZone& zone : *zones)
+            (zone.count ? found : empty)
+                .add({region, zone.name}, (several ? layout.name_of(region) + "/" : "") + zone.name, "zone",
+                     zone.count);
+    }
+    info.blocks = found.infos;
+    for (std::size_t i = 0; i < empty.blocks.size(); ++i) found.add(empty.blocks[i], empty.infos[i].name, "zone", 0);
     return found;
 }
 
@@ -163,7 +202,8 @@ Result<void> read_fields(const CaseFiles& files, const CaseLayout& layout, const
     const std::string folder = field_folder(layout, region, step);
     std::set<std::string> seen;
     std::map<std::string, std::vector<std::string>> fields_including; // by the file that was not read
-    auto fields = fields_in(files, layout.prefixes.front() + folder, seen);
+    FileInfo told; // what is left out has been said of all times
+    auto fields = fields_in(files, layout.prefixes.front() + folder, seen, told);
     if (!fields) return fields.error();
     for (const AnnouncedField& field : *fields) {
         const bool points = wanted(options, Association::point, field.name);
@@ -267,16 +307,24 @@ Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions
     auto layout = foam::layout_of(files);
     if (!layout) return layout.error();
     Loaded loaded;
-    if (auto described = describe(files, *layout, loaded.info); !described) return described.error();
+    loaded.info.format = "openfoam";
+    for (const auto& [time, name] : layout->times) loaded.info.times.push_back(time);
     const auto step = choose_step(loaded.info, options);
     if (!step && depth == Depth::arrays) return step.error();
     loaded.step = step ? *step : 0;
-    const auto blocks = announce_blocks(files, *layout, loaded.step, loaded.info);
+    const auto blocks = find_blocks(files, *layout, loaded.step, loaded.info);
     if (!blocks) return blocks.error();
+    auto chosen = blocks->chosen(*layout, options);
+    if (!chosen && depth == Depth::description) chosen = blocks->chosen(*layout, {});
+    if (!chosen) return chosen.error();
+    if (layout->has_base_mesh() && options.blocks.empty())
+        leave_out(loaded.info, {"mesh", "constant/polyMesh",
+                                fmt::format("{} of the case {} in its place; --block polyMesh (or 1) reads it",
+                                            layout->regions.size() == 2 ? "a region" : "regions",
+                                            layout->regions.size() == 2 ? "is read" : "are read")});
+    if (auto announced = announce_fields(files, *layout, *chosen, loaded.info); !announced) return announced.error();
     if (depth == Depth::description) return loaded;
     loaded.notes = layout->notes;
-    const auto chosen = blocks->chosen(loaded.info.blocks, options, layout->regions.size());
-    if (!chosen) return chosen.error();
     for (std::size_t i = 0; i < chosen->size(); ++i) {
         if ((*chosen)[i].empty()) continue;
         auto piece = read_region(files, *layout, layout->regions[i], loaded.step, (*chosen)[i], options, loaded.notes);

@@ -50,6 +50,7 @@ std::vector<std::string> regions_in(const CaseFiles& files, const std::string& p
         for (const std::string& name : files.list(prefix + folder).folders)
             if (has_mesh(files, prefix + folder + name + "/")) add(name);
     }
+    std::ranges::stable_partition(regions, [](const std::string& region) { return region.empty(); });
     return regions;
 }
 

@@ -16,8 +16,16 @@ namespace isotet::io::foam {
 struct CaseLayout {
     std::vector<std::string> prefixes;                 ///< "" for a whole case, else "processor0/" and so on
     std::vector<std::pair<double, std::string>> times; ///< ascending, with the names of their folders
-    std::vector<std::string> regions;                  ///< "" for the one without a name
+    std::vector<std::string> regions;                  ///< "" for the one without a name, the first
     std::vector<std::string> notes;
+
+    bool has_several_regions() const { return regions.size() > 1; }
+    /// The mesh in constant/polyMesh beside those of regions, which splitMeshRegions makes of it and leaves there.
+    bool has_base_mesh() const { return has_several_regions() && regions.front().empty(); }
+    /// Under which a region is chosen: no other can be called as the folder of the base mesh.
+    std::string name_of(std::size_t region) const {
+        return has_base_mesh() && region == 0 ? "polyMesh" : regions[region];
+    }
 };
 
 /// The processor folders are read where the case's own folder has no mesh, or they have a later time.
