@@ -23,6 +23,18 @@ std::vector<Field> framed_fields(const ContourInput& piece) {
     return fields;
 }
 
+/// A field of integers of which the frame has float64, since points inside polyhedra have its means: likewise, also in
+/// pieces where no polyhedron is split.
+void convert_as_framed(const Frame& frame, const std::string& name, Array& values) {
+    const FieldSurvey* const framed = frame.find(name);
+    if (!framed || is_floating(values.type()) || !is_floating(framed->type)) return;
+    values = values.visit([&](auto from) {
+        std::vector<double> to(from.size());
+        std::ranges::transform(from, to.begin(), [](auto value) { return static_cast<double>(value); });
+        return Array::own(std::move(to), values.components());
+    });
+}
+
 /// Above all numbers of points. Polyhedra have one derived point at most, so pieces have different ones.
 constexpr std::uint64_t first_derived_end = std::uint64_t{1} << 62;
 
@@ -43,6 +55,7 @@ Result<FramedPiece> take_piece(const ContourInput& whole, const PieceOf& which, 
     Grid grid = whole.grid;
     grid.point_fields = whole.point_fields;
     grid.point_fields.push_back({whole.field.name, whole.field.values});
+    for (Field& field : grid.point_fields) convert_as_framed(*frame, field.name, field.values);
     grid.cell_fields = whole.cell_fields;
     Result<Grid> taken = take_piece(grid, which, run);
     if (!taken) return taken.error();

@@ -5,9 +5,11 @@
 #include <cstring>
 #include <type_traits>
 
+#include <isotet/contour.hpp>
 #include <isotet/extract_direct.hpp>
 #include <isotet/frame.hpp>
 #include <isotet/pack.hpp>
+#include <isotet/pieces.hpp>
 
 #include "pieces/partition.hpp"
 #include "support/random_grid.hpp"
@@ -113,6 +115,28 @@ TEST(Frame, LetsAPieceBeEmpty) {
         extract_direct(empty, nothing, std::span(&isovalue, 1), options).value().surfaces[0].surface.triangle_count(),
         0u);
     EXPECT_EQ(pack(empty, nothing).error().code, ErrorCode::invalid_data);
+}
+
+TEST(Frame, LetsAPieceBeEmptyWhereTheWholeDoesNotHoldTheOrigin) {
+    Grid whole = made_grid("hex", 2, {"gyroid"});
+    std::vector<double> places;
+    for (std::size_t i = 0; i < whole.points.size(); ++i) places.push_back(whole.points.at(i / 3, i % 3) + 1000);
+    whole.points = Array::own(std::move(places), 3);
+    const ContourInput input{whole, point_field(whole), {}, {}};
+    for (const Method method : {Method::direct, Method::clusters})
+        for (std::uint64_t k = 0; k < 11; ++k) { // of 8 cells
+            const FramedPiece piece = take_piece(input, {k, 11}).value();
+            ContourOptions options;
+            options.frame = piece.frame;
+            options.method = method;
+            auto session = Contour::create(piece.input, options);
+            ASSERT_TRUE(session) << session.error().message;
+            const auto surface = session->extract(0.1);
+            ASSERT_TRUE(surface) << surface.error().message;
+            if (piece.input.grid.cells.count() == 0) {
+                EXPECT_EQ(surface->surfaces[0].surface.triangle_count(), 0u);
+            }
+        }
 }
 
 } // namespace

@@ -119,6 +119,33 @@ TEST(PiecesWithPolyhedra, GiveTheSurfaceOfTheWhole) {
     }
 }
 
+TEST(PiecesWithPolyhedra, TakeFieldsOfIntegersAlsoWhereTheyHaveNone) {
+    const Grid grid = octree_grid({.seed = 2, .moved = 0.04});
+    std::vector<std::int32_t> values(grid.points.tuples());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::int32_t>(i * 37 % 101);
+    const PointField field{"number", Array::own(std::move(values)), false, {}};
+    const ContourInput whole{grid, field, {}, {}};
+    for (const Method method : {Method::direct, Method::clusters}) {
+        ContourOptions options;
+        options.method = method;
+        const auto expected =
+            triangle_set(Contour::create(whole, options).value().extract(50.5).value().surfaces[0].surface);
+        ASSERT_GT(expected.size(), 100u);
+        const std::uint64_t count = grid.cells.count() + 3; // one cell each, or none
+        std::vector<TriangleBits> together;
+        for (std::uint64_t k = 0; k < count; ++k) {
+            const FramedPiece piece = take_piece(whole, {k, count}).value();
+            options.frame = piece.frame;
+            auto session = Contour::create(piece.input, options);
+            ASSERT_TRUE(session) << k << ": " << session.error().message;
+            const auto surface = session->extract(50.5);
+            ASSERT_TRUE(surface) << k << ": " << surface.error().message;
+            add_triangles(surface->surfaces[0].surface, together);
+        }
+        EXPECT_TRUE(sorted(std::move(together)) == expected);
+    }
+}
+
 TEST(PiecesWithPolyhedra, AreMadeLinearByTheNumbersOfTheirPoints) {
     const Grid grid = octree_grid({.seed = 2});
     const ContourInput whole{grid, pressure_of(grid, 2), {}, {}};

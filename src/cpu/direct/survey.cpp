@@ -162,9 +162,9 @@ PointSurvey survey_points(const ops::DirectInput& input, const Sides* seen) {
     out.rounds_coordinates = points.type() == ScalarType::float64 && precision == Precision::float32;
     const Bounds bounds = bounds_of(points, seen, out.rounds_coordinates);
     out.has_unsound = bounds.has_unsound;
+    out.lower = bounds.lower; // above upper where there are no points
+    out.upper = bounds.upper;
     if (out.rounds_coordinates && bounds.lower[0] <= bounds.upper[0]) {
-        out.lower = bounds.lower;
-        out.upper = bounds.upper;
         for (std::size_t axis = 0; axis < 3; ++axis)
             out.origin[axis] =
                 core::rounded_to_float(bounds.lower[axis] + (bounds.upper[axis] - bounds.lower[axis]) / 2);
