@@ -3,12 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <condition_variable>
-#include <functional>
-#include <mutex>
+#include <cerrno>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -90,7 +91,8 @@ TEST(ServerDescriptors, AcceptingIsNotTriedWithoutAPauseWhereNoneIsFree) {
     running.wait_for_ticks(1);
     rlimit before{};
     ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-    const int lowest = ::dup(0);
+    const int lowest = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    ASSERT_GE(lowest, 0);
     ::close(lowest);
     const rlimit few{static_cast<rlim_t>(lowest) + 1, before.rlim_max};
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
