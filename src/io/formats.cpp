@@ -19,6 +19,7 @@
 #include "io/own/file_kind.hpp"
 #include "io/own/read_openfoam.hpp"
 #include "io/own/text_scanner.hpp"
+#include "io/own/vtk_xml/load.hpp"
 
 namespace isotet {
 
@@ -129,6 +130,40 @@ std::string_view utf_16_order(std::string_view bytes) {
     return {};
 }
 
+/// What a file is that holds no grid itself: a packed one, or a pointer to one. Empty if none.
+std::string_view wrapping_of(std::string_view head) {
+    struct Wrapping {
+        std::string_view begins, what;
+    };
+    using namespace std::string_view_literals;
+    constexpr std::array wrappings{
+        Wrapping{"\x1f\x8b"sv, "is packed by gzip: unpack it first"},
+        Wrapping{"BZh"sv, "is packed by bzip2: unpack it first"},
+        Wrapping{"\xFD"
+                 "7zXZ"sv,
+                 "is packed by xz: unpack it first"},
+        Wrapping{"\x28\xB5\x2F\xFD"sv, "is packed by zstd: unpack it first"},
+        Wrapping{"PK\x03\x04"sv, "is a ZIP archive: unpack it first"},
+        Wrapping{"version https://git-lfs"sv, "is a pointer of Git LFS: the data were not fetched (git lfs pull)"}};
+    for (const Wrapping& wrapping : wrappings)
+        if (head.starts_with(wrapping.begins)) return wrapping.what;
+    return {};
+}
+
+bool is_named_for(const GridReader& reader, std::string_view extension) {
+    const auto& extensions = reader.format.extensions;
+    return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+/// The reader that the name stands for, where the content tells nothing. Null without one.
+const GridReader* named_reader(const std::vector<const GridReader*>& readers, const Head& head,
+                               std::string_view extension) {
+    const bool is_abaqus = extension == ".inp" && head.bytes.starts_with("*"); // AVS UCD has the name, too
+    if (head.folder || is_abaqus) return nullptr;
+    const auto named = std::ranges::find_if(readers, [&](const GridReader* reader) { return is_named_for(*reader, extension); });
+    return named == readers.end() ? nullptr : *named;
+}
+
 Error nobody_knows(const std::string& path, const Head& head, const std::string& extension) {
     const std::string seen =
         head.folder ? "it is a folder" : "it begins with " + in_quotes(std::string_view(head.bytes).substr(0, 20));
@@ -139,6 +174,8 @@ Error nobody_knows(const std::string& path, const Head& head, const std::string&
                             title, fmt::join(names_of_readers(), ", "))};
     }
 #endif
+    if (const auto type = vtk_xml::type_of(head.bytes); !type.empty())
+        return {ErrorCode::file, fmt::format("{} is a VTK file of type {}, which is not read", path, in_quotes(type))};
     return {ErrorCode::file,
             fmt::format("{} has no format that isotet reads: {}, its name {}; formats are {}", path, seen,
                         extension.empty() ? "has no extension" : "ends in " + in_quotes(extension),
@@ -159,7 +196,8 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
     }
     const auto head = read_head(path);
     if (!head) return head.error();
-    if (const auto order = utf_16_order(head->bytes); !order.empty())
+    const std::string extension = extension_of(path);
+    if (const auto order = utf_16_order(head->bytes); !order.empty() && extension != ".pvd") // XML may be UTF-16
         return Error{
             ErrorCode::file,
             fmt::format("{} is text in UTF-16 ({}), as PowerShell's > writes it, but isotet reads UTF-8: write it "
@@ -167,21 +205,22 @@ Result<const GridReader*> choose_reader(const std::string& path, const ReadOptio
                         path, order)};
     const std::string_view text =
         std::string_view(head->bytes).substr(head->bytes.starts_with(utf_8_mark) ? utf_8_mark.size() : 0);
-    const std::string extension = extension_of(path);
     const bool is_case = head->folder && is_openfoam_case(path);
     const GridReader* best = nullptr;
     int best_score = 0;
     for (const GridReader* reader : readers) {
         if (is_case && reader->format.name == "openfoam") return reader;
         const int recognized = reader->recognizes(text, extension);
-        const auto& extensions = reader->format.extensions;
-        const bool named = std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
-        const int score = 2 * recognized + (recognized > 0 && named ? 1 : 0);
+        const int score = 2 * recognized + (recognized > 0 && is_named_for(*reader, extension) ? 1 : 0);
         if (score > best_score) {
             best = reader;
             best_score = score;
         }
     }
+    constexpr int by_content = 4;
+    if (const auto wrapping = wrapping_of(head->bytes); best_score < by_content && !wrapping.empty())
+        return Error{ErrorCode::file, fmt::format("{} {}", path, wrapping)};
+    if (!best) best = named_reader(readers, *head, extension);
     if (!best) return nobody_knows(path, *head, extension);
     return best;
 }

@@ -41,8 +41,8 @@ public:
         const auto document = vtk_xml::open_document(*source, progress_);
         if (!document) return broken(path_, document.error().message);
         if (document->type != type)
-            return broken(path_, fmt::format("this is a VTK file of type {}, not {}", in_quotes(document->type),
-                                             in_quotes(type)));
+            return broken(path_, fmt::format("this is a VTK file of type {}, which is not read, not {}",
+                                             in_quotes(document->type), in_quotes(type)));
         if (auto walked = walk(document->primary(), {}, 0); !walked) return walked;
         if (leaves.empty())
             return broken(path_, surfaces == 0 ? "the index names no files"
