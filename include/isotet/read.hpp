@@ -81,7 +81,9 @@ struct ReadActiveCells {
 struct ReadOptions {
     std::string format;                                                ///< empty: by content, then by name
     std::optional<std::vector<std::string>> point_fields, cell_fields; ///< names to read; nothing: all
-    std::optional<std::size_t> step;         ///< index into FileInfo::times; nothing: the first
+    bool skip_missing_fields = false; ///< names that the step does not have are passed over, else they are an error
+    std::optional<std::size_t> step;  ///< index into FileInfo::times; nothing: the first, and of a case of OpenFOAM
+                                      ///< inspect() tells the fields of all steps
     bool merge_pieces_by_coordinates = true; ///< pieces without global ids: join points of different pieces with
                                              ///< exactly equal coordinates, so that surfaces have no seams there
     bool allow_outside = false;              ///< index files may name files outside their own folder
@@ -134,6 +136,7 @@ struct ReadSurfaceOptions {
 struct SurfaceFile {
     Surface surface;
     std::string format;
+    std::vector<std::string> notes = {}; ///< what of it is left out (arrays of a VTP)
 };
 
 /// Reads a surface (VTP, PLY, STL, OBJ, legacy VTK, Gocad TSurf), polygons split into triangles. STL has no shared

@@ -54,7 +54,7 @@ Result<CellReader> CellReader::open(const Grid& grid) {
     if (!is_floating(grid.points.type()) || grid.points.components() != 3)
         return invalid_data(fmt::format("points are {} with {} components, but must be float32 or float64 with 3",
                                         name_of(grid.points.type()), grid.points.components()));
-    if (!is_index(cells.connectivity) || (!cells.connectivity.empty() && cells.connectivity.components() != 1))
+    if (!cells.connectivity.empty() && (!is_index(cells.connectivity) || cells.connectivity.components() != 1))
         return invalid_data(
             fmt::format("the connectivity is {} with {} components, but must be 32- or 64-bit integers with 1",
                         name_of(cells.connectivity.type()), cells.connectivity.components()));

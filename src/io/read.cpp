@@ -69,7 +69,8 @@ std::string reason_left_out(const FileInfo& info, std::string_view what, const s
 }
 
 /// Every name asked for must be in the file, and what is in the file must have come back.
-Result<void> check_names(const std::vector<std::string>& asked, Association association, const ReadResult& result) {
+Result<void> check_names(const std::vector<std::string>& asked, Association association, const ReadResult& result,
+                         const ReadOptions& options) {
     const auto& read = association == Association::point ? result.grid.point_fields : result.grid.cell_fields;
     for (const std::string& name : asked) {
         if (std::any_of(read.begin(), read.end(), [&](const Field& field) { return field.name == name; })) continue;
@@ -78,6 +79,7 @@ Result<void> check_names(const std::vector<std::string>& asked, Association asso
             !reason.empty())
             return Error{ErrorCode::invalid_data, fmt::format("{} field {} cannot be read: {}", adjective(association),
                                                               in_quotes(name), reason)};
+        if (options.skip_missing_fields) continue;
         std::vector<std::string> names;
         bool in_file = false;
         for (const FieldInfo& field : result.info.fields) {
@@ -189,10 +191,10 @@ Result<ReadResult> read_checked(const std::string& path, const ReadOptions& opti
     if (auto known = check_blocks(result->info, options); !known) return known.error();
     if (const auto step = choose_step(result->info, options); !step) return step.error();
     if (all.point_fields) {
-        if (auto known = check_names(*all.point_fields, Association::point, *result); !known) return known.error();
+        if (auto known = check_names(*all.point_fields, Association::point, *result, all); !known) return known.error();
     }
     if (all.cell_fields) {
-        if (auto known = check_names(*all.cell_fields, Association::cell, *result); !known) return known.error();
+        if (auto known = check_names(*all.cell_fields, Association::cell, *result, all); !known) return known.error();
     }
     const auto in_file = [&](Error error) {
         if (error.code == ErrorCode::invalid_data) error.message = path + ": " + error.message;

@@ -1,6 +1,9 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/check_files.hpp>
 
+#include <algorithm>
+#include <iterator>
+
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/read.hpp>
 
@@ -55,6 +58,7 @@ Result<SurfaceFile> read_surfaces(const CheckJob& job, Caller& caller) {
         Result<SurfaceFile> other = read_surface(more, {job.format}, caller.run());
         if (!other) return other;
         parts.push_back(std::move(other->surface));
+        std::ranges::move(other->notes, std::back_inserter(file->notes));
     }
     file->surface = join(parts, {});
     return file;
@@ -65,6 +69,7 @@ Result<SurfaceFile> read_surfaces(const CheckJob& job, Caller& caller) {
 Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
     const Result<SurfaceFile> file = read_surfaces(job, caller);
     if (!file) return file.error();
+    caller.notes(file->notes);
 
     CheckOptions options;
     options.closed = job.closed;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <isotet/color_field.hpp>
 #include <isotet/field_statistics.hpp>
@@ -85,6 +86,7 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
         const core::Stopwatch reading;
         Result<SurfaceFile> file = read_surface(job.grid.file, {}, caller.run());
         if (file) {
+            caller.notes(file->notes);
             source.surface_ = std::move(file->surface);
             source.surface_format_ = file->format;
             source.surface_seconds_ = reading.seconds();
@@ -100,7 +102,30 @@ Result<PictureSource> PictureSource::open(const DrawJob& job, Caller& caller) {
     auto steps = choose_steps(source.source_->info(), job.grid, job.all_steps ? Steps::all : Steps::one, caller);
     if (!steps) return steps.error();
     source.steps_ = *std::move(steps);
+    if (auto kept = source.keep_steps_with_fields(caller); !kept) return kept.error();
     return source;
+}
+
+/// Steps that lack a field that is named are not drawn.
+Result<void> PictureSource::keep_steps_with_fields(Caller& caller) {
+    std::vector<std::string> names;
+    for (const std::string* name : {&job_.field.name, &job_.color_by, &job_.boundary_color_by})
+        if (!name->empty()) add_names(names, {*name});
+    if (steps_.size() < 2 || names.empty()) return {};
+    if (auto looked = source_->look_at_steps(steps_, caller); !looked) return looked;
+    for (const std::string& name : names) {
+        if (const auto found = choose_field(*source_, {name, false}); !found) return found.error();
+        std::vector<std::size_t> skipped;
+        for (const std::size_t step : steps_)
+            if (!source_->has_field(step, name)) skipped.push_back(step);
+        if (skipped.empty()) continue;
+        if (skipped.size() == steps_.size())
+            return refusal("'{}' is in other time steps than the fields before it", name);
+        caller.note(fmt::format("'{}' is not in {} of the {} time steps, which {} skipped: {}", name, skipped.size(),
+                                steps_.size(), skipped.size() == 1 ? "is" : "are", fmt::join(skipped, ", ")));
+        std::erase_if(steps_, [&](std::size_t step) { return std::ranges::find(skipped, step) != skipped.end(); });
+    }
+    return {};
 }
 
 SceneLook PictureSource::look_of(const Contents& contents) const {

@@ -69,6 +69,9 @@ TEST(Reply, ComesBackAsItWasWritten) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->info.fields.at(0).name, "p");
     EXPECT_EQ(result->info.times, (std::vector<double>{0.5, 1.5}));
+    ASSERT_EQ(result->info.left_out.size(), 1u);
+    EXPECT_EQ(result->info.left_out[0].name, "q");
+    EXPECT_EQ(result->info.left_out[0].reason, "its type is 'Foo'");
     EXPECT_EQ(result->notes, std::vector<std::string>{"a note"});
     EXPECT_EQ(result->grid.points.at(3, 2), 1);
     EXPECT_EQ(result->grid.cells.connectivity.type(), ScalarType::int32);

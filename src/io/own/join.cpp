@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "core/buffer.hpp"
+#include "io/own/common_type.hpp"
 #include "io/own/escape.hpp"
 #include "io/own/face_streams.hpp"
 #include "io/own/join.hpp"
@@ -147,15 +149,12 @@ std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const
     return problem;
 }
 
-/// The type that holds the values of both without loss, as far as there is one.
-ScalarType common_type(ScalarType a, ScalarType b) { return a == b ? a : ScalarType::float64; }
-
 struct Column {
     std::string name;
     ScalarType type = ScalarType::float64;
     std::size_t components = 1;
-    std::size_t pieces = 0; ///< how many have it
-    bool fits = true;       ///< all have as many components
+    std::size_t pieces = 0;           ///< how many have it
+    std::size_t other_components = 0; ///< of a piece where they are not `components`; else 0
 };
 
 using Fields = std::vector<Field> Grid::*;
@@ -166,20 +165,33 @@ const Field* find(const std::vector<Field>& fields, const std::string& name) {
     return nullptr;
 }
 
+/// Pieces without points or cells have no values: they do not count.
+bool counts(const Piece& piece, Fields which) {
+    return which == &Grid::point_fields ? piece.grid.points.tuples() > 0 : piece.grid.cells.count() > 0;
+}
+
+std::size_t count_filled(const std::vector<Piece>& pieces, Fields which) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(pieces, [&](const Piece& piece) { return counts(piece, which); }));
+}
+
 std::vector<Column> columns(const std::vector<Piece>& pieces, Fields which) {
     std::vector<Column> result;
+    const std::size_t filled = count_filled(pieces, which);
     std::unordered_map<std::string, std::size_t> places;
-    for (const Piece& piece : pieces)
+    for (const Piece& piece : pieces) {
+        if (filled > 0 && !counts(piece, which)) continue;
         for (const Field& field : piece.grid.*which) {
             const auto [place, is_new] = places.try_emplace(field.name, result.size());
-            if (is_new) result.push_back({field.name, field.values.type(), field.values.components(), 0, true});
+            if (is_new) result.push_back({field.name, field.values.type(), field.values.components(), 0, 0});
             Column& column = result[place->second];
             ++column.pieces;
             column.type = common_type(column.type, field.values.type());
-            column.fits = column.fits && column.components == field.values.components();
+            if (column.components != field.values.components()) column.other_components = field.values.components();
         }
+    }
     for (Column& column : result)
-        if (column.pieces < pieces.size() && !is_floating(column.type)) column.type = ScalarType::float64;
+        if (column.pieces < filled) column.type = with_missing(column.type);
     return result;
 }
 
@@ -193,21 +205,14 @@ void copy_tuples(const std::byte* from, std::byte* to, std::size_t components, c
     });
 }
 
-/// Puts the tuples of a piece's field to their places in a column, which has its type or is of float64.
+/// Puts the tuples of a piece's field to their places in a column, whose type holds them.
 template <class TuplesOf>
 void place_tuples(const Array& field, const Column& column, void* to, const TuplesOf& tuples_of) {
     const std::size_t components = column.components;
-    if (field.type() != column.type) {
-        auto* const doubles = static_cast<double*>(to);
-        field.visit([&](auto from) {
-            tuples_of([&](std::size_t in_piece, std::size_t in_result) {
-                for (std::size_t c = 0; c < components; ++c)
-                    doubles[in_result * components + c] = static_cast<double>(from[in_piece * components + c]);
-            });
-        });
-        return;
-    }
-    const auto* const bytes = static_cast<const std::byte*>(field.data());
+    const bool converts = field.type() != column.type;
+    core::Buffer<std::byte> converted(converts ? field.size() * size_of(column.type) : 0);
+    if (converts) convert_scalars(field, column.type, converted.data());
+    const auto* const bytes = converts ? converted.data() : static_cast<const std::byte*>(field.data());
     auto* const places = static_cast<std::byte*>(to);
     switch (size_of(column.type)) {
     case 1: return copy_tuples<1>(bytes, places, components, tuples_of);
@@ -240,20 +245,20 @@ Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& colum
 }
 
 /// What was made of fields that not all pieces have alike; one note for all that are in as many pieces.
-void note_columns(const std::vector<Column>& columns, std::size_t pieces, std::string_view kind,
-                  std::vector<std::string>& notes) {
+void tell_columns(const std::vector<Column>& columns, std::size_t pieces, std::string_view kind, ReadResult& result) {
     std::map<std::size_t, std::vector<std::string>> in_some; // by pieces
     for (const Column& column : columns) {
-        if (!column.fits)
-            notes.push_back(
-                fmt::format("{} field \"{}\" has different numbers of components in different pieces and was left out",
-                            kind, escaped(column.name)));
+        if (column.other_components > 0)
+            leave_out(result.info, {fmt::format("{} field", kind), column.name,
+                                    fmt::format("it has {} component{} in one piece and {} in another",
+                                                column.components, column.components == 1 ? "" : "s",
+                                                column.other_components)});
         else if (column.pieces < pieces) in_some[column.pieces].push_back(fmt::format("\"{}\"", escaped(column.name)));
     }
     for (const auto& [count, names] : in_some)
-        notes.push_back(fmt::format("{} field{} {} {} in {} of {} pieces only: NaN in the others", kind,
-                                    names.size() == 1 ? "" : "s", fmt::join(names, ", "),
-                                    names.size() == 1 ? "is" : "are", count, pieces));
+        result.notes.push_back(fmt::format("{} field{} {} {} in {} of {} pieces only: NaN in the others", kind,
+                                           names.size() == 1 ? "" : "s", fmt::join(names, ", "),
+                                           names.size() == 1 ? "is" : "are", count, pieces));
 }
 
 /// Points that were joined though their values differ: a field that jumps from piece to piece.
@@ -279,12 +284,12 @@ void note_jumps(const std::vector<Piece>& pieces, const PointNumbers& numbers, c
 
 template <class TuplesOf, class Look>
 std::vector<Field> joined_fields(std::vector<Piece>& pieces, Fields which, std::string_view kind, std::size_t tuples,
-                                 const TuplesOf& tuples_of, const Look& look, std::vector<std::string>& notes) {
+                                 const TuplesOf& tuples_of, const Look& look, ReadResult& whole) {
     std::vector<Field> result;
     const std::vector<Column> all = columns(pieces, which);
-    note_columns(all, pieces.size(), kind, notes);
+    tell_columns(all, count_filled(pieces, which), kind, whole);
     for (const Column& column : all) {
-        if (column.fits) {
+        if (column.other_components == 0) {
             result.push_back({column.name, joined_field(pieces, which, column, tuples, tuples_of)});
             look(result.back());
         }
@@ -352,9 +357,11 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     if (std::ranges::all_of(pieces, [](const Piece& piece) { return piece.grid.cells.count() == 0; }))
         for (const Piece& piece : pieces)
             if (!piece.flat.empty()) return broken(piece.name, piece.flat + " has no cells with a volume");
-    for (const Piece& piece : pieces)
+    for (Piece& piece : pieces) {
+        if (piece.grid.cells.count() == 0) piece.grid.cells = {}; // offsets of no cells need no types
         if (auto problem = misfit(piece))
             return Error{ErrorCode::invalid_data, fmt::format("piece \"{}\": {}", escaped(piece.name), *problem)};
+    }
     if (pieces.size() > 1) std::erase_if(pieces, [](const Piece& piece) { return piece.grid.points.tuples() == 0; });
 
     const KeptCells kept = keep(pieces);
@@ -363,7 +370,10 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     if (kept.ghosts > 0) result.notes.push_back(fmt::format("{} ghost or blanked cells were left out", kept.ghosts));
     if (kept.repeated > 0)
         result.notes.push_back(fmt::format("{} cells that an earlier piece has, too, were left out", kept.repeated));
-    if (pieces.empty()) return result;
+    if (pieces.empty()) { // none has a point
+        result.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
+        return result;
+    }
     if (pieces.size() == 1 && all_kept) {
         result.grid = std::move(pieces.front().grid);
         result.cells_in_file = pieces.front().cells_in_file;
@@ -390,13 +400,13 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
         each_kept(kept, p, pieces[p].grid.cells.count(), [&](std::size_t cell) { visit(cell, next++); });
     };
     result.grid.cell_fields =
-        joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, [](const Field&) {}, result.notes);
+        joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, [](const Field&) {}, result);
     result.grid.cells = compact(std::move(connectivity), std::move(offsets), std::move(types));
     std::move(faces).give_to(result.grid.cells);
     for (Piece& piece : pieces) piece.grid.cells = Cells();
     result.grid.point_fields = joined_fields(
         pieces, &Grid::point_fields, "point", numbers.count, points_of,
-        [&](const Field& field) { note_jumps(pieces, numbers, field, result.notes); }, result.notes);
+        [&](const Field& field) { note_jumps(pieces, numbers, field, result.notes); }, result);
     // The coordinates, as one more field.
     for (Piece& piece : pieces) piece.grid.point_fields.push_back({"points", piece.grid.points});
     const Column coordinates = columns(pieces, &Grid::point_fields).front();

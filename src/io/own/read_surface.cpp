@@ -39,8 +39,9 @@ bool looks_like_obj(std::string_view head) {
     return std::ranges::find(keywords, word) != keywords.end();
 }
 
-Result<Surface> parse_as(std::string_view format, std::string_view content, const Progress& progress) {
-    if (format == "vtp") return parse_vtp(content, progress);
+Result<Surface> parse_as(std::string_view format, std::string_view content, std::vector<std::string>& notes,
+                         const Progress& progress) {
+    if (format == "vtp") return parse_vtp(content, notes, progress);
     if (format == "ply") return parse_ply(content, progress);
     if (format == "stl") return parse_stl(content, progress);
     if (format == "obj") return parse_obj(content, progress);
@@ -76,9 +77,10 @@ Result<SurfaceFile> parse_surface(std::string_view content, std::string_view end
             return Error{ErrorCode::invalid_argument,
                          fmt::format("the format {} is none of a surface: {}", in_quotes(format), all)};
         }
-        auto surface = parse_as(chosen, content, progress);
+        std::vector<std::string> notes;
+        auto surface = parse_as(chosen, content, notes, progress);
         if (!surface) return surface.error();
-        return SurfaceFile{std::move(*surface), std::string(chosen)};
+        return SurfaceFile{std::move(*surface), std::string(chosen), std::move(notes)};
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::out_of_memory, "no memory left to read a surface"};
     } catch (const std::exception& exception) {

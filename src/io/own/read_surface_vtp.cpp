@@ -19,8 +19,9 @@ namespace {
 /// Makes the surface of one Piece element.
 class SurfaceOfPiece {
 public:
-    SurfaceOfPiece(Document& document, const pugi::xml_node& piece, const Progress& progress)
-        : document_(document), piece_(piece), progress_(progress) {}
+    SurfaceOfPiece(Document& document, const pugi::xml_node& piece, std::vector<std::string>& notes,
+                   const Progress& progress)
+        : document_(document), piece_(piece), progress_(progress), notes_(notes) {}
 
     Result<Surface> read() {
         if (auto points = read_points(); !points) return points.error();
@@ -95,19 +96,29 @@ private:
     Result<void> read_data(const char* section, std::uint64_t tuples, std::vector<Attribute>& attributes) {
         const pugi::xml_node element = piece_.child(section);
         const std::string_view normals = element.attribute("Normals").value();
-        const auto described = describe_section(document_, element, 0);
-        if (!described) return described.error();
-        for (const DataArray& array : described->arrays) {
+        const Section described = describe_section(document_, element, 0);
+        for (const LeftOut& item : described.left_out) note_left_out(item.name, item.reason);
+        for (const std::string& name : described.repeated) note_left_out(name, "it is there more than once: the first is read");
+        for (const DataArray& array : described.arrays) {
             auto values = load_array(document_, array, tuples, progress_);
+            if (!values && values.error().code == ErrorCode::invalid_data) {
+                note_left_out(array.name, values.error().message);
+                continue;
+            }
             if (!values) return values.error();
             attributes.push_back({array.name, std::move(*values), array.name == normals});
         }
         return {};
     }
 
+    void note_left_out(const std::string& name, std::string_view reason) {
+        notes_.push_back(fmt::format("the array {} is left out: {}", in_quotes(name), reason));
+    }
+
     Document& document_;
     pugi::xml_node piece_;
     const Progress& progress_;
+    std::vector<std::string>& notes_;
     SurfaceParts parts_;
 };
 
@@ -116,7 +127,7 @@ private:
 
 namespace isotet::io {
 
-Result<Surface> parse_vtp(std::string_view content, const Progress& progress) {
+Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, const Progress& progress) {
     auto document = vtk_xml::open_document(ByteSource(content), progress);
     if (!document) return document.error();
     if (document->type != "PolyData")
@@ -124,7 +135,7 @@ Result<Surface> parse_vtp(std::string_view content, const Progress& progress) {
             fmt::format("this is a VTK file of type {}, not a surface (PolyData)", in_quotes(document->type)));
     std::vector<Surface> surfaces;
     for (const auto& piece : document->primary().children("Piece")) {
-        auto surface = vtk_xml::SurfaceOfPiece(*document, piece, progress).read();
+        auto surface = vtk_xml::SurfaceOfPiece(*document, piece, notes, progress).read();
         if (!surface) return surface;
         surfaces.push_back(std::move(*surface));
     }

@@ -38,7 +38,7 @@ struct SurfaceParts {
 /// Errors   invalid_data: an array of the wrong length, a vertex that is not there
 Result<Surface> assemble(SurfaceParts&& parts);
 
-/// The parsers, one a format. `content` is the whole file; they keep nothing of it.
+/// The parsers, one a format. `content` is the whole file; they keep nothing of it. `notes` tell what is left out.
 ///
 /// Errors   invalid_data: what was seen, where, and the rule; cancelled
 Result<Surface> parse_ply(std::string_view content, const Progress& progress);
@@ -46,7 +46,7 @@ Result<Surface> parse_stl(std::string_view content, const Progress& progress);
 Result<Surface> parse_obj(std::string_view content, const Progress& progress);
 Result<Surface> parse_legacy_vtk(std::string_view content, const Progress& progress);
 Result<Surface> parse_ts(std::string_view content, const Progress& progress);
-Result<Surface> parse_vtp(std::string_view content, const Progress& progress);
+Result<Surface> parse_vtp(std::string_view content, std::vector<std::string>& notes, const Progress& progress);
 
 /// "vtp", "ply" and so on by the content, then by the ending; empty if neither tells.
 std::string_view recognize_surface(std::string_view content, std::string_view ending);

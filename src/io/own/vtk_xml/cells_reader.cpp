@@ -4,6 +4,7 @@
 #include "io/own/vtk_xml/cells_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <type_traits>
@@ -35,6 +36,13 @@ Array converted(const Array& array) {
     return std::move(values).to_array();
 }
 
+/// Whether a value is a whole number that a double holds exactly.
+template <class Value>
+bool is_whole(Value value) {
+    if constexpr (std::is_floating_point_v<Value>) return std::abs(value) <= Value{0x1p53} && value == std::floor(value);
+    else return true;
+}
+
 class CellsReader {
 public:
     CellsReader(Document& document, const CellsElement& element, const ActiveWish* active, const Progress& progress)
@@ -47,10 +55,8 @@ public:
 
     Result<CellsRead> read() {
         Cells cells;
-        if (count_ == 0) return CellsRead{};
-        auto section = describe_section(document_, piece_.child("Cells"), step_);
-        if (!section) return section.error();
-        section_ = std::move(*section);
+        section_ = describe_section(document_, piece_.child("Cells"), step_);
+        if (count_ == 0) return check_no_types();
         const auto size = read_types_and_offsets(cells);
         if (!size) return size.error();
         const auto stored = find_stored("connectivity", *size);
@@ -164,14 +170,38 @@ private:
         return out;
     }
 
+    /// No cells may be announced only where none are there. Where an appended array of nothing begins, others may.
+    Result<CellsRead> check_no_types() const {
+        const auto types = std::ranges::find(section_.arrays, "types", &DataArray::name);
+        if (types == section_.arrays.end() || !types->inside) return CellsRead{};
+        const auto first = load_array(document_, *types, 1, progress_);
+        if (first) return invalid_data("NumberOfCells is 0, but the array 'types' holds values");
+        return first.error().code == ErrorCode::invalid_data ? Result<CellsRead>(CellsRead{}) : first.error();
+    }
+
     Result<DataArray> find(const char* name) const {
+        for (const LeftOut& item : section_.left_out)
+            if (item.name == name) return invalid_data(fmt::format("Cells {}: {}", in_quotes(name), item.reason));
         const auto found = std::ranges::find(section_.arrays, name, &DataArray::name);
         if (found == section_.arrays.end())
             return invalid_data(fmt::format("Cells has no array {}, but there are {} cells", in_quotes(name), count_));
-        if (found->components != 1 || is_floating(found->type))
-            return invalid_data(fmt::format("Cells {} is {} with {} components, not integers with one", in_quotes(name),
-                                            isotet::name_of(found->type), found->components));
+        if (found->components != 1)
+            return invalid_data(fmt::format("Cells {} has {} components, not one", in_quotes(name), found->components));
         return *found;
+    }
+
+    /// An array with one value a cell: more of them would be cells that are not announced.
+    Result<StoredArray> find_of_cells(const char* name) const {
+        auto stored = find_stored(name, count_);
+        if (!stored) return stored;
+        if (auto all = stored->check_stored(); !all) return in_cells(all.error());
+        return stored;
+    }
+
+    Error in_cells(const Error& error) const {
+        return error.code == ErrorCode::invalid_data
+                   ? invalid_data(fmt::format("NumberOfCells is {}: {}", count_, error.message))
+                   : error;
     }
 
     Result<StoredArray> find_stored(const char* name, std::uint64_t size) const {
@@ -182,13 +212,13 @@ private:
 
     /// Returns how many corners there are. Neither types nor offsets become arrays where they say nothing.
     Result<std::uint64_t> read_types_and_offsets(Cells& cells) const {
-        const auto types = find_stored("types", count_);
+        const auto types = find_of_cells("types");
         if (!types) return types.error();
         const auto type = one_type(*types);
         if (!type) return type.error();
         if (!*type) // else they have been looked at
             if (auto read = read_types(*types, cells); !read) return read.error();
-        const auto offsets = find_stored("offsets", count_);
+        const auto offsets = find_of_cells("offsets");
         if (!offsets) return offsets.error();
         const auto corners = *type ? corners_of_uniform(**type) : std::nullopt;
         if (corners && offsets->has_blocks()) {
@@ -222,13 +252,13 @@ private:
 
     static Result<void> read_types(const StoredArray& stored, Cells& cells) {
         auto types = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
-                                  [&](std::byte* to) { return stored.decode(to); });
+                                  [&](std::byte* to) { return stored.decode(to, StoredArray::Rest::is_error); });
         if (!types) return types.error();
         if (types->type() != ScalarType::uint8) {
             const bool fits = all_pieces(*types, [](std::uint64_t, auto values) {
-                return std::ranges::all_of(values, [](auto type) { return type >= 0 && type <= 255; });
+                return std::ranges::all_of(values, [](auto type) { return type >= 0 && type <= 255 && is_whole(type); });
             });
-            if (!fits) return invalid_data("a cell type is not between 0 and 255");
+            if (!fits) return invalid_data("a cell type is not a whole number between 0 and 255");
             types = converted<std::uint8_t>(*types);
         }
         cells.types = std::move(*types);
@@ -275,10 +305,10 @@ private:
         const ScalarType type = stored.array().type;
         auto offsets = filled_array(type, static_cast<std::size_t>(count_) + 1, 1, [&](std::byte* to) {
             std::memset(to, 0, size_of(type));
-            return stored.decode(to + size_of(type));
+            return stored.decode(to + size_of(type), StoredArray::Rest::is_error);
         });
         if (!offsets) return offsets;
-        return as_indices_of_cells(std::move(*offsets));
+        return as_indices_of_cells(std::move(*offsets), "offsets");
     }
 
     static Result<std::uint64_t> last_of(const Array& offsets) {
@@ -300,12 +330,18 @@ private:
         auto values = filled_array(stored.array().type, static_cast<std::size_t>(stored.scalars()), 1,
                                    [&](std::byte* to) { return stored.decode(to); });
         if (!values) return values;
-        return as_indices_of_cells(std::move(*values));
+        return as_indices_of_cells(std::move(*values), stored.array().name);
     }
 
-    /// As int32 where the type is narrower.
-    static Array as_indices_of_cells(Array array) {
-        return size_of(array.type()) < 4 ? converted<std::int32_t>(array) : array;
+    /// As int32 where the type is narrower; floating ones, which some writers take, as int64.
+    static Result<Array> as_indices_of_cells(Array array, std::string_view name) {
+        if (!is_floating(array.type())) return size_of(array.type()) < 4 ? converted<std::int32_t>(array) : array;
+        const bool whole = all_pieces(
+            array, [](std::uint64_t, auto values) { return std::ranges::all_of(values, [](auto value) { return is_whole(value); }); });
+        if (!whole)
+            return invalid_data(fmt::format("Cells {} is {}, and not all of its values are whole numbers",
+                                            in_quotes(name), isotet::name_of(array.type())));
+        return converted<std::int64_t>(array);
     }
 
     Document& document_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <isotet/export.hpp>
@@ -21,17 +22,16 @@ std::vector<pugi::xml_node> pieces_of(const Document& document);
 /// True for the arrays of a step: an attribute TimeStep lists those that an array is for; without it, it is for all.
 bool is_of_step(const pugi::xml_node& element, std::size_t step);
 
-/// The arrays of a PointData or CellData element, without those of other steps.
+/// The arrays of an element, without those of other steps. An array without a name is called "unnamed"; of two of one
+/// name the first counts.
 struct Section {
     std::vector<DataArray> arrays;
+    std::vector<LeftOut> left_out; ///< arrays that cannot be described; `what` is empty
+    std::vector<std::string> unnamed, repeated;
     std::string global_ids; ///< the array that is marked so
 };
 
-/// Errors   invalid_data: as describe_array(); an array without a name, two of one name
-Result<Section> describe_section(const Document& document, const pugi::xml_node& element, std::size_t step);
-
-/// Tells the fields of the first piece, and the file's times.
-Result<void> announce_fields(Document& document, const Progress& progress, FileInfo& info);
+Section describe_section(const Document& document, const pugi::xml_node& element, std::size_t step);
 
 /// Where the tuples of each piece go.
 struct Layout {
@@ -41,21 +41,18 @@ struct Layout {
     std::function<void(std::size_t piece, const std::byte* from, std::byte* to, std::size_t tuple_bytes)> place;
 };
 
-/// One array, with its values in each piece.
-struct Column {
-    DataArray array; ///< of the first piece
-    std::vector<StoredArray> parts;
+/// How many points and cells the pieces have.
+struct Layouts {
+    Layout points, cells;
 };
 
-/// Finds an array in every piece and checks that it has as many values as the layout says.
+/// Tells the fields of all pieces at a step, those that are left out, and the file's times.
 ///
-/// Errors   invalid_data: a piece has it of another type; as StoredArray::find()
-Result<Column> find_column(Document& document, const std::vector<DataArray>& arrays, const Layout& layout,
-                           const Progress& progress);
+/// Errors   invalid_argument: no such step; invalid_data: a ghost array that cannot be read
+Result<void> announce_fields(Document& document, const Layouts& layouts, const ReadOptions& options,
+                             const Progress& progress, Loaded& loaded);
 
-Result<Array> load_column(const Column& column, const Layout& layout);
-
-/// The points that the pieces store: float32 or float64, three components.
+/// The points that the pieces store, of any type with three components: float32 or float64.
 Result<Array> load_points(Document& document, const std::vector<pugi::xml_node>& pieces, const Layout& layout,
                           std::size_t step, const Progress& progress);
 
@@ -67,9 +64,9 @@ struct Wanted {
 };
 
 /// Reads point data and cell data into `piece`: fields that are wanted, ghost marks, global numbers. All arrays side by
-/// side.
-Result<void> load_fields(Document& document, const Layout& points, const Layout& cells, const Wanted& wanted,
-                         const Progress& progress, Piece& piece);
+/// side. A field that cannot be read is left out, unless the options name it.
+Result<void> load_fields(Document& document, const Layouts& layouts, const Wanted& wanted, const Progress& progress,
+                         Loaded& loaded, Piece& piece);
 
 /// Marks the cells that vtkGhostType or vtkGhostLevels takes out; empty where there are none.
 ISOTET_API void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);

@@ -28,6 +28,11 @@ constexpr std::array type_names{TypeName{"Int8", ScalarType::int8},       TypeNa
                                 TypeName{"Float32", ScalarType::float32}, TypeName{"Float64", ScalarType::float64},
                                 TypeName{"vtkIdType", ScalarType::int64}, TypeName{"Bit", ScalarType::uint8}};
 
+bool same_word(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return std::ranges::equal(a, b, {}, lower, lower);
+}
+
 /// Where the appended data ends: at its end tag, which must be there as that of the file.
 Result<std::size_t> end_of_data(const ByteSource& source) {
     Scratch scratch;
@@ -45,9 +50,9 @@ Result<std::size_t> end_of_data(const ByteSource& source) {
 Result<void> find_appended(Document& document, std::size_t behind_tag) {
     const auto encoding =
         std::string_view(document.tree.child("VTKFile").child("AppendedData").attribute("encoding").value());
-    if (encoding != "raw" && encoding != "base64")
+    document.appended_raw = same_word(encoding, "raw");
+    if (!document.appended_raw && !encoding.empty() && !same_word(encoding, "base64")) // VTK takes none for base64
         return invalid_data(fmt::format("the encoding {} is not raw or base64", in_quotes(encoding)));
-    document.appended_raw = encoding == "raw";
     const auto end = end_of_data(document.source);
     if (!end) return end.error();
     Scratch scratch;
@@ -68,16 +73,19 @@ Result<void> take_root(Document& document, const pugi::xml_node& root) {
         return invalid_data(fmt::format("the first element is {}, not VTKFile", in_quotes(first)));
     }
     document.type = root.attribute("type").value();
+    for (const auto& child : root.children())
+        if (document.type.empty() && child.type() == pugi::node_element) document.type = child.name();
     const std::string_view order = root.attribute("byte_order").as_string("LittleEndian"),
                            header = root.attribute("header_type").as_string("UInt32"),
                            compressor = root.attribute("compressor").value();
-    if (order != "LittleEndian" && order != "BigEndian")
+    const bool is_big = same_word(order, "BigEndian");
+    if (!is_big && !same_word(order, "LittleEndian"))
         return invalid_data(fmt::format("the byte order {} is not known", in_quotes(order)));
     if (header != "UInt32" && header != "UInt64")
         return invalid_data(fmt::format("the header type {} is not UInt32 or UInt64", in_quotes(header)));
     const auto codec = codec_of(compressor);
     if (!codec) return invalid_data(fmt::format("the compressor {} is not known", in_quotes(compressor)));
-    document.order = order == "BigEndian" ? std::endian::big : std::endian::little;
+    document.order = is_big ? std::endian::big : std::endian::little;
     document.wide_header = header == "UInt64";
     document.codec = *codec;
     return {};
@@ -100,7 +108,51 @@ Result<void> place_appended(const Document& document, const pugi::xml_node& elem
     return {};
 }
 
+/// The text of an array, which comments, CDATA and keys of VTK may cut into several.
+Result<void> place_inside(const Document& document, const pugi::xml_node& element, DataArray& array) {
+    std::vector<Range> parts;
+    for (const auto& child : element.children()) {
+        if (child.type() != pugi::node_pcdata) continue;
+        TextScanner places(child.value()); // of outline_of()
+        for (Range part; places.number(part.begin) && places.number(part.end);) parts.push_back(part);
+    }
+    if (parts.size() > 1) {
+        std::vector<Range> filled;
+        for (const Range& part : parts) {
+            const auto blank = is_blank(document.source, part);
+            if (!blank) return blank.error();
+            if (!*blank) filled.push_back(part);
+        }
+        parts = std::move(filled);
+    }
+    if (parts.size() < 2) {
+        if (!parts.empty()) array.place = parts.front();
+        return {};
+    }
+    std::string text;
+    Scratch scratch;
+    for (const Range& part : parts) {
+        const auto view = document.source.view(part.begin, part.size(), scratch);
+        if (!view) return view.error();
+        text += *view;
+    }
+    array.place = {0, text.size()};
+    array.text = std::make_shared<const std::string>(std::move(text));
+    return {};
+}
+
 } // namespace
+
+Result<bool> is_blank(const ByteSource& source, Range place) {
+    Scratch scratch;
+    constexpr std::size_t window = std::size_t{1} << 16;
+    for (std::size_t at = place.begin; at < place.end; at += window) {
+        const auto view = source.view(at, std::min(window, place.end - at), scratch);
+        if (!view) return view.error();
+        if (!std::ranges::all_of(*view, is_space)) return false;
+    }
+    return true;
+}
 
 Result<Document> open_document(const ByteSource& source, const Progress& progress) {
     auto outline = outline_of(source, progress);
@@ -133,21 +185,23 @@ Result<std::optional<DataArray>> describe_array(const Document& document, const 
         return wrong(array.name, fmt::format("its type is {}, which is not known", in_quotes(type)));
     array.type = known->type;
     array.bits = type == "Bit";
-    const std::string_view components = element.attribute("NumberOfComponents").as_string("1");
-    if (!parse_number(components, array.components) || array.components == 0 || array.components > max_components)
+    const std::string_view components = element.attribute("NumberOfComponents").value();
+    const bool stated = !components.empty() && components != "0";
+    if (stated && (!parse_number(components, array.components) || array.components == 0 ||
+                   array.components > max_components))
         return wrong(array.name,
                      fmt::format("it has {} components, not 1 to {}", in_quotes(components), max_components));
-    const std::string_view form = element.attribute("format").as_string("ascii");
-    if (form == "appended") {
+    const std::string_view form = element.attribute("format").value();
+    if (same_word(form, "appended")) {
         if (auto placed = place_appended(document, element, array); !placed) return placed.error();
         return std::optional(std::move(array));
     }
-    if (form != "ascii" && form != "binary")
+    const bool binary = same_word(form, "binary");
+    if (!binary && !form.empty() && !same_word(form, "ascii"))
         return wrong(array.name, fmt::format("its format is {}, not ascii, binary or appended", in_quotes(form)));
     array.inside = true;
-    array.form = form == "ascii" ? DataArray::Form::ascii : DataArray::Form::base64;
-    TextScanner place(element.child_value()); // of outline_of()
-    if (place.number(array.place.begin)) place.number(array.place.end);
+    array.form = binary ? DataArray::Form::base64 : DataArray::Form::ascii;
+    if (auto placed = place_inside(document, element, array); !placed) return placed.error();
     return std::optional(std::move(array));
 }
 

@@ -5,9 +5,12 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <pugixml.hpp>
 
@@ -40,6 +43,9 @@ struct Document {
     Range appended;            ///< from behind the underscore
     /// Bytes that arrays may still have of it: with arrays that share their bytes a small file could fill any memory.
     std::uint64_t appended_left = 0;
+    std::set<std::size_t> appended_begins; ///< of arrays that were found
+    std::uint64_t shared_bytes = 0;        ///< of values of arrays that begin where an earlier one does
+    std::vector<std::string> odd_lengths;  ///< arrays whose stated length is not that of their data
 
     /// The element of the file's type.
     pugi::xml_node primary() const { return tree.child("VTKFile").child(type.c_str()); }
@@ -47,7 +53,7 @@ struct Document {
 
 /// Reads everything up to the appended data.
 ///
-/// Errors   invalid_data: not XML or no end tag, a document type, an unknown byte order, header type or compressor,
+/// Errors   invalid_data: not XML or no end tag, an unknown byte order, header type or compressor,
 ///          more than 64 MB of elements; file, machine, as ByteSource::read(); cancelled
 Result<Document> open_document(const ByteSource& source, const Progress& progress);
 
@@ -60,9 +66,15 @@ struct DataArray {
     bool bits = false;   ///< of type Bit: eight to a byte; they become uint8
     bool inside = false; ///< inline, else appended
     Range place;         ///< of its text, or from its block to the end of the appended data
+    std::shared_ptr<const std::string> text; ///< where it stands in several places: these together, `place` is in it
+
+    ByteSource source(const Document& document) const { return text ? ByteSource(std::string_view(*text)) : document.source; }
 };
 
-/// Nothing for arrays of strings: they are left out.
+/// Whether there is nothing but white space.
+Result<bool> is_blank(const ByteSource& source, Range place);
+
+/// Nothing for arrays of strings. Formats are read in any case, no components or 0 are 1, as VTK does.
 ///
 /// Errors   invalid_data: no name of a type or format, no number of components, an offset outside the appended data
 Result<std::optional<DataArray>> describe_array(const Document& document, const pugi::xml_node& element);

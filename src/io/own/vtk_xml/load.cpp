@@ -1,7 +1,10 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include "io/own/vtk_xml/load.hpp"
 
-#include <fmt/core.h>
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
@@ -14,24 +17,49 @@
 namespace isotet::io::vtk_xml {
 namespace {
 
-/// Announces, and lets `load_piece(wanted)` read the grid of the step that is wanted.
-template <class LoadPiece>
-Result<Loaded> announced(Document& document, const ReadOptions& options, Depth depth, bool ids,
-                         const Progress& progress, const LoadPiece& load_piece) {
-    Loaded loaded;
-    if (auto told = announce_fields(document, progress, loaded.info); !told) return told.error();
-    const auto cells = document.type == "UnstructuredGrid" ? count_unstructured(document) : count_structured(document);
+/// Arrays whose stated length is not that of their data, but whose data is as long as it has to be.
+void note_odd_lengths(const Document& document, std::vector<std::string>& notes) {
+    if (document.odd_lengths.empty()) return;
+    std::vector<std::string> names;
+    for (const std::string& name : document.odd_lengths) names.push_back(in_quotes(name));
+    notes.push_back(fmt::format("the stated length of {} is wrong, but as many values are there as must be: they were "
+                                "read",
+                                fmt::join(names, ", ")));
+}
+
+/// Describes the document, and reads the grid of the step that is wanted.
+Result<Loaded> load_document(Document& document, const ReadOptions& options, Depth depth, bool ids,
+                             const Progress& progress) {
+    const bool unstructured = document.type == "UnstructuredGrid";
+    const auto layouts = unstructured ? layouts_of_unstructured(document) : layouts_of_structured(document);
+    if (!layouts) return layouts.error();
+    const auto cells = unstructured ? Result<std::uint64_t>(layouts->cells.total) : count_structured(document);
     if (!cells) return cells.error();
+    Loaded loaded;
+    if (auto told = announce_fields(document, *layouts, options, progress, loaded); !told) return told.error();
     loaded.cells = *cells;
     if (depth == Depth::description) return loaded;
-    const auto step = choose_step(loaded.info, options);
-    if (!step) return step.error();
-    loaded.step = *step;
-    auto piece = load_piece(Wanted{options, *step, ids}, loaded);
+    const Wanted wanted{options, loaded.step, ids};
+    auto piece = unstructured ? load_unstructured(document, *layouts, wanted, progress, loaded)
+                              : load_structured(document, wanted, progress, loaded);
     if (!piece) return piece.error();
     if (piece->grid.points.empty()) piece->grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     loaded.pieces.push_back(std::move(*piece));
+    note_odd_lengths(document, loaded.notes);
     return loaded;
+}
+
+/// The first place of an attribute in a tag, with its quoted value behind it.
+std::string_view attribute_of(std::string_view tag, std::string_view name) {
+    for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+        std::size_t next = tag.find_first_not_of(" \t\r\n", at + name.size());
+        if (at == 0 || !is_space(tag[at - 1]) || next == std::string_view::npos || tag[next] != '=') continue;
+        next = tag.find_first_not_of(" \t\r\n", next + 1);
+        if (next == std::string_view::npos || (tag[next] != '"' && tag[next] != '\'')) return {};
+        const std::size_t end = tag.find(tag[next], next + 1);
+        return end == std::string_view::npos ? std::string_view() : tag.substr(next + 1, end - next - 1);
+    }
+    return {};
 }
 
 } // namespace
@@ -39,12 +67,7 @@ Result<Loaded> announced(Document& document, const ReadOptions& options, Depth d
 std::string_view type_of(std::string_view head) {
     const auto root = head.find("<VTKFile");
     if (root == std::string_view::npos) return {};
-    std::string_view element = head.substr(root, head.find('>', root) - root);
-    const auto type = element.find(" type=");
-    if (type == std::string_view::npos || element.size() < type + 8) return {};
-    const char quote = element[type + 6];
-    element.remove_prefix(type + 7);
-    return element.substr(0, element.find(quote));
+    return attribute_of(head.substr(root, head.find('>', root) - root), "type");
 }
 
 Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadOptions& options, Depth depth, bool ids,
@@ -55,10 +78,7 @@ Result<Loaded> load(const ByteSource& source, std::string_view type, const ReadO
         return invalid_data(
             fmt::format("this is a VTK file of type {}, not {}", in_quotes(document->type), in_quotes(type)));
     if (!document->primary()) return invalid_data(fmt::format("there is no element {}", type));
-    return announced(*document, options, depth, ids, progress, [&](const Wanted& wanted, Loaded& loaded) {
-        if (type == "UnstructuredGrid") return load_unstructured(*document, wanted, progress);
-        return load_structured(*document, wanted, progress, loaded.notes);
-    });
+    return load_document(*document, options, depth, ids, progress);
 }
 
 Result<Loaded> load_file(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
@@ -85,16 +105,19 @@ Result<std::vector<Loaded>> load_files(std::span<const File> files, const ReadOp
 }
 
 Loaded put_together(std::vector<Loaded> parts) {
+    constexpr std::string_view of_one = "a structured grid of ";
     std::uint64_t structured = 0, hexahedra = 0;
     for (const Loaded& part : parts) {
-        if (part.notes.empty()) continue;
+        if (std::ranges::none_of(part.notes, [&](const std::string& note) { return note.starts_with(of_one); }))
+            continue;
         ++structured;
         hexahedra += part.cells;
     }
     Loaded whole;
     for (Loaded& part : parts) append(whole, std::move(part));
-    if (structured > 1)
-        whole.notes = {fmt::format("{} structured grids were read as {} hexahedra", structured, hexahedra)};
+    if (structured < 2) return whole;
+    std::erase_if(whole.notes, [&](const std::string& note) { return note.starts_with(of_one); });
+    whole.notes.push_back(fmt::format("{} structured grids were read as {} hexahedra", structured, hexahedra));
     return whole;
 }
 
@@ -123,7 +146,6 @@ Result<Loaded> load_pieces(const std::string& path, std::string_view type, const
     if (!files) return files.error();
     std::vector<File> pieces;
     for (const std::string& file : *files) pieces.push_back({file, type_of_pieces(type), depth});
-    if (depth == Depth::description) pieces.resize(1); // they have the same fields
     auto parts = load_files(pieces, options, progress);
     if (!parts) return parts.error();
     if (auto left_out = leave_out_overlaps(*parts); !left_out) return in_file(path, left_out.error());

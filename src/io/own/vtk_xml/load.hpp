@@ -64,15 +64,18 @@ Result<Loaded> load_pieces(const std::string& path, std::string_view type, const
                            const Progress& progress);
 
 /// Points and cells of all pieces of an UnstructuredGrid, and its fields.
-Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress);
+Result<Piece> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
+                                const Progress& progress, Loaded& loaded);
 
-/// How many cells an UnstructuredGrid announces; of a structured kind as many hexahedra as it stands for.
-Result<std::uint64_t> count_unstructured(const Document& document);
+/// How many points and cells the pieces announce.
+Result<Layouts> layouts_of_unstructured(const Document& document);
+Result<Layouts> layouts_of_structured(const Document& document);
+
+/// How many hexahedra a structured kind stands for.
 Result<std::uint64_t> count_structured(const Document& document);
 
 /// Points and hexahedra of the structured kinds, and their fields. A flat grid has no hexahedra and no cell fields.
-Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress,
-                              std::vector<std::string>& notes);
+Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress, Loaded& loaded);
 
 /// Leaves out cells of structured pieces that an earlier one has, too: their boxes may overlap, with or without marks of
 /// ghost cells.

@@ -71,7 +71,7 @@ private:
 
     /// The text between the start tag before and this tag.
     void close_text(std::size_t end) {
-        if (text_begin_) fmt::format_to(std::back_inserter(outline_.text), "{} {}", *text_begin_, end);
+        if (text_begin_) fmt::format_to(std::back_inserter(outline_.text), "{} {} ", *text_begin_, end);
         text_begin_.reset();
     }
 
@@ -93,13 +93,45 @@ private:
             if (quote) quote = c == quote ? '\0' : quote;
             else if (c == '"' || c == '\'') quote = c;
             else if (c == '>') break;
-            if (outline_.text.size() - begin == 4) {
-                const auto start = std::string_view(outline_.text).substr(begin);
-                if (start == "<!--") return skip_comment(open, begin);
-                if (start.starts_with("<!")) return failed(open, "document types and CDATA are not read");
-            }
+            const auto start = std::string_view(outline_.text).substr(begin);
+            if (start == "<!--") return skip_comment(open, begin);
+            if (start == "<![CDATA[") return take_character_data(open, begin);
+            if (start == "<!DOCTYPE") return skip_document_type(open, begin);
         }
         return sort_tag(open, begin);
+    }
+
+    /// Text of an array goes on behind what stands in it.
+    void go_on_with_text() {
+        if (in_array_) text_begin_ = position_;
+    }
+
+    /// Up to the > outside of quotes and of the brackets with its own declarations, none of which is used.
+    Result<void> skip_document_type(std::size_t open, std::size_t begin) {
+        outline_.text.resize(begin);
+        char quote = 0;
+        bool in_brackets = false;
+        for (char c = 0; next(c);) {
+            if (quote) quote = c == quote ? '\0' : quote;
+            else if (c == '"' || c == '\'') quote = c;
+            else if (c == '[' || c == ']') in_brackets = c == '[';
+            else if (c == '>' && !in_brackets) return {};
+        }
+        return failed(open, "it never ends");
+    }
+
+    Result<void> take_character_data(std::size_t open, std::size_t begin) {
+        outline_.text.resize(begin);
+        const std::size_t text = position_;
+        for (int brackets = 0;;) {
+            char c = 0;
+            if (!next(c)) return failed(open, "it never ends");
+            if (c == '>' && brackets >= 2) break;
+            brackets = c == ']' ? brackets + 1 : 0;
+        }
+        if (in_array_) fmt::format_to(std::back_inserter(outline_.text), "{} {} ", text, position_ - 3);
+        go_on_with_text();
+        return {};
     }
 
     Result<void> skip_comment(std::size_t open, std::size_t begin) {
@@ -107,14 +139,16 @@ private:
         for (int hyphens = 0;;) {
             char c = 0;
             if (!next(c)) return failed(open, "the comment never ends");
-            if (c == '>' && hyphens >= 2) return {};
+            if (c == '>' && hyphens >= 2) break;
             hyphens = c == '-' ? hyphens + 1 : 0;
         }
+        go_on_with_text();
+        return {};
     }
 
     Result<void> sort_tag(std::size_t open, std::size_t begin) {
         const auto tag = std::string_view(outline_.text).substr(begin);
-        if (tag.starts_with("<!")) return failed(open, "document types and CDATA are not read");
+        if (tag.starts_with("<!")) return failed(open, "a declaration that is none of XML's");
         if (tag.starts_with("<?")) {
             outline_.text.resize(begin);
             return {};
@@ -122,9 +156,14 @@ private:
         outline_.tags.emplace_back(begin, open);
         if (tag.starts_with("</")) {
             outline_.ended = outline_.ended || tag.starts_with("</VTKFile");
+            if (tag.starts_with("</DataArray") || tag.starts_with("</Array")) in_array_ = false;
+            go_on_with_text();
             return {};
         }
-        if (tag.ends_with("/>")) return {};
+        if (tag.ends_with("/>")) {
+            go_on_with_text();
+            return {};
+        }
         constexpr std::string_view appended = "<AppendedData";
         if (tag.starts_with(appended) && (tag[appended.size()] == '>' || is_space(tag[appended.size()]))) {
             outline_.appended = position_;
@@ -132,6 +171,7 @@ private:
             outline_.text += "</AppendedData></VTKFile>";
             return {};
         }
+        in_array_ = in_array_ || tag.starts_with("<DataArray") || tag.starts_with("<Array");
         text_begin_ = position_;
         return {};
     }
@@ -143,6 +183,7 @@ private:
     std::string_view window_;
     std::size_t begin_ = 0, position_ = 0;
     std::optional<std::size_t> text_begin_;
+    bool in_array_ = false;
     std::optional<Error> error_;
 };
 

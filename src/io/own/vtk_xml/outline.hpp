@@ -17,8 +17,9 @@ namespace isotet::io::vtk_xml {
 
 /// XML that is as large as the elements are, however large the data between them is.
 struct Outline {
-    /// All tags, in their order. Text that follows a start tag is replaced by its place in the file, "BEGIN END"; other
-    /// text and comments are dropped. After the start tag of AppendedData the elements are closed.
+    /// All tags, in their order. Text that follows a start tag is replaced by its place in the file, "BEGIN END "; of an
+    /// array all text is, which comments, CDATA and other elements cut into several. Other text, comments and document
+    /// types are dropped. After the start tag of AppendedData the elements are closed.
     std::string text;
     std::optional<std::size_t> appended;                   ///< the first byte behind that start tag
     bool ended = false;                                    ///< the end tag </VTKFile> was found, or the appended data
@@ -28,7 +29,7 @@ struct Outline {
     std::size_t position_of(std::size_t in_text) const;
 };
 
-/// Errors   invalid_data: a tag that never ends, a tag inside a tag, a document type or CDATA, more than 64 MB of tags;
+/// Errors   invalid_data: a tag that never ends, a tag inside a tag, more than 64 MB of tags;
 ///          as ByteSource::read(); cancelled
 /// Cost     one pass over the text before the appended data, as fast as memory
 Result<Outline> outline_of(const ByteSource& source, const Progress& progress);

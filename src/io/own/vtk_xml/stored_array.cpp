@@ -43,13 +43,18 @@ Result<std::shared_ptr<const std::string>> without_breaks(const ByteSource& sour
 }
 
 Result<Stream> open_stream(const Document& document, const DataArray& array) {
-    Stream stream{document.source, array.place, array.form == DataArray::Form::base64, nullptr};
+    Stream stream{array.source(document), array.place, array.form == DataArray::Form::base64, array.text};
     if (!stream.base64 || !array.inside) return stream;
     Scratch scratch;
     const auto start =
         stream.source.view(stream.place.begin, std::min<std::size_t>(stream.place.size(), 4096), scratch);
     if (!start) return start.error();
     stream.place.begin += static_cast<std::size_t>(std::ranges::find_if_not(*start, is_space) - start->begin());
+    const std::size_t tail = std::min<std::size_t>(stream.place.size(), 4096);
+    const auto end = stream.source.view(stream.place.end - tail, tail, scratch);
+    if (!end) return end.error();
+    stream.place.end -= static_cast<std::size_t>(
+        std::find_if_not(end->rbegin(), end->rend(), is_space) - end->rbegin());
     auto text = without_breaks(stream.source, stream.place);
     if (!text) return text.error();
     if (*text) {
@@ -155,7 +160,7 @@ Result<void> StoredArray::find_packed_blocks() {
     return {};
 }
 
-Result<void> StoredArray::find_plain_block() {
+Result<void> StoredArray::find_plain_block(std::vector<std::string>& odd_lengths) {
     const std::size_t word = document_->wide_header ? 8 : 4;
     Scratch scratch;
     const auto head = stream_.view(0, word, scratch);
@@ -173,6 +178,11 @@ Result<void> StoredArray::find_plain_block() {
             stream_.place.begin += characters;
             data_ = 0;
         }
+    }
+    // GetFEM writes the length as a float, and VTK does not look at it.
+    if (array_.inside && stored_ != needed_ && stream_.place.size() == (data_ + needed_ + 2) / 3 * 4) {
+        stored_ = needed_;
+        odd_lengths.push_back(array_.name);
     }
     if (stored_ > stream_.size() - std::min(data_, stream_.size()))
         return wrong(fmt::format("{} bytes are announced, but only {} are left: the file is cut short or broken",
@@ -197,7 +207,7 @@ Result<StoredArray> StoredArray::find(Document& document, const DataArray& array
         if (!stream) return stream.error();
         found.stream_ = std::move(*stream);
         const bool packed = document.codec != Codec::none;
-        if (auto placed = packed ? found.find_packed_blocks() : found.find_plain_block(); !placed)
+        if (auto placed = packed ? found.find_packed_blocks() : found.find_plain_block(document.odd_lengths); !placed)
             return placed.error();
         if (found.needed_ > found.stored_)
             return found.wrong(fmt::format("it has {} bytes, but {} {} take {}", found.stored_, scalars,
@@ -205,7 +215,13 @@ Result<StoredArray> StoredArray::find(Document& document, const DataArray& array
         taken = packed ? found.packed_[found.blocks()] : found.needed_;
     }
     if (array.inside) return found;
-    if (taken > document.appended_left) return found.wrong("it shares appended data with other arrays");
+    if (!document.appended_begins.insert(array.place.begin).second) {
+        document.shared_bytes += found.needed_;
+        if (auto fits = core::require_memory("arrays that share their data", document.shared_bytes); !fits)
+            return fits.error();
+        return found;
+    }
+    if (taken > document.appended_left) return found.wrong("it shares a part of its appended data with other arrays");
     document.appended_left -= taken;
     return found;
 }
@@ -294,12 +310,17 @@ Result<bool> StoredArray::for_blocks(const BlockWork& work) const {
     return needed.load();
 }
 
-Result<void> StoredArray::decode(std::byte* to) const {
+Result<void> StoredArray::decode(std::byte* to, Rest rest) const {
     if (scalars_ == 0) return {};
     if (array_.form == DataArray::Form::ascii) {
-        const auto end = read_numbers(document_->source, array_.place.begin, array_.place.end, array_.type, scalars_,
+        const auto end = read_numbers(array_.source(*document_), array_.place.begin, array_.place.end, array_.type, scalars_,
                                       fmt::format("the array {}", in_quotes(array_.name)), to, *progress_);
         if (!end) return end.error();
+        const Result<bool> blank = rest == Rest::passed_over
+                                       ? Result<bool>(true)
+                                       : is_blank(array_.source(*document_), {*end, array_.place.end});
+        if (!blank) return blank.error();
+        if (!*blank) return wrong(fmt::format("it holds more than the {} values that are announced", scalars_));
         for (std::uint64_t i = 0; array_.bits && i < scalars_; ++i) to[i] = std::byte{to[i] != std::byte{0}};
         return {};
     }
@@ -319,6 +340,12 @@ Result<void> StoredArray::decode(std::byte* to) const {
             [&](std::size_t begin, std::size_t end) { swap_bytes(to + begin * size, end - begin, size); });
     }
     return {};
+}
+
+Result<void> StoredArray::check_stored() const {
+    const std::size_t size = size_of(array_.type);
+    if (array_.form == DataArray::Form::ascii || array_.bits || stored_ < needed_ + size) return {};
+    return wrong(fmt::format("it holds {} values, but {} are announced", stored_ / size, scalars_));
 }
 
 bool StoredArray::has_blocks() const {

@@ -40,17 +40,24 @@ class StoredArray {
 public:
     /// Looks for the first `scalars` values of an array (of arrays of bits: after unpacking).
     ///
-    /// Errors   invalid_data: fewer are there, sizes in front of blocks that cannot be, arrays that share their bytes;
+    /// Errors   invalid_data: fewer are there, sizes in front of blocks that cannot be, arrays that share a part of their
+    ///          bytes (those that begin at one place may);
     ///          out_of_memory: LZMA blocks that claim more than is free
     static Result<StoredArray> find(Document& document, const DataArray& array, std::uint64_t scalars,
                                     const Progress& progress);
+
+    /// Text behind the values that were looked for.
+    enum class Rest : std::uint8_t { passed_over, is_error };
 
     /// Writes the values, in this machine's byte order.
     ///
     /// `to`     room for them
     /// Errors   invalid_data: blocks that cannot be inflated, words that are no numbers; file, machine; cancelled
     /// Cost     parallel by blocks; a thread takes 256 KB or, where that is more, a block as it is stored and as it becomes
-    Result<void> decode(std::byte* to) const;
+    Result<void> decode(std::byte* to, Rest rest = Rest::passed_over) const;
+
+    /// Errors   invalid_data: more values are stored than were looked for. Of text only decode() tells
+    Result<void> check_stored() const;
 
     /// True where each_block() can be called: values are stored as this machine has them, whole ones in each block.
     bool has_blocks() const;
@@ -74,7 +81,7 @@ private:
     StoredArray(const Document& document, const DataArray& array, std::uint64_t scalars, const Progress& progress)
         : document_(&document), array_(array), progress_(&progress), scalars_(scalars) {}
 
-    Result<void> find_plain_block();
+    Result<void> find_plain_block(std::vector<std::string>& odd_lengths);
     Result<void> find_packed_blocks();
     Error wrong(std::string_view what) const;
     Error in_array(const Error& error) const;

@@ -278,6 +278,14 @@ std::string flatness(const GridSize& points) {
     return along.size() == 1 ? fmt::format("a line of {} points", along[0]) : "a single point";
 }
 
+Result<Layouts> layouts_of_structured(const Document& document) {
+    const auto boxes = boxes_of(document);
+    if (!boxes) return boxes.error();
+    Layouts layouts{layout_of(*boxes, true), layout_of(*boxes, false)};
+    layouts.points.place = layouts.cells.place = {}; // what is counted has no places
+    return layouts;
+}
+
 Result<std::uint64_t> count_structured(const Document& document) {
     const auto whole = extent_of(document.primary(), "WholeExtent");
     if (!whole) return whole.error();
@@ -331,25 +339,24 @@ Result<void> leave_out_overlaps(std::span<Loaded> parts) {
     return {};
 }
 
-Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress,
-                              std::vector<std::string>& notes) {
+Result<Piece> load_structured(Document& document, const Wanted& wanted, const Progress& progress, Loaded& loaded) {
     const auto boxes = boxes_of(document);
     if (!boxes) return boxes.error();
     for (const bool of_points : {true, false})
         if (auto covered = check_cover(*boxes, of_points); !covered) return covered.error();
-    const Layout points = layout_of(*boxes, true), cells = layout_of(*boxes, false);
+    const Layouts layouts{layout_of(*boxes, true), layout_of(*boxes, false)};
     // Fields first: if they are as long as the extent says, the file is as large as the grid.
     Piece piece;
-    if (auto loaded = load_fields(document, points, cells, wanted, progress, piece); !loaded) return loaded.error();
+    if (auto read = load_fields(document, layouts, wanted, progress, loaded, piece); !read) return read.error();
     Result<Array> places = Array();
     if (document.type == "ImageData") places = image_points(document, boxes->whole);
     else if (document.type == "RectilinearGrid") places = rectilinear_points(document, *boxes, progress);
-    else places = load_points(document, pieces_of(document), points, wanted.step, progress);
+    else places = load_points(document, pieces_of(document), layouts.points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
     const Extent& whole = boxes->whole;
     piece.extent = {whole.first[0], whole.last[0], whole.first[1], whole.last[1], whole.first[2], whole.last[2]};
-    auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), notes);
+    auto hexahedra_of_all = hexahedra_of(size_of_box(boxes->whole), loaded.notes);
     if (!hexahedra_of_all) return hexahedra_of_all.error();
     piece.grid.cells = std::move(*hexahedra_of_all);
     piece.flat = flatness(size_of_box(boxes->whole));

@@ -30,22 +30,23 @@ Result<Layout> layout_by(const Document& document, const char* attribute) {
 
 } // namespace
 
-Result<std::uint64_t> count_unstructured(const Document& document) {
-    const auto cells = layout_by(document, "NumberOfCells");
-    return cells ? Result<std::uint64_t>(cells->total) : cells.error();
+Result<Layouts> layouts_of_unstructured(const Document& document) {
+    if (!document.primary().child("Piece")) return invalid_data(fmt::format("the {} has no Piece", document.type));
+    auto points = layout_by(document, "NumberOfPoints"), cells = layout_by(document, "NumberOfCells");
+    if (!points) return points.error();
+    if (!cells) return cells.error();
+    return Layouts{std::move(*points), std::move(*cells)};
 }
 
-Result<Piece> load_unstructured(Document& document, const Wanted& wanted, const Progress& progress) {
+Result<Piece> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
+                                const Progress& progress, Loaded& loaded) {
     const auto elements = pieces_of(document);
-    const auto all_points = layout_by(document, "NumberOfPoints"), all_cells = layout_by(document, "NumberOfCells");
-    if (!all_points) return all_points.error();
-    if (!all_cells) return all_cells.error();
-    const Layout &points = *all_points, &cells = *all_cells;
+    const Layout &points = layouts.points, &cells = layouts.cells;
     Piece piece;
     auto places = load_points(document, elements, points, wanted.step, progress);
     if (!places) return places.error();
     piece.grid.points = std::move(*places);
-    if (auto loaded = load_fields(document, points, cells, wanted, progress, piece); !loaded) return loaded.error();
+    if (auto read = load_fields(document, layouts, wanted, progress, loaded, piece); !read) return read.error();
     std::vector<Cells> parts;
     for (std::size_t i = 0; i < elements.size(); ++i) {
         const CellsElement element{elements[i], cells.tuples[i], wanted.step};
