@@ -93,7 +93,9 @@ Result<PictureFiles> open_files(const DrawJob& job, std::size_t steps) {
     if (!files) return files;
     std::vector<std::string> outputs = files->names();
     outputs.insert(outputs.end(), job.other_outputs.begin(), job.other_outputs.end());
-    if (Result<void> paths = check_output_paths({job.grid.file, job.reference}, outputs); !paths) return paths.error();
+    std::vector<std::string> inputs{job.grid.file, job.reference};
+    inputs.insert(inputs.end(), job.grid.other_inputs.begin(), job.grid.other_inputs.end());
+    if (Result<void> paths = check_output_paths(inputs, outputs); !paths) return paths.error();
     return files;
 }
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <isotet/device_grid.hpp>
 #include <isotet/jobs/number_text.hpp>
@@ -33,7 +35,9 @@ private:
     Result<void> open();
     Result<void> open_device();
     Result<std::optional<std::uint64_t>> read_grid(std::size_t step);
-    Result<void> load(std::size_t step);
+    Result<bool> load(std::size_t step);
+    Result<std::optional<std::uint64_t>> read_field_of(std::size_t step, bool& found);
+    void note_what_steps_miss();
     Result<Contour> start(ContourInput input);
     Result<void> set(ContourInput input);
     Result<void> take_piece_of(ContourInput& input);
@@ -64,6 +68,8 @@ private:
     std::uint64_t coarse_tets_ = 0;                ///< of the step at hand, with direct extraction
     std::optional<std::uint64_t> resident_before_; ///< with the grid of the first step
     std::vector<CollectionEntry> series_;          ///< files so far
+    std::vector<std::size_t> skipped_;             ///< steps without the field
+    std::set<std::string> not_carried_;            ///< fields that some steps do not have
     ExtractNumbers numbers_;
 };
 
@@ -195,17 +201,52 @@ Result<FieldReport> ExtractRun::range_of_field() {
     return solids_ ? solids_->field(caller_.run()) : contour_->field(caller_.run());
 }
 
-/// Reads one step and gives it to the session.
-Result<void> ExtractRun::load(std::size_t step) {
+/// Whether the grid has the arrays of the field that is contoured.
+bool has_arrays_of(const FoundField& field, const Grid& grid) {
+    const auto is_in = [](const std::vector<std::string>& names, const std::vector<Field>& fields) {
+        return !names.empty() && std::ranges::find(fields, names.front(), &Field::name) != fields.end();
+    };
+    const bool coordinate = field.point.empty() && field.cell.empty();
+    return coordinate || is_in(field.point, grid.point_fields) || is_in(field.cell, grid.cell_fields);
+}
+
+/// Reads one step. A field may be of points in one step and of cells in another, or be missing in it. Where it was left out
+/// among others, reading it by name tells why.
+Result<std::optional<std::uint64_t>> ExtractRun::read_field_of(std::size_t step, bool& found) {
+    auto cells_in_file = read_grid(step);
+    if (!cells_in_file) return cells_in_file;
+    found = has_arrays_of(plan_.field, grid_);
+    if (found) return cells_in_file;
+    if (auto looked = source_->look_at_steps({step}, caller_); !looked) return looked.error();
+    if (const auto chosen = choose_fields(job_, *source_, plan_); !chosen) {
+        if (plan_.steps.size() == 1 || chosen.error().code != ErrorCode::invalid_argument) return chosen.error();
+        return cells_in_file;
+    }
+    cells_in_file = read_grid(step);
+    if (!cells_in_file) return cells_in_file;
+    found = has_arrays_of(plan_.field, grid_);
+    if (found) return cells_in_file;
+    const Result<Grid> named = source_->read({plan_.field.point, plan_.field.cell}, step, caller_);
+    return named ? cells_in_file : named.error();
+}
+
+/// Reads one step and gives it to the session. False: it does not have the field.
+Result<bool> ExtractRun::load(std::size_t step) {
     const core::Stopwatch reading;
     caller_.detail(fmt::format("reading step {}", step));
     grid_ = {};
-    Result<std::optional<std::uint64_t>> cells_in_file = read_grid(step);
+    bool found = false;
+    Result<std::optional<std::uint64_t>> cells_in_file = read_field_of(step, found);
     if (!cells_in_file) return cells_in_file.error();
+    if (!found) return false;
     Result<PointField> field = find_chosen(grid_, plan_.field.name, job_.field, caller_);
     if (!field) return field.error();
     Result<StepFields> fields = carried_fields(plan_, grid_, caller_.run());
     if (!fields) return fields.error();
+    for (const std::string& name : plan_.carried ? plan_.carried->point : std::vector<std::string>())
+        if (std::ranges::find(fields->point, name, &Field::name) == fields->point.end()) not_carried_.insert(name);
+    for (const std::string& name : plan_.carried ? plan_.carried->cell : std::vector<std::string>())
+        if (std::ranges::find(fields->cell, name, &Field::name) == fields->cell.end()) not_carried_.insert(name);
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = static_cast<std::size_t>(cells_in_file->value_or(grid_.cells.count()));
     numbers_.averaged = field->averaged;
@@ -223,11 +264,11 @@ Result<void> ExtractRun::load(std::size_t step) {
     if (job_.piece && has_curved_cells(input.grid.cells))
         return refusal("`piece` takes grids without quadratic cells only");
     if (job_.piece)
-        if (Result<void> taken = take_piece_of(input); !taken) return taken;
-    if (Result<void> taken = set(std::move(input)); !taken) return taken;
+        if (Result<void> taken = take_piece_of(input); !taken) return taken.error();
+    if (Result<void> taken = set(std::move(input)); !taken) return taken.error();
     if (contour_ && contour_->method() == Method::clusters) {
         caller_.detail("packing");
-        if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready;
+        if (Result<void> ready = contour_->prepare(caller_.run()); !ready) return ready.error();
     }
     if (job_.isovalues.empty()) {
         const core::Stopwatch looking;
@@ -243,7 +284,8 @@ Result<void> ExtractRun::load(std::size_t step) {
         if (method() == Method::direct) numbers_.look_seconds += looking.seconds(); // else it is packing
     }
     if (!grid_.point_fields.empty() || !grid_.cell_fields.empty()) grid_.point_fields = grid_.cell_fields = {};
-    return choose_values(step);
+    if (auto chosen = choose_values(step); !chosen) return chosen.error();
+    return true;
 }
 
 Result<void> ExtractRun::choose_values(std::size_t step) {
@@ -390,13 +432,32 @@ Result<void> ExtractRun::extract_step(std::size_t step) {
     return write(joined.size() == 1 ? joined.front() : join(joined, isovalues_), numbers_.surfaces.back());
 }
 
+/// Of steps that do not have all fields.
+void ExtractRun::note_what_steps_miss() {
+    if (!skipped_.empty())
+        caller_.note(fmt::format("'{}' is not in {} of the {} time steps, which {} skipped: {}", plan_.field.name,
+                                 skipped_.size(), plan_.steps.size(), skipped_.size() == 1 ? "is" : "are",
+                                 fmt::join(skipped_, ", ")));
+    if (!not_carried_.empty())
+        caller_.note(fmt::format("not every time step has {}: the surfaces of the others lack {}",
+                                 quoted_list({not_carried_.begin(), not_carried_.end()}),
+                                 not_carried_.size() == 1 ? "it" : "them"));
+}
+
 Result<void> ExtractRun::run() {
     if (Result<void> opened = open(); !opened) return opened;
     for (const std::size_t step : plan_.steps) {
         if (caller_.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
-        if (Result<void> loaded = load(step); !loaded) return loaded;
+        const Result<bool> loaded = load(step);
+        if (!loaded) return loaded.error();
+        if (!*loaded) {
+            skipped_.push_back(step);
+            continue;
+        }
         if (Result<void> extracted = extract_step(step); !extracted) return extracted;
     }
+    if (skipped_.size() == plan_.steps.size()) return source_->no_such_field(plan_.field.name);
+    note_what_steps_miss();
     if (const auto peak = peak_resident_memory()) {
         if (resident_before_) numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
         numbers_.process_bytes = std::max(numbers_.process_bytes, *peak);

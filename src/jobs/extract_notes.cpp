@@ -15,8 +15,9 @@ void note_what_the_step_holds(const ExtractNumbers& numbers, const Grid& grid, s
     if (const std::string note = cells_left_out_note(grid); numbers.cells_left_out > 0 && !note.empty())
         caller.note(note);
     if (numbers.field.flushed > 0) {
-        caller.note(fmt::format("{} values of '{}' are too small beside the others to be told from 0",
-                                grouped(numbers.field.flushed), numbers.field.name));
+        caller.note(fmt::format("{} of '{}' {} too small beside the others to be told from 0",
+                                counted(numbers.field.flushed, "value"), numbers.field.name,
+                                numbers.field.flushed == 1 ? "is" : "are"));
     }
     std::string where;
     if (numbers.pack && numbers.pack->coarse_clusters > 0)

@@ -73,7 +73,9 @@ Result<std::string> plan_collection(const ExtractJob& job, const ExtractPlan& pl
         caller.note(fmt::format("no collection of the series is written: '{}' is there already, and not of isotet", collection));
         return std::string();
     }
-    if (auto paths = check_output_paths({job.grid.file}, with_others(job, collection)); !paths) return paths.error();
+    std::vector<std::string> inputs = job.grid.other_inputs;
+    inputs.push_back(job.grid.file);
+    if (auto paths = check_output_paths(inputs, with_others(job, collection)); !paths) return paths.error();
     return collection;
 }
 
@@ -95,6 +97,17 @@ FieldsToRead fields_to_read(const ExtractPlan& plan) {
     add_names(*read.cell, plan.carried->cell);
     for (const FoundField& component : plan.carried->components) add_names(*read.point, component.point);
     return read;
+}
+
+/// Of several steps a field may be in some only: in the first, mostly, else all are looked at.
+Result<void> choose_fields_of_steps(const ExtractJob& job, GridSource& source, ExtractPlan& plan, Caller& caller) {
+    const bool several = plan.steps.size() > 1, named = !job.field.name.empty();
+    if (several && !named)
+        if (auto looked = source.look_at_steps(plan.steps, caller); !looked) return looked;
+    auto chosen = choose_fields(job, source, plan);
+    if (chosen || !several || !named || chosen.error().code != ErrorCode::invalid_argument) return chosen;
+    if (auto looked = source.look_at_steps(plan.steps, caller); !looked) return looked;
+    return choose_fields(job, source, plan);
 }
 
 /// Each isovalue takes a byte a point while cells are read, and another pass over them.
@@ -138,7 +151,18 @@ SolidRange range_for(const SolidChoice& choice, double isovalue) {
     return choice.range;
 }
 
-Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source, Caller& caller) {
+Result<void> choose_fields(const ExtractJob& job, const GridSource& source, ExtractPlan& plan) {
+    Result<FoundField> field = choose_field(source, job.field);
+    if (!field) return field.error();
+    auto carried = plan_carried(job, source, plan.out_holds_fields);
+    if (!carried) return carried.error();
+    plan.field = *std::move(field);
+    plan.carried = *std::move(carried);
+    plan.read = fields_to_read(plan);
+    return {};
+}
+
+Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Caller& caller) {
     ExtractPlan plan;
     if (Result<void> solid = check_solid(job); !solid) return solid.error();
     plan.names = OutputNames(job.out);
@@ -155,13 +179,8 @@ Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source
     plan.collection = *std::move(collection);
 
     if (job.piece && job.field.own_centres) return refusal("`piece` takes `centre` mean only");
-    Result<FoundField> field = choose_field(source, job.field);
-    if (!field) return field.error();
-    plan.field = *std::move(field);
-    auto carried = plan_carried(job, source, format->fields);
-    if (!carried) return carried.error();
-    plan.carried = *std::move(carried);
-    plan.read = fields_to_read(plan);
+    plan.out_holds_fields = format->fields;
+    if (auto chosen = choose_fields_of_steps(job, source, plan, caller); !chosen) return chosen.error();
 
     plan.contour.method = job.method;
     if (job.engine == EngineChoice::reference) plan.contour.engine = reference_engine();
@@ -226,7 +245,11 @@ Result<StepFields> carried_fields(const ExtractPlan& plan, const Grid& grid, con
     for (const Field& field : grid.cell_fields) {
         if (has(plan.carried->cell, field)) fields.cell.push_back(field);
     }
+    const auto is_read = [&](const std::string& name) {
+        return std::ranges::find(grid.point_fields, name, &Field::name) != grid.point_fields.end();
+    };
     for (const FoundField& component : plan.carried->components) {
+        if (!component.point.empty() && !is_read(component.point.front())) continue; // not in this step
         const Result<PointField> found = find_field(grid, component.name, {}, run);
         if (!found) return found.error();
         fields.point.push_back({component.name, found->values});

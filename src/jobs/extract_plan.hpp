@@ -23,12 +23,17 @@ struct ExtractPlan {
     FoundField field;
     std::optional<CarriedFields> carried; ///< nothing: all point fields
     FieldsToRead read;
+    bool out_holds_fields = true;
     ContourOptions contour;                      ///< but for the device
     std::optional<ReadActiveCells> active_cells; ///< where others need not be read
 };
 
 /// Errors   invalid_argument: OUT, a field, a step or a combination of options is wrong
-Result<ExtractPlan> plan_extract(const ExtractJob& job, const GridSource& source, Caller& caller);
+Result<ExtractPlan> plan_extract(const ExtractJob& job, GridSource& source, Caller& caller);
+
+/// Looks the fields of the plan up in what `source` was looked at for.
+/// Errors   invalid_argument: a field is not there
+Result<void> choose_fields(const ExtractJob& job, const GridSource& source, ExtractPlan& plan);
 
 /// The isovalues to extract: those given (snapped if asked to), --levels of the packed field's range, or its middle.
 /// Errors   invalid_data: levels of a field without a finite value

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <isotet/contour.hpp>
+#include <isotet/grid.hpp>
 #include <isotet/grid_counts.hpp>
 #include <isotet/jobs/number_text.hpp>
 #include <isotet/jobs/output_names.hpp>
@@ -67,6 +68,30 @@ Result<Grid> merged(const Grid& grid, const MergeOptions& options, Caller& calle
     return std::move(result->grid);
 }
 
+/// "0, 0.1, 0.2 ... 4": the first few and the last.
+std::string list_of(const std::vector<double>& times) {
+    constexpr std::size_t max_shown = 10;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(times.size(), max_shown); ++i) list += (i ? ", " : "") + shortest(times[i]);
+    if (times.size() > max_shown) list += " ... " + shortest(times.back());
+    return list;
+}
+
+Result<std::size_t> step_at(const std::vector<double>& times, double time) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (std::abs(times[i] - time) < std::abs(times[nearest] - time)) nearest = i;
+    }
+    constexpr double tolerance = 1e-12; // relative: a time that went through text and back
+    if (times.empty()) {
+        return refusal("time {} was asked for, but the file knows no time", shortest(time));
+    }
+    if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
+        return nearest;
+    return refusal("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
+                   times.size(), list_of(times), shortest(times[nearest]));
+}
+
 } // namespace
 
 FileKinds kinds_of(const std::string& file) {
@@ -100,6 +125,7 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         Result<MakeOptions> made = parse_make(std::string_view(options.file).substr(made_prefix.size()));
         if (!made) return made.error();
         source.info_ = info_of(*made);
+        source.info_.files = options.other_inputs;
         source.made_ = *std::move(made);
         return source;
     }
@@ -109,7 +135,14 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
     read_options.allow_outside = options.allow_outside;
     read_options.displace = options.displace;
     read_options.blocks = options.blocks;
+    read_options.step = options.step;
     Result<FileInfo> info = inspect(options.file, read_options, caller.run());
+    if (!info && options.step) { // choose_steps() refuses a step that is not there
+        read_options.step.reset();
+        info = inspect(options.file, read_options, caller.run());
+    }
+    source.described_ = read_options.step.value_or(0);
+    read_options.step.reset();
     if (!info) {
         const FileKinds kinds = kinds_of(options.file);
         if (info.error().code != ErrorCode::file || !kinds.surface || kinds.grid || !options.format.empty() ||
@@ -120,6 +153,10 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
                                                   options.file)};
     }
     source.info_ = *std::move(info);
+    source.info_.files.insert(source.info_.files.end(), options.other_inputs.begin(), options.other_inputs.end());
+    if (options.time && source.info_.times.size() > 1)
+        if (const Result<std::size_t> step = step_at(source.info_.times, *options.time))
+            if (auto looked = source.look_at(*step, caller.run()); !looked) return looked.error();
     const std::vector<std::string> points = source.names(Association::point);
     if (!options.displace.empty() && std::ranges::find(points, options.displace) == points.end()) {
         Error error = source.no_such_field(options.displace);
@@ -127,6 +164,48 @@ Result<GridSource> GridSource::open(const GridOptions& options, Caller& caller) 
         return error;
     }
     return source;
+}
+
+Result<void> GridSource::look_at(std::size_t step, const Run& run) {
+    ReadOptions options = read_options_;
+    options.step = step;
+    Result<FileInfo> info = inspect(options_.file, options, run);
+    if (!info) return info.error();
+    step_fields_[step] = info->fields;
+    info->times = std::move(info_.times);
+    for (const std::string& file : info_.files)
+        if (std::ranges::find(info->files, file) == info->files.end()) info->files.push_back(file);
+    info_ = *std::move(info);
+    described_ = step;
+    return {};
+}
+
+Result<void> GridSource::look_at_steps(const std::vector<std::size_t>& steps, Caller& caller) {
+    if (made_ || info_.times.size() < 2) return {};
+    std::vector<FieldInfo> fields;
+    std::vector<LeftOut> left_out;
+    for (const std::size_t step : steps) {
+        if (caller.cancelled()) return Error{ErrorCode::cancelled, "interrupted"};
+        if (auto looked = look_at(step, caller.run()); !looked) return looked;
+        for (const FieldInfo& field : info_.fields)
+            if (std::ranges::none_of(fields, [&](const FieldInfo& known) {
+                    return known.name == field.name && known.association == field.association;
+                }))
+                fields.push_back(field);
+        left_out.insert(left_out.end(), info_.left_out.begin(), info_.left_out.end());
+    }
+    info_.fields = std::move(fields);
+    info_.left_out = std::move(left_out);
+    if (steps.size() > 1) described_.reset();
+    return {};
+}
+
+bool GridSource::has_field(std::size_t step, const std::string& name) const {
+    const auto looked = step_fields_.find(step);
+    if (looked == step_fields_.end() || name == "x" || name == "y" || name == "z") return true;
+    std::vector<std::string> names;
+    for (const FieldInfo& field : looked->second) names.push_back(field.name);
+    return match_field_name(name, names).has_value();
 }
 
 Error GridSource::no_such_field(const std::string& name) const {
@@ -202,6 +281,7 @@ Result<ReadResult> GridSource::read_file(const FieldsToRead& fields, std::size_t
     options.point_fields = fields.point;
     options.cell_fields = fields.cell;
     if (!info_.times.empty()) options.step = step;
+    options.skip_missing_fields = info_.times.size() > 1 && described_ != step;
     return isotet::read(options_.file, options, run);
 }
 
@@ -222,34 +302,6 @@ std::optional<double> time_of(const FileInfo& info, std::size_t step) {
     if (step >= info.times.size()) return std::nullopt;
     return info.times[step];
 }
-
-namespace {
-
-/// "0, 0.1, 0.2 ... 4": the first few and the last.
-std::string list_of(const std::vector<double>& times) {
-    constexpr std::size_t max_shown = 10;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(times.size(), max_shown); ++i) list += (i ? ", " : "") + shortest(times[i]);
-    if (times.size() > max_shown) list += " ... " + shortest(times.back());
-    return list;
-}
-
-Result<std::size_t> step_at(const std::vector<double>& times, double time) {
-    std::size_t nearest = 0;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        if (std::abs(times[i] - time) < std::abs(times[nearest] - time)) nearest = i;
-    }
-    constexpr double tolerance = 1e-12; // relative: a time that went through text and back
-    if (times.empty()) {
-        return refusal("time {} was asked for, but the file knows no time", shortest(time));
-    }
-    if (std::abs(times[nearest] - time) <= tolerance * std::max(std::abs(time), std::abs(times[nearest])))
-        return nearest;
-    return refusal("time {} was asked for, but the file has {} times: {}; the nearest is {}", shortest(time),
-                   times.size(), list_of(times), shortest(times[nearest]));
-}
-
-} // namespace
 
 Result<std::vector<std::size_t>> choose_steps(const FileInfo& info, const GridOptions& options, Steps steps,
                                               Caller& caller) {

@@ -32,6 +32,7 @@ private:
     struct Contents; ///< of one step
     explicit PictureSource(const DrawJob& job) : job_(job) {}
     Result<DrawInput> take_surface(const std::optional<Device>& device, Caller& caller);
+    Result<void> keep_steps_with_fields(Caller& caller);
     Result<Contents> read_contents(std::size_t step, Caller& caller);
     Result<void> widen_range(const std::string& color, Caller& caller);
     Result<ValueRange> typical_range_of_steps(const PointField& first, Caller& caller);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct GridOptions {
     bool keep_pieces = false;
     bool allow_outside = false;
     std::string displace;
-    std::vector<std::string> blocks; ///< names or numbers; empty: all
+    std::vector<std::string> blocks;       ///< names or numbers; empty: all
+    std::vector<std::string> other_inputs; ///< files that the caller read: no output may be one
 };
 
 /// Names of the fields to read; nothing: all of them.
@@ -47,10 +49,17 @@ std::string quoted_list(const std::vector<std::string>& names);
 
 class GridSource {
 public:
-    /// Finds out what the file holds, or what the grid to make will hold.
+    /// Finds out what the file holds, or what the grid to make will hold: of several steps the one that the options ask
+    /// for, else the first.
     static Result<GridSource> open(const GridOptions& options, Caller& caller);
 
     const FileInfo& info() const noexcept { return info_; }
+
+    /// From now on info() has the fields of all these steps. Reading one of them passes over those that it does not have.
+    Result<void> look_at_steps(const std::vector<std::size_t>& steps, Caller& caller);
+
+    /// Whether a step that was looked at has a field of this name, or a component of it is meant; coordinates all have.
+    bool has_field(std::size_t step, const std::string& name) const;
 
     /// Names of the point or the cell fields.
     std::vector<std::string> names(Association association) const;
@@ -74,9 +83,13 @@ private:
     Result<ReadResult> read_file(const FieldsToRead& fields, std::size_t step, ReadOptions options,
                                  const Run& run) const;
 
+    Result<void> look_at(std::size_t step, const Run& run);
+
     GridOptions options_;
     std::optional<MakeOptions> made_;
     FileInfo info_;
+    std::optional<std::size_t> described_;                      ///< the step whose fields info_ has; nothing: of several
+    std::map<std::size_t, std::vector<FieldInfo>> step_fields_; ///< of the steps that were looked at
     ReadOptions read_options_;
 };
 

@@ -39,11 +39,11 @@ Result<Loaded> load_times(const std::string& path, const NamesByTime& names, con
         for (const std::string& name : of_time)
             if (const auto file = named_file(path, name, options.allow_outside)) loaded.info.files.push_back(*file);
     }
-    ReadOptions of_entries = options;
-    of_entries.step.reset();
-    const auto step = choose_step(loaded.info, depth == Depth::arrays ? options : of_entries);
+    const auto step = choose_step(loaded.info, options);
     if (!step) return step.error();
     loaded.step = *step;
+    ReadOptions of_entries = options;
+    of_entries.step.reset();
     const auto& of_step = std::next(names.begin(), static_cast<std::ptrdiff_t>(*step))->second;
     if (of_step.size() > 1) of_entries.blocks.clear(); // only the blocks of a single file can be told apart
     for (const std::string& name : of_step) {

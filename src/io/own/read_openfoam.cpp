@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -91,12 +92,15 @@ struct RegionChoice {
     bool empty() const { return !whole && zones.empty(); }
 };
 
+/// `only`   the step whose fields are told; nothing: those of all steps
 Result<void> announce_fields(const CaseFiles& files, const CaseLayout& layout,
-                             const std::vector<RegionChoice>& choices, FileInfo& info) {
+                             const std::vector<RegionChoice>& choices, std::optional<std::size_t> only,
+                             FileInfo& info) {
     for (std::size_t region = 0; region < choices.size(); ++region) {
         if (choices[region].empty()) continue;
         std::set<std::string> seen;
         for (std::size_t step = 0; step < layout.times.size(); ++step) {
+            if (only && *only != step) continue;
             auto fields = fields_in(
                 files, layout.prefixes.front() + field_folder(layout, layout.regions[region], step), seen, info);
             if (!fields) return fields.error();
@@ -322,7 +326,10 @@ Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions
                                 fmt::format("{} of the case {} in its place; --block polyMesh (or 1) reads it",
                                             layout->regions.size() == 2 ? "a region" : "regions",
                                             layout->regions.size() == 2 ? "is read" : "are read")});
-    if (auto announced = announce_fields(files, *layout, *chosen, loaded.info); !announced) return announced.error();
+    if (auto announced = announce_fields(files, *layout, *chosen,
+                                         depth == Depth::description ? options.step : std::nullopt, loaded.info);
+        !announced)
+        return announced.error();
     if (depth == Depth::description) return loaded;
     loaded.notes = layout->notes;
     for (std::size_t i = 0; i < chosen->size(); ++i) {

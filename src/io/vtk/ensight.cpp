@@ -53,8 +53,7 @@ Result<Loaded> load_by(vtkGenericEnSightReader& reader, const std::string& path,
 
 Result<Loaded> load_ensight(const std::string& path, const ReadOptions& options, Depth depth) {
     if (auto allowed = check_names(path, options.allow_outside); !allowed) return allowed.error();
-    const std::size_t step = depth == Depth::description ? 0 : options.step.value_or(0);
-    const auto checked = check_ensight(path, step);
+    const auto checked = check_ensight(path, options.step.value_or(0));
     if (!checked) return checked.error();
     if (!*checked) return load_by(*vtkNew<vtkGenericEnSightReader>(), path, options, depth);
     vtkNew<vtkEnSight6BinaryReader> reader;

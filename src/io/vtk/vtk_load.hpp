@@ -39,7 +39,6 @@ Result<Loaded> load_with(Reader& reader, const std::string& path, const ReadOpti
     if (depth == Depth::description) {
         all.point_fields.reset();
         all.cell_fields.reset();
-        all.step.reset();
     }
     auto step = choose_step(loaded.info, all);
     if (!step) return step.error();

@@ -65,11 +65,9 @@ Result<Loaded> load_collection(const std::string& path, const ReadOptions& optio
         if (auto done = grid.announce_all(loaded.info); !done) return done.error();
     }
     if (grids.empty()) return broken(path, "it has no unstructured grid");
-    if (depth == Depth::arrays) {
-        const auto step = choose_step(loaded.info, options);
-        if (!step) return step.error();
-        loaded.step = *step;
-    }
+    const auto step = choose_step(loaded.info, options);
+    if (!step) return step.error();
+    loaded.step = *step;
     for (std::size_t i = 0; i < grids.size(); ++i) {
         const auto cells = grids[i].count_cells(loaded.step);
         if (!cells) return cells.error();

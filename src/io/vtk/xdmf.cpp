@@ -29,7 +29,7 @@ public:
         for (const XdmfStep& step : steps_.steps)
             if (step.time) loaded_.info.times.push_back(*step.time);
         if (loaded_.info.times.size() != steps_.steps.size()) loaded_.info.times.clear();
-        const auto step = choose_step(loaded_.info, depth_ == Depth::arrays ? options_ : ReadOptions());
+        const auto step = choose_step(loaded_.info, options_);
         if (!step) return step.error();
         loaded_.step = *step;
         auto blocks = blocks_of(file_, steps_, steps_.steps[loaded_.step]);
@@ -38,7 +38,7 @@ public:
         for (LeftOut& item : blocks->left_out) leave_out(loaded_.info, std::move(item));
         if (auto announced = announce_blocks(); !announced) return announced.error();
         if (auto read = read_blocks(); !read) return read.error();
-        announce_other_steps();
+        if (depth_ == Depth::arrays || !options_.step) announce_other_steps();
         return std::move(loaded_);
     }
 

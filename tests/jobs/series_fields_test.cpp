@@ -1,0 +1,165 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Series whose steps have different fields: those of the steps that are asked for count.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <isotet/jobs/draw_files.hpp>
+#include <isotet/jobs/extract_files.hpp>
+#include <isotet/jobs/grid_source.hpp>
+#include <isotet/jobs/look_into.hpp>
+
+#include "jobs/listener.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace isotet::jobs {
+namespace {
+
+using test::Listener;
+using Names = std::vector<std::string>;
+
+/// A tet with point fields 0, 1, 2, 3, and a cell more where `cells` is 2.
+std::string vtu(const Names& fields, int cells) {
+    std::string data;
+    for (const std::string& name : fields)
+        data += fmt::format("<DataArray type=\"Float32\" Name=\"{}\" format=\"ascii\">0 1 2 3</DataArray>", name);
+    const bool two = cells == 2;
+    return fmt::format(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"{}\">"
+        "<PointData>{}</PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1"
+        "</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2 3 {}</DataArray>"
+        "<DataArray type=\"Int32\" Name=\"offsets\">4 {}</DataArray><DataArray type=\"UInt8\" Name=\"types\">10 {}"
+        "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>",
+        cells, data, two ? "0 1 2" : "", two ? "7" : "", two ? "5" : "");
+}
+
+/// T at times 0, 0.5 and 1; q at 0.5 and 1; r at 1.
+class SeriesFields : public testing::Test {
+protected:
+    void SetUp() override {
+        folder.write("a.vtu", vtu({"T"}, 1));
+        folder.write("b.vtu", vtu({"q", "T"}, 2));
+        folder.write("c.vtu", vtu({"T", "q", "r"}, 1));
+        pvd = folder.write("s.pvd", "<VTKFile type='Collection'><Collection>"
+                                    "<DataSet timestep='0' file='a.vtu'/><DataSet timestep='0.5' file='b.vtu'/>"
+                                    "<DataSet timestep='1' file='c.vtu'/></Collection></VTKFile>");
+        series = folder.write("s.vtu.series", R"({"file-series-version": "1.0", "files": [
+            {"name": "a.vtu", "time": 0}, {"name": "b.vtu", "time": 0.5}, {"name": "c.vtu", "time": 1}]})");
+    }
+    ExtractJob job_of(const std::string& grid, const std::string& field) const {
+        ExtractJob job;
+        job.grid.file = grid;
+        job.field.name = field;
+        job.isovalues = {1.5};
+        return job;
+    }
+    Names files() const { return {pvd, series}; }
+
+    test::TemporaryFolder folder;
+    std::string pvd, series;
+    Listener listener;
+};
+
+TEST_F(SeriesFields, AreThoseOfTheStepThatIsAskedFor) {
+    for (const std::string& file : files()) {
+        ExtractJob job = job_of(file, "r");
+        job.grid.step = 2;
+        const auto by_step = extract_files(job, listener);
+        ASSERT_TRUE(by_step) << by_step.error().message;
+        EXPECT_EQ(by_step->surfaces.at(0).triangles, 2u);
+        job.grid.step.reset();
+        job.grid.time = 1;
+        EXPECT_TRUE(extract_files(job, listener));
+        job.grid.time = 0.5;
+        EXPECT_EQ(extract_files(job, listener).error().message, "there is no field 'r': the grid has 'q', 'T'");
+        job.grid.time.reset();
+        job.grid.step = 7;
+        EXPECT_EQ(extract_files(job, listener).error().message,
+                  "step 7 was asked for, but the file has 3 time steps, numbered from 0");
+    }
+}
+
+TEST_F(SeriesFields, StepsWithoutTheFieldAreSkippedWithOneNote) {
+    for (const auto& [field, steps, note] :
+         {std::tuple{"q", 2u, "'q' is not in 1 of the 3 time steps, which is skipped: 0"},
+          {"r", 1u, "'r' is not in 2 of the 3 time steps, which are skipped: 0, 1"},
+          {"T", 3u, ""}}) {
+        for (const std::string& file : files()) {
+            Listener told;
+            ExtractJob job = job_of(file, field);
+            job.all_steps = true;
+            job.out = folder.file("o_{step}.vtp");
+            const auto numbers = extract_files(job, told);
+            ASSERT_TRUE(numbers) << numbers.error().message;
+            EXPECT_EQ(numbers->surfaces.size(), steps);
+            EXPECT_EQ(std::filesystem::exists(folder.file("o_0.vtp")), steps == 3u);
+            for (const char* name : {"o_0.vtp", "o_1.vtp", "o_2.vtp"}) std::filesystem::remove(folder.file(name));
+            Names noted;
+            for (const std::string& sentence : told.noted)
+                if (sentence.find("skipped") != std::string::npos) noted.push_back(sentence);
+            EXPECT_EQ(noted, *note ? Names{note} : Names{});
+        }
+    }
+}
+
+TEST_F(SeriesFields, OfNoStepAreAnErrorWithThoseOfAll) {
+    ExtractJob job = job_of(pvd, "s");
+    job.all_steps = true;
+    job.out = folder.file("o_{step}.vtp");
+    EXPECT_EQ(extract_files(job, listener).error().message, "there is no field 's': the grid has 'T', 'q', 'r'");
+}
+
+TEST_F(SeriesFields, ToCarryMayBeOfSomeStepsOnly) {
+    ExtractJob job = job_of(pvd, "T");
+    job.all_steps = true;
+    job.out = folder.file("o_{step}.vtp");
+    job.with = Names{"r"};
+    const auto numbers = extract_files(job, listener);
+    ASSERT_TRUE(numbers) << numbers.error().message;
+    EXPECT_EQ(numbers->surfaces.size(), 3u);
+    ASSERT_FALSE(listener.noted.empty());
+    EXPECT_EQ(listener.noted.back(), "not every time step has 'r': the surfaces of the others lack it");
+}
+
+TEST_F(SeriesFields, TheOnlyOneOfAStepNeedsNoName) {
+    ExtractJob job = job_of(pvd, "");
+    job.grid.step = 0;
+    EXPECT_EQ(extract_files(job, listener)->field.name, "T");
+    job.grid.step = 1;
+    EXPECT_EQ(extract_files(job, listener).error().message,
+              "no field was named, and the grid has 2: 'q', 'T'; `field` chooses one");
+}
+
+TEST_F(SeriesFields, PicturesOfStepsWithoutTheFieldAreSkipped) {
+    DrawJob job;
+    job.grid.file = pvd;
+    job.field.name = "q";
+    job.isovalues = {1.5};
+    job.all_steps = true;
+    job.out = folder.file("p-{frame}.png");
+    job.picture.width = job.picture.height = 16;
+    job.plain = true;
+    const auto drawn = draw_files(job, listener);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    EXPECT_EQ(drawn->pictures.pictures, 2u);
+    EXPECT_NE(std::ranges::find(listener.noted, "'q' is not in 1 of the 3 time steps, which is skipped: 0"),
+              listener.noted.end());
+}
+
+TEST_F(SeriesFields, InfoTellsThoseOfTheStep) {
+    InfoJob job;
+    job.grid.file = series;
+    job.grid.step = 1;
+    const auto found = look_into(job, listener);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->fields.size(), 2u);
+    EXPECT_EQ(found->file.fields.size(), 2u);
+    EXPECT_EQ(found->report.cells, 2u);
+}
+
+} // namespace
+} // namespace isotet::jobs
