@@ -9,6 +9,7 @@
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
 #include <isotet/jobs/number_text.hpp>
+#include <isotet/jobs/output_names.hpp>
 #include <isotet/version.hpp>
 
 #include "browser.hpp"
@@ -102,6 +103,7 @@ Result<ExitCode> run_view(const ViewCommand& command) {
     Console console(command.common);
     Result<GridSource> source = GridSource::open(command.grid, console);
     if (!source) return source.error();
+    if (auto paths = check_output_paths(source->info().files, {command.common.json}); !paths) return paths.error();
     if (!command.field.name.empty())
         if (const Result<FoundField> found = choose_field(*source, command.field); !found) return found.error();
     if (!command.color_by.empty())

@@ -191,7 +191,7 @@ const Option& Option::needs(const Option& other) const {
 }
 
 Command Command::add_command(const std::string& word, const std::string& summary) const {
-    return Command(*app_->add_subcommand(word, summary));
+    return Command(*app_->add_subcommand(word, summary), *number_files_);
 }
 
 void Command::set_details(const std::string& details) const { app_->footer(details); }
@@ -251,10 +251,11 @@ Option Command::add_numbers(const std::string& names, std::vector<double>& targe
                             const std::string& description) const {
     return add_texts(
         names,
-        [&target, names](const std::vector<std::string>& lists) {
+        [&target, &files = *number_files_, names](const std::vector<std::string>& lists) {
             for (const std::string& list : lists) {
                 if (list.starts_with('@')) {
                     append_numbers_of_file(list.substr(1), target);
+                    files.push_back(list.substr(1));
                     continue;
                 }
                 for (std::size_t begin = 0; begin <= list.size();) {
@@ -293,7 +294,7 @@ Option Command::add_one_of(const std::string& names, std::vector<std::string> wo
 OptionTree::OptionTree(CommandLine& line)
     : line_(&line), program_(std::make_unique<CLI::App>("Isosurfaces of large unstructured grids", "isotet")) {
     program_->require_subcommand(0, 1);
-    add_commands(Command(*program_), line);
+    add_commands(Command(*program_, line.number_files), line);
 }
 
 OptionTree::~OptionTree() = default;
@@ -312,6 +313,11 @@ Result<void> OptionTree::parse(const std::vector<std::string>& words) {
     for (std::string& word : backwards) // CLI11 takes -i=3 as the value "=3"
         if (word.size() > 3 && word[0] == '-' && word[2] == '=' && has_short_option(*program_, word[1]))
             word.erase(2, 1);
+    for (std::size_t i = backwards.size(); i-- > 0;) // it takes --with= as --with without a value
+        if (backwards[i].starts_with("--") && backwards[i].size() > 3 && backwards[i].find('=') == backwards[i].size() - 1) {
+            backwards[i].pop_back();
+            backwards.insert(backwards.begin() + static_cast<std::ptrdiff_t>(i), std::string());
+        }
     try {
         program_->parse(backwards); // CLI11 takes the words from the back
     } catch (const CLI::CallForHelp&) {

@@ -57,7 +57,8 @@ struct CountLimits {
 /// `target`  is set when the command line is parsed; must live until then. So must what a `set` refers to.
 class Command {
 public:
-    explicit Command(CLI::App& app) : app_(&app) {}
+    /// `number_files`   gets the names of files that numbers are read from while the command line is parsed
+    Command(CLI::App& app, std::vector<std::string>& number_files) : app_(&app), number_files_(&number_files) {}
 
     Command add_command(const std::string& word, const std::string& summary) const;
 
@@ -123,6 +124,7 @@ private:
                       const std::string& description) const;
 
     CLI::App* app_;
+    std::vector<std::string>* number_files_;
 };
 
 class OptionTree {

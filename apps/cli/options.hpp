@@ -92,6 +92,7 @@ struct DocsCommand {
 /// A whole command line. `command` says which of the structs counts.
 struct CommandLine {
     std::string command; ///< its word, such as "extract"; empty for none
+    std::vector<std::string> number_files; ///< of lists, such as -i @FILE
     bool help = false;
     bool version = false;
     InfoCommand info;

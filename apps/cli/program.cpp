@@ -69,6 +69,8 @@ Result<ExitCode> parse_and_run(std::vector<std::string> words) {
     OptionTree tree(line);
     if (Result<void> completed = complete_bare_file(words, tree); !completed) return completed.error();
     if (Result<void> parsed = tree.parse(words); !parsed) return parsed.error();
+    for (GridOptions* grid : {&line.info.grid, &line.extract.grid, &line.render.grid, &line.view.grid, &line.bench.grid})
+        grid->other_inputs = line.number_files;
     return run_command(line, tree);
 }
 

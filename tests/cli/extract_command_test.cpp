@@ -8,6 +8,7 @@
 
 #include "program.hpp"
 #include "small_grid.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace isotet::test {
 namespace {
@@ -260,6 +261,8 @@ TEST_F(Program, ExtractCarriesAllPointFieldsUnlessWithSaysElse) {
 
     EXPECT_EQ(isotet({"extract", path("g.msh"), path("none.vtp"), "-f", "p", "-i", "0.5", "--with", ""}).status, 0);
     EXPECT_TRUE(read_back(path("none.vtp")).surface.point_fields.empty());
+    EXPECT_EQ(isotet({"extract", path("g.msh"), path("none2.vtp"), "-f", "p", "-i", "0.5", "--with="}).status, 0);
+    EXPECT_TRUE(read_back(path("none2.vtp")).surface.point_fields.empty());
 }
 
 TEST_F(Program, ExtractContoursCellFieldsAndSaysSo) {
@@ -399,6 +402,25 @@ TEST_F(Program, ExtractNamesTheLineOfAnIsovalueFileThatIsWrong) {
     const RunResult missing = isotet({"extract", "make:kuhn:4:sphere", "-i", "@" + path("missing.txt")});
     EXPECT_EQ(missing.status, 3);
     EXPECT_TRUE(is_one_error(missing, "cannot be read"));
+}
+
+TEST_F(Program, ExtractDoesNotOverwriteTheFileOfIsovalues) {
+    const std::string levels = path("levels.txt"), as_surface = path("levels.vtp");
+    put_content(levels, "0.5\n");
+    put_content(as_surface, "0.5\n");
+    for (const std::vector<std::string>& outputs :
+         {std::vector<std::string>{"-i", "@" + levels, "--json", levels},
+          {as_surface, "-i", "@" + as_surface},
+          {path("{time}levels.vtp"), "-i", "@" + as_surface, "--json", as_surface}}) {
+        std::vector<std::string> words{"extract", "make:kuhn:4:sphere"};
+        words.insert(words.end(), outputs.begin(), outputs.end());
+        EXPECT_EQ(isotet(words).status, 2);
+    }
+    EXPECT_EQ(isotet({"render", "make:kuhn:4:sphere", "-i", "@" + levels, "--json", levels}).status, 2);
+    EXPECT_EQ(isotet({"bench", "make:kuhn:4:sphere", "-i", "@" + levels, "--json", levels}).status, 2);
+    EXPECT_EQ(isotet({"view", "make:kuhn:4:sphere", "-i", "@" + levels, "--json", levels}).status, 2);
+    EXPECT_EQ(content_of(levels), "0.5\n");
+    EXPECT_EQ(content_of(as_surface), "0.5\n");
 }
 
 TEST_F(Program, ExtractTakesAListOfFieldsToCarry) {
