@@ -52,8 +52,7 @@ std::string curved_table(const CurvedSummary& found) {
     Table table = facts();
     table.row({"curved cells", fmt::format("{}; extract and render refine them to --tolerance", grouped(found.cells))});
     if (found.left_out > 0)
-        table.row({"", fmt::format("{} left out: Bezier pyramids, or above degree 10",
-                                   grouped(found.left_out))});
+        table.row({"", fmt::format("{} left out: Bezier pyramids, or above degree 10", grouped(found.left_out))});
     for (const CurvedCost& cost : found.costs)
         table.row({"", fmt::format("{}: split at their nodes only, off by at most {} ({:.2g} % of the range)",
                                    cost.field, rounded(cost.bound), 100 * cost.share)});

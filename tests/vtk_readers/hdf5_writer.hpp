@@ -56,8 +56,8 @@ public:
     struct Storage {
         std::vector<hsize_t> chunk = {};
         bool shuffled = false, deflated = false, checksums = false, big_endian = false;
-        hsize_t unwritten = 0;      ///< rows at the end, which are filled
-        bool never_filled = false;  ///< they are not: reading leaves memory as it was
+        hsize_t unwritten = 0;     ///< rows at the end, which are filled
+        bool never_filled = false; ///< they are not: reading leaves memory as it was
     };
     template <class T>
     void stored(const std::string& name, const std::vector<T>& values, std::vector<hsize_t> dimensions,

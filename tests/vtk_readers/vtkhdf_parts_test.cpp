@@ -60,7 +60,10 @@ void write_parts(Hdf5Writer& file, const Parts& parts) {
 class ReadVtkhdfParts : public testing::Test {
 protected:
     Result<ReadResult> read_parts(const Parts& parts) {
-        { Hdf5Writer file(folder_.file("a.vtkhdf")); write_parts(file, parts); }
+        {
+            Hdf5Writer file(folder_.file("a.vtkhdf"));
+            write_parts(file, parts);
+        }
         return read(folder_.file("a.vtkhdf"));
     }
     /// Two tets, and something more.
@@ -92,7 +95,10 @@ TEST_F(ReadVtkhdfParts, PartsWithoutCellsAddNothing) {
 }
 
 TEST_F(ReadVtkhdfParts, CountsOfDifferentLengthsAreAnError) {
-    { Hdf5Writer file(folder_.file("a.vtkhdf")); write_parts(file, {{1, 1}}); }
+    {
+        Hdf5Writer file(folder_.file("a.vtkhdf"));
+        write_parts(file, {{1, 1}});
+    }
     for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"}) {
         {
             Hdf5Writer file(folder_.file("b.vtkhdf"));
@@ -120,8 +126,8 @@ TEST_F(ReadVtkhdfParts, RowsOfNoPartAreSaid) {
         file.data<double>("/VTKHDF/CellData/c", {1, 2}, {2});
     });
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_EQ(result->notes, std::vector<std::string>{
-                                 "rows that belong to no part were not read: \"PointData/p\" has 7 rows for 5"});
+    EXPECT_EQ(result->notes,
+              std::vector<std::string>{"rows that belong to no part were not read: \"PointData/p\" has 7 rows for 5"});
 }
 
 TEST_F(ReadVtkhdfParts, OneBadArrayDoesNotSpoilTheRest) {
@@ -156,7 +162,8 @@ TEST_F(ReadVtkhdfParts, RefusesAMeshThatWasNeverWritten) {
             file.attribute("/VTKHDF", "Version", Counts{2, 0});
             file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
             const auto way = [&](const std::string& name) {
-                return Hdf5Writer::Storage{.chunk = {2}, .unwritten = name == unwritten ? hsize_t{1} : 0, .never_filled = true};
+                return Hdf5Writer::Storage{
+                    .chunk = {2}, .unwritten = name == unwritten ? hsize_t{1} : 0, .never_filled = true};
             };
             Hdf5Writer::Storage of_points = way("Points");
             of_points.chunk = {1, 3};
@@ -176,8 +183,8 @@ TEST_F(ReadVtkhdfParts, RefusesAMeshThatWasNeverWritten) {
         return result ? "read" : result.error().message;
     };
     EXPECT_EQ(error(""), "read");
-    for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds", "Points", "Types",
-                             "Connectivity", "Offsets"})
+    for (const char* name :
+         {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds", "Points", "Types", "Connectivity", "Offsets"})
         EXPECT_NE(error(name).find("never written"), std::string::npos) << name << ": " << error(name);
 }
 

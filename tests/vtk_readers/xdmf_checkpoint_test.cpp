@@ -76,12 +76,13 @@ TEST_F(ReadCheckpoint, DiscontinuousFunctionsHaveMeansWhereTheyJump) {
     const auto jumps = read_function({"DG", "1", "0 1 2 3 4 5 6 7", "1 2 3 4 2 3 2 5", "0 4 8"});
     ASSERT_TRUE(jumps) << jumps.error().message;
     EXPECT_EQ(first(jumps->grid.point_fields), (Values{1.5, 2, 3, 4, 5}));
-    EXPECT_EQ(jumps->notes, std::vector<std::string>{"function \"f\" differs between cells at 1 points: the mean was taken"});
+    EXPECT_EQ(jumps->notes,
+              std::vector<std::string>{"function \"f\" differs between cells at 1 points: the mean was taken"});
 }
 
 TEST_F(ReadCheckpoint, OfDegreeTwoTheValuesAtCornersAreTaken) {
-    const auto result = read_function({"CG", "2", "0 1 2 3 5 6 7 8 9 10  0 2 1 4 11 12 13 14 15 16",
-                                       "1 2 3 4 5 0 0 0 0 0 0 0 0 0 0 0 0", "0 10 20"});
+    const auto result = read_function(
+        {"CG", "2", "0 1 2 3 5 6 7 8 9 10  0 2 1 4 11 12 13 14 15 16", "1 2 3 4 5 0 0 0 0 0 0 0 0 0 0 0 0", "0 10 20"});
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(first(result->grid.point_fields), (Values{1, 2, 3, 4, 5}));
     ASSERT_EQ(result->notes.size(), 1u);
@@ -94,7 +95,8 @@ TEST_F(ReadCheckpoint, ReadsHexahedra) {
                              xdmf_item("Dimensions='8 3'", "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1") +
                              "</Geometry><Topology TopologyType='Hexahedron'>" +
                              xdmf_item("NumberType='Int'", "0 1 2 3 4 5 6 7") + "</Topology>";
-    const auto result = read_function({"CG", "1", "0 1 2 3 4 5 6 7", "0 1 10 11 100 101 110 111", "0 8", "hexahedron"}, mesh);
+    const auto result =
+        read_function({"CG", "1", "0 1 2 3 4 5 6 7", "0 1 10 11 100 101 110 111", "0 8", "hexahedron"}, mesh);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(first(result->grid.point_fields), (Values{0, 1, 11, 10, 100, 101, 111, 110}));
 }
@@ -109,8 +111,8 @@ TEST_F(ReadCheckpoint, WhatIsNotReadIsSaid) {
                   .find("of hexahedron cells"),
               std::string::npos);
     const auto result = read(folder_.write(
-        "grid.xdmf", xdmf_document(xdmf_grid("g", xdmf_points() + xdmf_tets() +
-                                                      text_of({"RT", "1", "0 1", "1 2", "0 1 2"})))));
+        "grid.xdmf",
+        xdmf_document(xdmf_grid("g", xdmf_points() + xdmf_tets() + text_of({"RT", "1", "0 1", "1 2", "0 1 2"})))));
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->info.left_out.size(), 1u);
 }

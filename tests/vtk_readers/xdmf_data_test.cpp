@@ -59,8 +59,8 @@ protected:
 
 std::string heavy(const std::string& text) { return xdmf_item("Format='HDF' Dimensions='5'", text); }
 std::string numbers(const std::string& values, const std::string& dimensions = "") {
-    return xdmf_item("NumberType='Float' Precision='8'" + (dimensions.empty() ? "" : " Dimensions='" + dimensions + "'"),
-                     values);
+    return xdmf_item(
+        "NumberType='Float' Precision='8'" + (dimensions.empty() ? "" : " Dimensions='" + dimensions + "'"), values);
 }
 std::string function(const std::string& expression, const std::string& items) {
     return "<DataItem ItemType='Function' Function='" + expression + "'>" + items + "</DataItem>";
@@ -111,7 +111,8 @@ TEST_F(ReadXdmfData, EvaluatesFunctions) {
               (Values{1, 10, 2, 2, 20, 4, 3, 30, 6, 4, 40, 8, 5, 50, 10}));
     EXPECT_EQ(values_of(function("JOIN($0 ; $1)", numbers("1 2") + numbers("3 4 5"))), (Values{1, 2, 3, 4, 5}));
     EXPECT_EQ(values_of(function("$0", function("$0 + 1", p))), (Values{2, 3, 4, 5, 6}));
-    for (const char* wrong : {"", "$0 +", "$2", "$", "POW($0, 2)", "JOIN($0", "$0 $1", "$0 + $1 ; $0", "1 2", "JOIN($0, 1)"})
+    for (const char* wrong :
+         {"", "$0 +", "$2", "$", "POW($0, 2)", "JOIN($0", "$0 $1", "$0 + $1 ; $0", "1 2", "JOIN($0, 1)"})
         EXPECT_NE(error_of(function(wrong, p + q)).find("the function"), std::string::npos) << wrong;
     EXPECT_NE(error_of(function("$0 + $1", p + numbers("1 2"))).find("5 and 2 values"), std::string::npos);
     EXPECT_NE(error_of(function(std::string(1000, '('), p)).find("without end"), std::string::npos);
@@ -172,18 +173,18 @@ TEST_F(ReadXdmfData, ReadsCoordinatesApart) {
 
 /// Axes are stated slowest first; the points of all three ways are the same.
 TEST_F(ReadXdmfData, ReadsStructuredGridsAsHexahedra) {
-    const std::string sizes = " Dimensions='2 3 4'/>", field = xdmf_field("c", "1 2 3 4 5 6", "Cell");
-    std::string places;
+    const std::string sizes = " Dimensions='2 3 4'/>", of_cells = xdmf_field("c", "1 2 3 4 5 6", "Cell");
+    std::string coordinates;
     for (const char* z : {"0", "5"})
         for (const char* y : {"0", "1", "2"})
-            for (const char* x : {"3", "7", "11", "15"}) places += std::string(x) + " " + y + " " + z + " ";
+            for (const char* x : {"3", "7", "11", "15"}) coordinates += std::string(x) + " " + y + " " + z + " ";
     const auto curved = read_grid("<Topology TopologyType='3DSMesh'" + sizes + "<Geometry>" +
-                                  xdmf_item("Precision='8'", places) + "</Geometry>" + field);
+                                  xdmf_item("Precision='8'", coordinates) + "</Geometry>" + of_cells);
     const auto axes = read_grid("<Topology TopologyType='3DRectMesh'" + sizes + "<Geometry GeometryType='VXVYVZ'>" +
-                                numbers("3 7 11 15") + numbers("0 1 2") + numbers("0 5") + "</Geometry>" + field);
+                                numbers("3 7 11 15") + numbers("0 1 2") + numbers("0 5") + "</Geometry>" + of_cells);
     const auto image = read_grid("<Topology TopologyType='3DCORECTMesh' NumberOfElements='2 3 4'/><Geometry "
                                  "GeometryType='ORIGIN_DXDYDZ'>" +
-                                 numbers("0 0 3") + numbers("5 1 4") + "</Geometry>" + field);
+                                 numbers("0 0 3") + numbers("5 1 4") + "</Geometry>" + of_cells);
     for (const auto* result : {&curved, &axes, &image}) {
         ASSERT_TRUE(*result) << result->error().message;
         EXPECT_EQ((*result)->grid.cells.count(), 6u);
@@ -191,11 +192,11 @@ TEST_F(ReadXdmfData, ReadsStructuredGridsAsHexahedra) {
         EXPECT_EQ(values_in((*result)->grid.points), values_in(curved->grid.points));
         EXPECT_EQ((*result)->grid.cell_fields.at(0).values.at(5), 6);
     }
-    EXPECT_NE(mesh_error("<Topology TopologyType='3DSMesh' Dimensions='2 3 5'/><Geometry>" + numbers(places) +
+    EXPECT_NE(mesh_error("<Topology TopologyType='3DSMesh' Dimensions='2 3 5'/><Geometry>" + numbers(coordinates) +
                          "</Geometry>")
                   .find("5 x 3 x 2 points has 24"),
               std::string::npos);
-    EXPECT_NE(mesh_error("<Topology TopologyType='3DSMesh' Dimensions='2 3'/><Geometry>" + numbers(places) +
+    EXPECT_NE(mesh_error("<Topology TopologyType='3DSMesh' Dimensions='2 3'/><Geometry>" + numbers(coordinates) +
                          "</Geometry>")
                   .find("no three numbers"),
               std::string::npos);
@@ -226,8 +227,8 @@ TEST_F(ReadXdmfData, ReadsPolyhedra) {
         EXPECT_EQ(result->grid.cells.faces.size(), 17u);
     }
     for (const std::string& numbers : {tetrahedron, "16 " + tetrahedron}) {
-        const auto result = read_grid(xdmf_points() +
-                                      topology("TopologyType='Polyhedron' NumberOfElements='1'", numbers));
+        const auto result =
+            read_grid(xdmf_points() + topology("TopologyType='Polyhedron' NumberOfElements='1'", numbers));
         ASSERT_TRUE(result) << result.error().message;
         EXPECT_EQ(result->grid.cells.count(), 1u);
         EXPECT_EQ(result->grid.cells.faces.size(), 17u);
@@ -236,7 +237,8 @@ TEST_F(ReadXdmfData, ReadsPolyhedra) {
                                "16 1 3 0 1 2 6", "77 1 2"})
         EXPECT_NE(mesh_error(xdmf_points() + topology("TopologyType='Mixed' NumberOfElements='1'", broken)), "read")
             << broken;
-    EXPECT_NE(mesh_error(xdmf_points() + topology("TopologyType='Mixed'", "77 1 2")).find("type 77"), std::string::npos);
+    EXPECT_NE(mesh_error(xdmf_points() + topology("TopologyType='Mixed'", "77 1 2")).find("type 77"),
+              std::string::npos);
 }
 
 TEST_F(ReadXdmfData, FollowsBaseOffsetAndOrder) {

@@ -40,23 +40,23 @@ std::string included(const std::string& xpointer) { return "<xi:include xpointer
 
 TEST_F(ReadXdmfSeries, FollowsEveryFormOfXpointer) {
     const std::string both = "/*[self::Topology or self::Geometry]";
-    const std::vector<std::string> includes =
-         {included("xpointer(/Xdmf/Domain/Grid[@GridType=\"Uniform\"][1]" + both + ")"),
-          included("xpointer(//Grid[@Name=\"mesh\"]" + both + ")"),
-          included("xpointer( /Xdmf/Domain/Grid[1]" + both + " )"),
-          included("xpointer(/Xdmf/Domain/Grid[@Name=\"mesh\"]/*)"),
-          included("xpointer(/Xdmf/Domain/Grid/Geometry|/Xdmf/Domain/Grid/Topology)"),
-          included("xpointer(/Xdmf/Domain/Grid/Geometry)") + included("xpointer(/Xdmf/Domain/Grid/Topology)"),
-          included("element(/1/1/1/1)") + included("element(/1/1/1/2)"),
-          included("xmlns(x=urn:x)xpointer(/Nothing)xpointer(//Grid[@Name=\"mesh\"]" + both + ")"),
-          "<xi:include href='grid.xdmf' xpointer='element(/1/1/1/1)'/>" + included("element(/1/1/1/2)"),
-          "<n0:include xmlns:n0='https://www.w3.org/2003/XInclude' xpointer='xpointer(//Grid[@Name=\"mesh\"]" + both +
-              ")'/>",
-          "<include xmlns='http://www.w3.org/2001/XInclude' href='' xpointer='xpointer(/Xdmf/Domain/Grid[1]/*)'/>",
-          std::string("<xi:include xpointer=\"xpointer(//Grid[@Name='mesh']/*)\"/>"),
-          std::string("<xi:include xpointer=\"xpointer(//Grid[@Name=&quot;mesh&quot;]/*)\"/>"),
-          std::string("<Geometry Reference='/Xdmf/Domain/Grid/Geometry'/><Topology "
-                      "Reference='XML'>/Xdmf/Domain/Grid/Topology</Topology>")};
+    const std::vector<std::string> includes = {
+        included("xpointer(/Xdmf/Domain/Grid[@GridType=\"Uniform\"][1]" + both + ")"),
+        included("xpointer(//Grid[@Name=\"mesh\"]" + both + ")"),
+        included("xpointer( /Xdmf/Domain/Grid[1]" + both + " )"),
+        included("xpointer(/Xdmf/Domain/Grid[@Name=\"mesh\"]/*)"),
+        included("xpointer(/Xdmf/Domain/Grid/Geometry|/Xdmf/Domain/Grid/Topology)"),
+        included("xpointer(/Xdmf/Domain/Grid/Geometry)") + included("xpointer(/Xdmf/Domain/Grid/Topology)"),
+        included("element(/1/1/1/1)") + included("element(/1/1/1/2)"),
+        included("xmlns(x=urn:x)xpointer(/Nothing)xpointer(//Grid[@Name=\"mesh\"]" + both + ")"),
+        "<xi:include href='grid.xdmf' xpointer='element(/1/1/1/1)'/>" + included("element(/1/1/1/2)"),
+        "<n0:include xmlns:n0='https://www.w3.org/2003/XInclude' xpointer='xpointer(//Grid[@Name=\"mesh\"]" + both +
+            ")'/>",
+        "<include xmlns='http://www.w3.org/2001/XInclude' href='' xpointer='xpointer(/Xdmf/Domain/Grid[1]/*)'/>",
+        std::string("<xi:include xpointer=\"xpointer(//Grid[@Name='mesh']/*)\"/>"),
+        std::string("<xi:include xpointer=\"xpointer(//Grid[@Name=&quot;mesh&quot;]/*)\"/>"),
+        std::string("<Geometry Reference='/Xdmf/Domain/Grid/Geometry'/><Topology "
+                    "Reference='XML'>/Xdmf/Domain/Grid/Topology</Topology>")};
     for (const std::string& include : includes) {
         const auto result = read_step(series_with(include), 1);
         ASSERT_TRUE(result) << include << ": " << result.error().message;
@@ -99,10 +99,9 @@ TEST_F(ReadXdmfSeries, IncludesFilesBelowItsFolder) {
     folder_.write("mesh.xdmf", xdmf_document(xdmf_mesh()));
     folder_.write("points.xml", xdmf_points());
     EXPECT_EQ(read_domain("<xi:include href='mesh.xdmf'/>").value().grid.cells.count(), 2u);
-    EXPECT_EQ(read_domain("<xi:include href='mesh.xdmf' xpointer='xpointer(/Xdmf/Domain/Grid)'/>")
-                  .value()
-                  .grid.cells.count(),
-              2u);
+    EXPECT_EQ(
+        read_domain("<xi:include href='mesh.xdmf' xpointer='xpointer(/Xdmf/Domain/Grid)'/>").value().grid.cells.count(),
+        2u);
     const auto result = read_domain(xdmf_grid("g", "<xi:include href='points.xml'/>" + xdmf_tets()));
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->info.files.size(), 2u);
@@ -115,9 +114,7 @@ TEST_F(ReadXdmfSeries, IncludesFilesBelowItsFolder) {
 }
 
 TEST_F(ReadXdmfSeries, IncludesThatLeadNowhereAreErrors) {
-    const auto message = [&](const std::string& include) {
-        return error_of(xdmf_mesh() + xdmf_grid("g", include));
-    };
+    const auto message = [&](const std::string& include) { return error_of(xdmf_mesh() + xdmf_grid("g", include)); };
     for (const char* nothing :
          {"xpointer(/Xdmf/Nothing)", "xpointer(][)", "xpointer(//*//*)", "element(/1/9)", "element(/1/1/x)", "absent",
           "xpointer(/Xdmf/Domain/Grid", "xpointer(id(absent))", "", "here()"})
@@ -136,8 +133,9 @@ TEST_F(ReadXdmfSeries, PutsFieldsOfOneMeshTogether) {
         xdmf_collection("u", "Temporal",
                         xdmf_grid("u", mesh + xdmf_time("0") + xdmf_field("u", "0 2 3 4 5")) +
                             xdmf_grid("u", mesh + xdmf_time("0.5") + xdmf_field("u", "1 2 3 4 5"))) +
-        xdmf_collection("q", "Temporal", xdmf_grid("q", mesh + xdmf_time("0.5") + xdmf_field("q", "1 2", "Cell")) +
-                                             xdmf_grid("q", mesh + xdmf_time("2") + xdmf_field("q", "3 4", "Cell")));
+        xdmf_collection("q", "Temporal",
+                        xdmf_grid("q", mesh + xdmf_time("0.5") + xdmf_field("q", "1 2", "Cell")) +
+                            xdmf_grid("q", mesh + xdmf_time("2") + xdmf_field("q", "3 4", "Cell")));
     const auto first = read_step(domain, 0), second = read_step(domain, 1), third = read_step(domain, 2);
     ASSERT_TRUE(first && second && third);
     EXPECT_EQ(first->info.times, (std::vector<double>{0, 0.5, 2}));
@@ -167,8 +165,8 @@ TEST_F(ReadXdmfSeries, ReadsAllDomains) {
 }
 
 TEST_F(ReadXdmfSeries, OtherMeshesAreBlocks) {
-    const std::string other = "<Geometry>" + xdmf_item("Dimensions='4 3'", "0 0 0 1 0 0 0 1 0 0 0 9") + "</Geometry>" +
-                              xdmf_tets("0 1 2 3");
+    const std::string other =
+        "<Geometry>" + xdmf_item("Dimensions='4 3'", "0 0 0 1 0 0 0 1 0 0 0 9") + "</Geometry>" + xdmf_tets("0 1 2 3");
     const std::string domain = xdmf_mesh() + xdmf_grid("other", other + xdmf_field("p", "1 2 3 4"));
     const auto all = read_domain(domain);
     ASSERT_TRUE(all) << all.error().message;
@@ -185,12 +183,12 @@ TEST_F(ReadXdmfSeries, OtherMeshesAreBlocks) {
 TEST_F(ReadXdmfSeries, TagsOfCellsAreFieldsOfTheMesh) {
     const std::string points = included("xpointer(/Xdmf/Domain/Grid/Geometry)");
     const std::string some = xdmf_grid("some", points + xdmf_tets("4 0 1 2") + xdmf_field("some", "8", "Cell"));
-    const auto tags = read_domain(
-        xdmf_mesh() + xdmf_grid("all", points + xdmf_tets("4 0 1 2 3 2 1 0") + xdmf_field("all", "8 9", "Cell")) +
-        some +
-        xdmf_grid("facets", points + "<Topology TopologyType='Triangle'>" +
-                                xdmf_item("NumberType='Int'", "0 1 2 0 2 3") + "</Topology>" +
-                                xdmf_field("facets", "1 2", "Cell")));
+    const auto tags =
+        read_domain(xdmf_mesh() +
+                    xdmf_grid("all", points + xdmf_tets("4 0 1 2 3 2 1 0") + xdmf_field("all", "8 9", "Cell")) + some +
+                    xdmf_grid("facets", points + "<Topology TopologyType='Triangle'>" +
+                                            xdmf_item("NumberType='Int'", "0 1 2 0 2 3") + "</Topology>" +
+                                            xdmf_field("facets", "1 2", "Cell")));
     ASSERT_TRUE(tags) << tags.error().message;
     EXPECT_EQ(tags->grid.points.tuples(), 5u);
     EXPECT_EQ(tags->grid.cells.count(), 2u);
@@ -199,25 +197,26 @@ TEST_F(ReadXdmfSeries, TagsOfCellsAreFieldsOfTheMesh) {
     EXPECT_EQ(tags->grid.cell_fields[0].values.at(1), 8);
     EXPECT_NE(tags->grid.cell_fields[1].values.at(0), tags->grid.cell_fields[1].values.at(0)) << "NaN";
     EXPECT_EQ(tags->grid.cell_fields[1].values.at(1), 8);
-    EXPECT_EQ(tags->notes, (std::vector<std::string>{"the cells of grid \"all\" are cells of \"mesh\": they are one grid",
-                                                     "the cells of grid \"some\" are cells of \"mesh\": they are one "
-                                                     "grid",
-                                                     "grid 'facets' is left out: its cells have no volume"}));
+    EXPECT_EQ(tags->notes,
+              (std::vector<std::string>{"the cells of grid \"all\" are cells of \"mesh\": they are one grid",
+                                        "the cells of grid \"some\" are cells of \"mesh\": they are one "
+                                        "grid",
+                                        "grid 'facets' is left out: its cells have no volume"}));
 }
 
 TEST_F(ReadXdmfSeries, CollectionsOfBothKindsNestEitherWay) {
     const auto block = [](const std::string& name, const std::string& x, const std::string& time) {
         return xdmf_grid(name, xdmf_points(x) + xdmf_tets() + time + xdmf_field("p", x + " 2 3 4 5"));
     };
-    const std::string outside =
-        xdmf_collection("all", "Temporal",
-                        xdmf_collection("s0", "Spatial", xdmf_time("0.5") + block("a", "1", "") + block("b", "2", "")) +
-                            xdmf_collection("s1", "Spatial",
-                                            xdmf_time("1.5") + block("a", "3", "") + block("b", "4", "")));
+    const std::string outside = xdmf_collection(
+        "all", "Temporal",
+        xdmf_collection("s0", "Spatial", xdmf_time("0.5") + block("a", "1", "") + block("b", "2", "")) +
+            xdmf_collection("s1", "Spatial", xdmf_time("1.5") + block("a", "3", "") + block("b", "4", "")));
     const std::string inside =
         "<Grid Name='tree' GridType='Tree'>" +
         xdmf_collection("a", "Temporal", block("", "1", xdmf_time("0.5")) + block("", "3", xdmf_time("1.5"))) +
-        xdmf_collection("b", "Temporal", block("", "2", xdmf_time("0.5")) + block("", "4", xdmf_time("1.5"))) + "</Grid>";
+        xdmf_collection("b", "Temporal", block("", "2", xdmf_time("0.5")) + block("", "4", xdmf_time("1.5"))) +
+        "</Grid>";
     for (const std::string& domain : {outside, inside}) {
         const auto result = read_step(domain, 1);
         ASSERT_TRUE(result) << result.error().message;
@@ -231,6 +230,19 @@ TEST_F(ReadXdmfSeries, CollectionsOfBothKindsNestEitherWay) {
         options.blocks = {"b"};
         EXPECT_EQ(read_domain(domain, options).value().grid.points.at(3, 2), 4);
     }
+}
+
+TEST_F(ReadXdmfSeries, TheTimeOfACollectionGoesBeforeThoseInIt) {
+    const auto block = [](const std::string& x, const std::string& time) {
+        return xdmf_grid("block", xdmf_points(x) + xdmf_tets() + xdmf_time(time));
+    };
+    const auto times = [&](const std::string& of_all) {
+        return read_domain(xdmf_collection("all", "Spatial", of_all + block("1", "0.1") + block("2", "0.1000001")))
+            .value()
+            .info.times;
+    };
+    EXPECT_EQ(times(xdmf_time("7")), std::vector<double>{7});
+    EXPECT_EQ(times(""), (std::vector<double>{0.1, 0.1000001}));
 }
 
 TEST_F(ReadXdmfSeries, TimesAreListedInAnyWay) {
@@ -269,8 +281,8 @@ TEST_F(ReadXdmfSeries, ATimeInANameIsNotPartOfIt) {
     const auto at = [](const std::string& time, const std::string& name) {
         return xdmf_grid("T", xdmf_points() + xdmf_tets() + xdmf_time(time) + xdmf_field(name, time + " 2 3 4 5"));
     };
-    const std::string series = xdmf_collection("T", "Temporal", at("0", "T/0") + at("0.5", "T/0_5") +
-                                                                    at("1.25", "T/1.250000") + at("3", "T/4"));
+    const std::string series = xdmf_collection(
+        "T", "Temporal", at("0", "T/0") + at("0.5", "T/0_5") + at("1.25", "T/1.250000") + at("3", "T/4"));
     const auto result = read_step(series, 1);
     ASSERT_TRUE(result) << result.error().message;
     ASSERT_EQ(result->info.fields.size(), 2u);
@@ -282,9 +294,10 @@ TEST_F(ReadXdmfSeries, ATimeInANameIsNotPartOfIt) {
 TEST_F(ReadXdmfSeries, OneBadAttributeDoesNotSpoilTheRest) {
     const std::string bad = xdmf_field("short", "1 2 3 4") + xdmf_field("words", "1 2 x 4 5") +
                             "<Attribute Name='gone'>" + xdmf_item("Format='HDF'", "absent.h5:/p") + "</Attribute>" +
-                            "<Attribute Name='none'/><Attribute Reference='/Nothing'/>" + xdmf_field("edges", "1", "Edge") +
-                            "<Attribute Name='odd'>" + xdmf_item("NumberType='Quaternion' Dimensions='5'", "") +
-                            "</Attribute>" + xdmf_field("p", "5 4 3 2 1") + xdmf_field("p", "1 2 3 4 5");
+                            "<Attribute Name='none'/><Attribute Reference='/Nothing'/>" +
+                            xdmf_field("edges", "1", "Edge") + "<Attribute Name='odd'>" +
+                            xdmf_item("NumberType='Quaternion' Dimensions='5'", "") + "</Attribute>" +
+                            xdmf_field("p", "5 4 3 2 1") + xdmf_field("p", "1 2 3 4 5");
     const std::string domain = xdmf_grid("g", xdmf_points() + xdmf_tets() + bad);
     const auto result = read_domain(domain);
     ASSERT_TRUE(result) << result.error().message;

@@ -18,12 +18,13 @@ inline std::string xdmf_item(const std::string& attributes, const std::string& t
 
 inline std::string xdmf_points(const std::string& above = "1") {
     return "<Geometry GeometryType=\"XYZ\">" +
-           xdmf_item("Format=\"XML\" Dimensions=\"5 3\" Precision=\"8\"", "0 0 0  1 0 0  0 1 0  0 0 " + above + "  0 0 -1") +
+           xdmf_item("Format=\"XML\" Dimensions=\"5 3\" Precision=\"8\"",
+                     "0 0 0  1 0 0  0 1 0  0 0 " + above + "  0 0 -1") +
            "</Geometry>";
 }
 inline std::string xdmf_tets(const std::string& numbers = "0 1 2 3  0 2 1 4") {
-    return "<Topology TopologyType=\"Tetrahedron\">" +
-           xdmf_item("Format=\"XML\" NumberType=\"Int\"", numbers) + "</Topology>";
+    return "<Topology TopologyType=\"Tetrahedron\">" + xdmf_item("Format=\"XML\" NumberType=\"Int\"", numbers) +
+           "</Topology>";
 }
 inline std::string xdmf_field(const std::string& name, const std::string& values, const std::string& center = "Node") {
     return "<Attribute Name=\"" + name + "\" Center=\"" + center + "\">" +

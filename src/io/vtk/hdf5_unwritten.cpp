@@ -41,9 +41,7 @@ bool may_be_unwritten(hid_t data) {
 }
 
 HdfRead read_written(hid_t data, hid_t type, hid_t memory, hid_t space, std::span<std::byte> to) {
-    const auto read = [&](std::byte* place) {
-        return H5Dread(data, type, memory, space, H5P_DEFAULT, place) >= 0;
-    };
+    const auto read = [&](std::byte* place) { return H5Dread(data, type, memory, space, H5P_DEFAULT, place) >= 0; };
     if (to.empty()) return HdfRead::done;
     if (!may_be_unwritten(data)) return read(to.data()) ? HdfRead::done : HdfRead::failed;
     std::vector<std::byte> other(to.size(), std::byte{0xff});

@@ -151,7 +151,8 @@ void HdfGrid::note_rows_left_over(const std::vector<HdfPartition>& parts, std::v
     for (const auto& [name, rows] : expected)
         if (const auto shape = rows_.shape(group_ + name); shape && shape->rows > rows)
             more.push_back(fmt::format("\"{}\" has {} rows for {}", escaped(name), shape->rows, rows));
-    if (!more.empty()) notes.push_back(fmt::format("rows that belong to no part were not read: {}", fmt::join(more, ", ")));
+    if (!more.empty())
+        notes.push_back(fmt::format("rows that belong to no part were not read: {}", fmt::join(more, ", ")));
 }
 
 /// Coordinates as integers become float64.
@@ -159,7 +160,9 @@ Result<Array> HdfGrid::read_points(const HdfPartition& part) const {
     auto points = rows_.read(group_ + "Points", part.first_point, part.points);
     if (!points || is_floating(points->type())) return points;
     std::vector<double> places(points->size());
-    points->visit([&](auto from) { std::ranges::transform(from, places.begin(), [](auto x) { return static_cast<double>(x); }); });
+    points->visit([&](auto from) {
+        std::ranges::transform(from, places.begin(), [](auto x) { return static_cast<double>(x); });
+    });
     return Array::own(std::move(places), points->components());
 }
 
@@ -339,7 +342,8 @@ Result<void> HdfGrid::load(const ReadOptions& options, std::size_t step, const s
         piece.grid.points = *std::move(points);
         if (auto done = load_types(part, piece.grid.cells); !done) return done;
         for (const auto association : {Association::point, Association::cell})
-            if (auto done = load_fields(part, *place, step, association, options, piece, loaded.info); !done) return done;
+            if (auto done = load_fields(part, *place, step, association, options, piece, loaded.info); !done)
+                return done;
         if (auto done = load_corners(part, options, parts->size() == 1, piece); !done) return done;
     }
     return {};

@@ -107,15 +107,13 @@ private:
                 }
             }
         if (!missing.empty() && depth_ == Depth::arrays)
-            loaded_.notes.push_back(
-                fmt::format("step {} has no values of {}", loaded_.step, fmt::join(missing, ", ")));
+            loaded_.notes.push_back(fmt::format("step {} has no values of {}", loaded_.step, fmt::join(missing, ", ")));
     }
     /// False where it is not read in its step either.
     bool announce_field(pugi::xml_node grid, const XdmfField& field) {
         const pugi::xml_node geometry = file_.document.resolve(file_.document.child(grid, "Geometry")),
                              topology = file_.document.resolve(file_.document.child(grid, "Topology"));
-        if (!geometry || !topology || (is_flat(topology) && !is_flat(blocks_.front().topology)))
-            return false;
+        if (!geometry || !topology || (is_flat(topology) && !is_flat(blocks_.front().topology))) return false;
         auto mesh = described(geometry, topology);
         if (!mesh) return true; // an error where that step is read
         Loaded other;

@@ -77,10 +77,10 @@ Result<XdmfBlocks> blocks_of(const XdmfFile& file, const XdmfSteps& steps, const
         kind.blocks[place->second].grids.push_back(grid.node);
     }
     if (solid.blocks.empty() && flat.blocks.empty())
-        return broken(file.path, solid.left_out.empty()
-                                     ? std::string("its time step has no grid")
-                                     : fmt::format("grid \"{}\" cannot be read: {}", escaped(solid.left_out.front().name),
-                                                   solid.left_out.front().reason));
+        return broken(file.path, solid.left_out.empty() ? std::string("its time step has no grid")
+                                                        : fmt::format("grid \"{}\" cannot be read: {}",
+                                                                      escaped(solid.left_out.front().name),
+                                                                      solid.left_out.front().reason));
     if (solid.blocks.empty()) std::swap(solid.blocks, flat.blocks);
     for (const XdmfBlock& block : flat.blocks)
         solid.left_out.push_back({"grid", block.name, "its cells have no volume"});

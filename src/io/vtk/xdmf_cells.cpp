@@ -13,7 +13,7 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr XdmfElement elements[] = {
+constexpr XdmfElement xdmf_elements[] = {
     {"Polyvertex", 1, 2, 0},        {"Polyline", 2, 4, 0},
     {"Polygon", 3, 7, 0},           {"Triangle", 4, 5, 3},
     {"Quadrilateral", 5, 9, 4},     {"Tetrahedron", 6, 10, 4},
@@ -43,7 +43,7 @@ public:
     /// Nothing where it is sound.
     std::optional<std::string> take_coded() {
         const XdmfElement* element = nullptr;
-        for (const XdmfElement& known : elements)
+        for (const XdmfElement& known : xdmf_elements)
             if (!element && !at_end() && numbers_[at_] == known.code) element = &known;
         if (!element)
             return fmt::format("element {} of a mixed topology, at number {}, has {}", count(), at_,
@@ -114,7 +114,8 @@ template <class Take>
 Result<Cells> take_cells(const Array& values, std::optional<std::uint64_t> count, std::uint64_t points,
                          std::int64_t base, const Take& take) {
     if (count && *count > values.size())
-        return wrong_cells(fmt::format("{} mixed elements are stated, but there are {} numbers", *count, values.size()));
+        return wrong_cells(
+            fmt::format("{} mixed elements are stated, but there are {} numbers", *count, values.size()));
     std::vector<std::int64_t> numbers(values.size());
     xdmf_indices(values, 0).visit([&](auto from) {
         for (std::size_t i = 0; i < from.size(); ++i) numbers[i] = static_cast<std::int64_t>(from[i]);
@@ -131,7 +132,7 @@ Result<Cells> take_cells(const Array& values, std::optional<std::uint64_t> count
 } // namespace
 
 const XdmfElement* xdmf_element(std::string_view name) {
-    for (const XdmfElement& known : elements)
+    for (const XdmfElement& known : xdmf_elements)
         if (same_word(known.name, name)) return &known;
     return nullptr;
 }
@@ -187,8 +188,7 @@ Result<Cells> mixed_elements(const Array& values, std::optional<std::uint64_t> c
 Result<Cells> polyhedral_elements(const Array& values, std::optional<std::uint64_t> count, std::uint64_t points,
                                   std::int64_t base) {
     const XdmfElement& polyhedron = *xdmf_element("Polyhedron");
-    auto plain = take_cells(values, count, points, base,
-                            [&](MixedCells& cells) { return cells.take(polyhedron); });
+    auto plain = take_cells(values, count, points, base, [&](MixedCells& cells) { return cells.take(polyhedron); });
     if (plain) return plain;
     auto coded = mixed_elements(values, count, points, base);
     return coded ? std::move(coded) : std::move(plain);

@@ -28,7 +28,7 @@ struct NamedNumber {
     unsigned precision;
 };
 constexpr NamedNumber number_types[] = {
-    {"Float", 'f', 4}, {"Double", 'f', 8}, {"Int", 'i', 4},  {"UInt", 'u', 4},  {"Char", 'i', 1},
+    {"Float", 'f', 4}, {"Double", 'f', 8}, {"Int", 'i', 4},    {"UInt", 'u', 4}, {"Char", 'i', 1},
     {"UChar", 'u', 1}, {"Short", 'i', 2},  {"UShort", 'u', 2}, {"Long", 'i', 8}, {"ULong", 'u', 8},
 };
 
@@ -155,8 +155,8 @@ Result<ShapedValues> XdmfData::read_uniform(pugi::xml_node item, Depth depth) co
                                         escaped(item.attribute("Precision").as_string("-"))));
     if (same_word(format, "XML")) return read_xml(item, *type, depth);
     if (!same_word(format, "Binary"))
-        return failed(item, fmt::format("a DataItem of format \"{}\" is not read: XML, HDF and Binary are",
-                                        escaped(format)));
+        return failed(item,
+                      fmt::format("a DataItem of format \"{}\" is not read: XML, HDF and Binary are", escaped(format)));
     if (!dimensions) return failed(item, "a DataItem of format Binary has no Dimensions");
     ShapedValues result{*dimensions, Array(*type, nullptr, 0, 1, nullptr)};
     if (depth == Depth::description) return result;
@@ -198,8 +198,8 @@ Result<ShapedValues> XdmfData::read_xml(pugi::xml_node item, ScalarType type, De
 
 Result<Array> XdmfData::read_binary(pugi::xml_node item, ScalarType type, std::uint64_t count) const {
     if (const std::string_view packed = item.attribute("Compression").as_string("Raw"); !same_word(packed, "Raw"))
-        return failed(item, fmt::format("a binary DataItem with compression \"{}\" is not read: Raw is",
-                                        escaped(packed)));
+        return failed(item,
+                      fmt::format("a binary DataItem with compression \"{}\" is not read: Raw is", escaped(packed)));
     auto path = named_file(document_.file_of(item), text_of(item), allow_outside_);
     if (!path) return path.error();
     auto file = MappedFile::open(*path);
@@ -268,8 +268,8 @@ Result<ShapedValues> XdmfData::read_coordinates(pugi::xml_node item, Depth depth
     if (!whole) return whole;
     const std::size_t rank = whole->dimensions.size();
     if (rank == 0 || numbers->size() % rank != 0)
-        return failed(item, fmt::format("Coordinates of {} numbers are no places in {} dimensions", numbers->size(),
-                                        rank));
+        return failed(item,
+                      fmt::format("Coordinates of {} numbers are no places in {} dimensions", numbers->size(), rank));
     std::vector<std::uint64_t> places(numbers->size() / rank, 0);
     for (std::size_t i = 0; i < numbers->size(); ++i) {
         if ((*numbers)[i] >= whole->dimensions[i % rank])

@@ -80,8 +80,8 @@ bool is_include(pugi::xml_node node) {
 std::string include_text(pugi::xml_node include) {
     const std::string_view href = include.attribute("href").as_string(),
                            xpointer = include.attribute("xpointer").as_string();
-    return fmt::format("an xi:include ({}{}{})", escaped(href.substr(0, 80)), href.empty() || xpointer.empty() ? "" : ", ",
-                       escaped(xpointer.substr(0, 120)));
+    return fmt::format("an xi:include ({}{}{})", escaped(href.substr(0, 80)),
+                       href.empty() || xpointer.empty() ? "" : ", ", escaped(xpointer.substr(0, 120)));
 }
 
 } // namespace

@@ -59,7 +59,7 @@ private:
     const File* file_with(pugi::xml_node node) const;
 
     bool allow_outside_ = false;
-    std::vector<std::unique_ptr<File>> files_; ///< the first is the one that was opened
+    std::vector<std::unique_ptr<File>> files_;                ///< the first is the one that was opened
     std::map<std::string, Elements, std::less<>> inclusions_; ///< by file, href and xpointer
     std::unordered_map<const void*, const Elements*> by_include_;
     mutable std::map<std::string, pugi::xml_node, std::less<>> found_; ///< what references named before

@@ -92,8 +92,8 @@ Result<void> XdmfFieldReader::read_values(const XdmfField& field, XdmfMesh& mesh
     if (!values) return values.error();
     if (tuples == 0) return {};
     if (values->count() % tuples != 0 || values->count() == 0)
-        return Error{ErrorCode::invalid_data,
-                     fmt::format("it has {} values for {} {}", values->count(), tuples, on_points ? "points" : "cells")};
+        return Error{ErrorCode::invalid_data, fmt::format("it has {} values for {} {}", values->count(), tuples,
+                                                          on_points ? "points" : "cells")};
     const std::uint64_t components = values->count() / tuples;
     announce(loaded.info, {field.name, *field.association, values->values.type(), components});
     if (want) fields.push_back({field.name, with_components(values->values, components)});

@@ -30,8 +30,10 @@ struct ElementOfFunction {
 constexpr std::array<std::uint8_t, 4> of_tetrahedron{0, 1, 2, 3};
 constexpr std::array<std::uint8_t, 8> of_hexahedron{0, 1, 3, 2, 4, 5, 7, 6}; // as a tensor product
 constexpr ElementOfFunction elements_of_functions[] = {
-    {"tetrahedron", 0, 1, CellType::tetrahedron, {}}, {"tetrahedron", 1, 4, CellType::tetrahedron, of_tetrahedron},
-    {"tetrahedron", 2, 10, CellType::tetrahedron, of_tetrahedron}, {"hexahedron", 0, 1, CellType::hexahedron, {}},
+    {"tetrahedron", 0, 1, CellType::tetrahedron, {}},
+    {"tetrahedron", 1, 4, CellType::tetrahedron, of_tetrahedron},
+    {"tetrahedron", 2, 10, CellType::tetrahedron, of_tetrahedron},
+    {"hexahedron", 0, 1, CellType::hexahedron, {}},
     {"hexahedron", 1, 8, CellType::hexahedron, of_hexahedron},
 };
 
@@ -65,8 +67,8 @@ public:
             return wrong_function(fmt::format("{} cells of {} values have {} numbers", cells, width_, numbers_.size()));
         for (std::size_t i = 0; i < numbers_.size(); ++i)
             if (is_floating(numbers_.type()) || number_at(numbers_, i) >= values_.size())
-                return wrong_function(fmt::format("cell {} has value {}, but there are {}", i / width_,
-                                                  numbers_.at(i), values_.size()));
+                return wrong_function(
+                    fmt::format("cell {} has value {}, but there are {}", i / width_, numbers_.at(i), values_.size()));
         return {};
     }
     double at(std::size_t cell, std::size_t place) const {
@@ -85,7 +87,10 @@ constexpr double rounding = 1e-9;
 class PointMeans {
 public:
     explicit PointMeans(std::size_t points)
-        : first_(points, std::numeric_limits<double>::quiet_NaN()), sum_(points, 0), count_(points, 0), jump_(points, 0) {}
+        : first_(points, std::numeric_limits<double>::quiet_NaN()),
+          sum_(points, 0),
+          count_(points, 0),
+          jump_(points, 0) {}
 
     void add(std::size_t point, double value) {
         if (count_[point]++ == 0) first_[point] = value;
@@ -130,14 +135,14 @@ Result<FunctionValues> values_of_points(const CellRows& rows, const ElementOfFun
         for (std::size_t i = 0; i < cells.connectivity.size(); ++i) {
             const std::uint64_t point = number_at(cells.connectivity, i);
             if (point >= mesh.points)
-                return wrong_function(fmt::format("cell {} of its mesh has point {} of {}", i / corners, point, mesh.points));
+                return wrong_function(
+                    fmt::format("cell {} of its mesh has point {} of {}", i / corners, point, mesh.points));
             means.add(point, rows.at(i / corners, component * element.nodes + element.corners[i % corners]));
         }
         jumps += means.write(values, component, components);
     }
     FunctionValues found{components, Array::own(std::move(values), components), {}};
-    if (jumps > 0)
-        found.note = fmt::format("differs between cells at {} points: the mean was taken", jumps);
+    if (jumps > 0) found.note = fmt::format("differs between cells at {} points: the mean was taken", jumps);
     if (element.degree > 1)
         found.note += fmt::format("{}is of degree {}: the values at corners were taken, not those between them",
                                   found.note.empty() ? "" : ", and ", element.degree);
@@ -158,12 +163,12 @@ Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node
                                             Depth depth) {
     const ElementOfFunction* const element = element_of(attribute);
     if (!element)
-        return wrong_function(fmt::format(
-            "a finite element function of family \"{}\" and degree {} on cell \"{}\" is not read: CG and DG are, of degree "
-            "0 to 2 on tetrahedra, 0 and 1 on hexahedra",
-            escaped(attribute.attribute("ElementFamily").as_string()),
-            escaped(attribute.attribute("ElementDegree").as_string()),
-            escaped(attribute.attribute("ElementCell").as_string())));
+        return wrong_function(fmt::format("a finite element function of family \"{}\" and degree {} on cell \"{}\" is "
+                                          "not read: CG and DG are, of degree "
+                                          "0 to 2 on tetrahedra, 0 and 1 on hexahedra",
+                                          escaped(attribute.attribute("ElementFamily").as_string()),
+                                          escaped(attribute.attribute("ElementDegree").as_string()),
+                                          escaped(attribute.attribute("ElementCell").as_string())));
     const auto items = file.document.children(attribute, "DataItem");
     if (items.size() < 2) return wrong_function("a finite element function needs two DataItems and more");
     const auto numbers = file.data.read(items[0], depth), values = file.data.read(items[1], depth);
@@ -180,9 +185,10 @@ Result<FunctionValues> read_function_values(const XdmfFile& file, pugi::xml_node
         if (!begins) return begins.error();
         for (std::size_t i = 0; i < begins->values.size(); ++i)
             if (number_at(begins->values, i) != i * width)
-                return wrong_function(fmt::format("its cells have different numbers of values: those of cell {} begin at "
-                                                  "{}, not at {}",
-                                                  i, begins->values.at(i), i * width));
+                return wrong_function(
+                    fmt::format("its cells have different numbers of values: those of cell {} begin at "
+                                "{}, not at {}",
+                                i, begins->values.at(i), i * width));
     }
     const CellRows rows(numbers->values, values->values, width);
     if (auto sound = rows.check(mesh.cells); !sound) return sound.error();

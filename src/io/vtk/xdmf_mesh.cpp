@@ -30,7 +30,7 @@ std::optional<std::vector<std::uint64_t>> stated_counts(pugi::xml_node topology)
     return whole_numbers(attribute_of(topology, "NumberOfElements", "Dimensions"));
 }
 
-Array with_components(const Array& values, std::size_t components) {
+Array in_tuples(const Array& values, std::size_t components) {
     auto owner = std::make_shared<Array>(values);
     return Array(values.type(), values.data(), values.size() / components, components, owner);
 }
@@ -43,7 +43,7 @@ Array as_doubles(const std::vector<Array>& columns) {
 }
 
 Array in_space(const Array& values, std::uint64_t axes) {
-    if (axes == 3 && is_floating(values.type())) return with_components(values, 3);
+    if (axes == 3 && is_floating(values.type())) return in_tuples(values, 3);
     std::vector<double> places(values.size() / axes * 3, 0.0);
     for (std::size_t i = 0; i < values.size(); ++i) places[i / axes * 3 + i % axes] = values.at(i);
     return Array::own(std::move(places), 3);
@@ -67,8 +67,8 @@ public:
             if (auto sized = find_size(); !sized) return sized.error();
         if (auto points = read_points(); !points) return points.error();
         if (size_ && mesh_.points != points_of_size())
-            return wrong(fmt::format("a topology of {} x {} x {} points has {}", size_->x, size_->y, size_->z,
-                                     mesh_.points));
+            return wrong(
+                fmt::format("a topology of {} x {} x {} points has {}", size_->x, size_->y, size_->z, mesh_.points));
         if (auto cells = size_ ? structured_cells() : read_cells(type); !cells) return cells.error();
         return std::move(mesh_);
     }
@@ -98,9 +98,10 @@ private:
         if (same_word(type, "X_Y")) return separate(2);
         if (same_word(type, "VXVYVZ") && size_) return along_axes();
         if (same_word(type, "ORIGIN_DXDYDZ") && size_) return from_origin();
-        return wrong(fmt::format("geometry of type \"{}\" with a topology of type \"{}\" is not read: XYZ, XY, X_Y_Z and "
-                                 "X_Y are, VXVYVZ and ORIGIN_DXDYDZ with structured topologies",
-                                 escaped(type), escaped(type_of_topology(topology_))));
+        return wrong(
+            fmt::format("geometry of type \"{}\" with a topology of type \"{}\" is not read: XYZ, XY, X_Y_Z and "
+                        "X_Y are, VXVYVZ and ORIGIN_DXDYDZ with structured topologies",
+                        escaped(type), escaped(type_of_topology(topology_))));
     }
     Result<void> interlaced(std::uint64_t axes) {
         auto values = file_.data.read(file_.document.child(geometry_, "DataItem"), depth_);
@@ -146,8 +147,8 @@ private:
         std::array<std::vector<double>, 3> ticks;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if ((*all)[axis].count() != size[axis])
-                return wrong(fmt::format("axis {} has {} coordinates for {} points", axis, (*all)[axis].count(),
-                                         size[axis]));
+                return wrong(
+                    fmt::format("axis {} has {} coordinates for {} points", axis, (*all)[axis].count(), size[axis]));
             ticks[axis] = doubles((*all)[axis].values);
         }
         mesh_.points = points_of_size();
@@ -190,14 +191,12 @@ private:
     Result<void> read_cells(std::string_view type) {
         const XdmfElement* const element = xdmf_element(type);
         const bool mixed = same_word(type, "Mixed");
-        if (!mixed && !element)
-            return wrong(fmt::format("topology of type \"{}\" is not read", escaped(type)));
+        if (!mixed && !element) return wrong(fmt::format("topology of type \"{}\" is not read", escaped(type)));
         const auto stated = stated_counts(topology_);
         const std::optional<std::uint64_t> count = stated ? std::optional(stated->front()) : std::nullopt;
         const bool listed = mixed || element->type == xdmf_polyhedron;
         const bool must_count = listed && !count; // only the numbers tell
-        auto values = file_.data.read(file_.document.child(topology_, "DataItem"),
-                                      must_count ? Depth::arrays : depth_);
+        auto values = file_.data.read(file_.document.child(topology_, "DataItem"), must_count ? Depth::arrays : depth_);
         if (!values) return values.error();
         if (!listed) return uniform_cells(*element, count, *values);
         if (count) mesh_.cells = *count;
@@ -210,9 +209,9 @@ private:
     Result<void> uniform_cells(const XdmfElement& element, std::optional<std::uint64_t> count,
                                const ShapedValues& values) {
         const std::uint64_t usual = element.type == 2 ? 1 : element.type == 4 ? 2 : 0; // vertices, lines
-        const std::uint64_t corners = element.corners != 0
-                                          ? element.corners
-                                          : topology_.attribute("NodesPerElement").as_uint(static_cast<unsigned>(usual));
+        const std::uint64_t corners =
+            element.corners != 0 ? element.corners
+                                 : topology_.attribute("NodesPerElement").as_uint(static_cast<unsigned>(usual));
         if (corners == 0 || values.count() % corners != 0)
             return wrong(fmt::format("{} corners of cells are no multiple of {}", values.count(), corners));
         mesh_.cells = values.count() / corners;

@@ -21,8 +21,7 @@ constexpr std::size_t corners_of_uniform_cells[] = {4, 8, 8, 6, 5}; // tetrahedr
 class SortedCorners {
 public:
     explicit SortedCorners(const Cells& cells)
-        : cells_(cells),
-          uniform_(corners_of_uniform_cells[static_cast<std::size_t>(cells.uniform_type) - 10]) {}
+        : cells_(cells), uniform_(corners_of_uniform_cells[static_cast<std::size_t>(cells.uniform_type) - 10]) {}
 
     /// Nothing where offsets leave the connectivity.
     std::optional<std::vector<std::uint64_t>> of(std::size_t cell) const {

@@ -14,9 +14,9 @@
 namespace isotet::io::vtk {
 namespace {
 
-constexpr int deepest_grid = 16;                      ///< collections in collections
-constexpr std::size_t max_grids = 1000000;            ///< each as often as it is referred to
-constexpr std::size_t max_grids_of_steps = 10000000;  ///< those of all steps together
+constexpr int deepest_grid = 16;                     ///< collections in collections
+constexpr std::size_t max_grids = 1000000;           ///< each as often as it is referred to
+constexpr std::size_t max_grids_of_steps = 10000000; ///< those of all steps together
 
 using Sequence = std::vector<XdmfStep>;
 
@@ -33,18 +33,20 @@ public:
             for (const pugi::xml_node grid : document_.children(domain, "Grid")) stated.push_back(grid);
         Place place;
         if (stated.size() == 1) place.names_collections = Naming::inner;
-        auto steps = beside_each_other(stated, place);
+        auto steps = beside_each_other(stated, place, Times::own);
         if (!steps) return steps.error();
         result_.steps = *std::move(steps);
         if (result_.grids.empty())
-            return broken(path_, result_.left_out.empty() ? "its Domain has no grid"
-                                                          : "it has no grid that is read: " +
-                                                                result_.left_out.front().reason);
+            return broken(path_, result_.left_out.empty()
+                                     ? "its Domain has no grid"
+                                     : "it has no grid that is read: " + result_.left_out.front().reason);
         return std::move(result_);
     }
 
 private:
     enum class Naming { all, inner };
+    /// of_all: what is around grids has a time, so theirs do not matter unless they have several.
+    enum class Times { own, of_all };
     /// Where a grid is.
     struct Place {
         std::string before; ///< what its name begins with
@@ -58,8 +60,7 @@ private:
             return broken(path_, fmt::format("grids are nested more than {} deep", deepest_grid));
         if (++visited_ > max_grids) return broken(path_, "its grids refer to each other without end");
         const pugi::xml_node grid = document_.resolve(stated);
-        if (!grid)
-            return broken(path_, fmt::format("grid \"{}\" refers to nothing", escaped(name_of_grid(stated))));
+        if (!grid) return broken(path_, fmt::format("grid \"{}\" refers to nothing", escaped(name_of_grid(stated))));
         const std::string_view type = grid.attribute("GridType").as_string("Uniform");
         if (same_word(type, "Uniform")) return uniform(grid, place);
         if (same_word(type, "Collection") && same_word(grid.attribute("CollectionType").as_string(), "Temporal"))
@@ -68,14 +69,14 @@ private:
             Place inside{place.before, {}, place.depth + 1, Naming::all};
             const std::string own = place.series.empty() ? name_of_grid(grid) : std::string();
             if (!own.empty() && place.names_collections == Naming::all) inside.before += own + "/";
-            auto steps = beside_each_other(document_.children(grid, "Grid"), inside);
-            if (!steps) return steps;
-            if (const auto time = time_of(grid); time && steps->size() == 1) steps->front().time = time;
+            const auto time = time_of(grid);
+            auto steps = beside_each_other(document_.children(grid, "Grid"), inside, time ? Times::of_all : Times::own);
+            if (steps && time && steps->size() == 1) steps->front().time = time;
             return steps;
         }
-        result_.left_out.push_back({"grid", name_of_grid(grid),
-                                    fmt::format("its type is \"{}\", but Uniform, Collection and Tree are read",
-                                                escaped(type))});
+        result_.left_out.push_back(
+            {"grid", name_of_grid(grid),
+             fmt::format("its type is \"{}\", but Uniform, Collection and Tree are read", escaped(type))});
         return Sequence();
     }
 
@@ -105,20 +106,21 @@ private:
         return all;
     }
 
-    Result<Sequence> beside_each_other(const std::vector<pugi::xml_node>& stated, const Place& place) {
+    Result<Sequence> beside_each_other(const std::vector<pugi::xml_node>& stated, const Place& place, Times times) {
         Place inside = place;
         ++inside.depth;
         std::vector<Sequence> sequences;
-        bool has_times = false;
+        bool has_times = false, has_series = false;
         for (const pugi::xml_node grid : stated) {
             auto steps = sequence_of(grid, inside);
             if (!steps) return steps;
             if (steps->empty()) continue;
             has_times = has_times || steps->front().time;
+            has_series = has_series || steps->size() > 1;
             sequences.push_back(*std::move(steps));
         }
         if (sequences.size() == 1) return std::move(sequences.front());
-        return has_times ? by_time(sequences) : at_once(sequences);
+        return has_times && (times == Times::own || has_series) ? by_time(sequences) : at_once(sequences);
     }
 
     Result<Sequence> at_once(const std::vector<Sequence>& sequences) {
