@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "io/own/escape.hpp"
+#include "io/own/read_frd.hpp"
 #include "io/own/read_gmsh.hpp"
 #include "io/own/read_gocad.hpp"
 #include "io/own/read_grdecl.hpp"
@@ -218,6 +219,20 @@ Result<ReadResult> read_gocad_file(const std::string& path, const ReadOptions& o
                                  [&](std::string_view text) { return parse_gocad(text, options, progress); });
 }
 
+int recognizes_frd(std::string_view head, std::string_view extension) {
+    return by_content_or_name(looks_like_frd(head), extension == ".frd");
+}
+
+Result<FileInfo> inspect_frd_file(const std::string& path, const ReadOptions&, const Progress& progress) {
+    return with_file<FileInfo>(path, progress, WholeFile::all,
+                               [&](std::string_view text) { return inspect_frd(text, progress); });
+}
+
+Result<ReadResult> read_frd_file(const std::string& path, const ReadOptions& options, const Progress& progress) {
+    return with_file<ReadResult>(path, progress, WholeFile::all,
+                                 [&](std::string_view text) { return parse_frd(text, options, progress); });
+}
+
 Format grid_format(const char* name, const char* title, std::vector<std::string> extensions) {
     Format format{name, title, std::move(extensions)};
     format.reads_grid = true;
@@ -242,6 +257,8 @@ std::span<const GridReader> own_readers() {
                                              recognizes_tetgen, inspect_tetgen_files, read_tetgen_files},
                                   GridReader{grid_format("gocad", "Gocad TSolid", {".so"}), recognizes_gocad,
                                              inspect_gocad_file, read_gocad_file},
+                                  GridReader{grid_format("frd", "CalculiX results", {".frd"}), recognizes_frd,
+                                             inspect_frd_file, read_frd_file},
                               });
         return all;
     }();
