@@ -88,7 +88,9 @@ not be; a triangle with two equal corners; a triangle that occurs twice in the s
 Where edges must be used equally often: with --closed everywhere; with --grid everywhere except on edges whose grid
 points all lie in one boundary face of the grid's valid tets; with neither they are only counted. --grid needs the
 point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vtk, and excuses a repeated triangle on
-a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points.
+a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points. Where
+quadratic cells were refined for the surface, -i and the tolerances say how, as for isotet extract: all isovalues of
+that call. Their points are derived again.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
@@ -285,7 +287,7 @@ void add_extract(const Command& program, ExtractCommand& extract) {
         .excludes(command.option("--time"))
         .excludes(command.option("--step"));
     add_surface_arrays(command, extract);
-    add_refinement(command, extract.refine);
+    add_refinement(command, extract.refine, &extract.refine_averaged);
     command.add_value(
         "--piece", [&](const std::string& text) { extract.piece = parse_piece(text); }, "K/N",
         "Only piece K, from 1, of N: the surfaces of all N together are that of the whole grid, bit for bit");
@@ -387,6 +389,9 @@ void add_check(const Command& program, CheckCommand& check) {
     command.option("--cell-field").needs(grid);
     add_time(command, check.grid);
     command.add_flag("--split-cells", check.split_cells, "The surface was made with --split-cells").needs(grid);
+    add_isovalues(command, check.isovalues).needs(grid);
+    add_refinement(command, check.refine, &check.refine_averaged);
+    for (const char* name : {"--tolerance", "--distance", "--geometry-tolerance"}) command.option(name).needs(grid);
     command.add_flag("--strict", check.strict, "Fail for more: see below");
     command.add_text("--format", check.format, "FORMAT", "Format of the surface; default: the name decides");
     add_reading(command, check.grid, "--grid-format");
@@ -480,7 +485,7 @@ void add_device(const Command& command, DeviceChoice& choice) {
         "graphics card");
 }
 
-void add_refinement(const Command& command, RefineChoice& refine) {
+void add_refinement(const Command& command, RefineChoice& refine, bool* asked) {
     const auto number = [](const std::string& name, const std::string& text, std::size_t size, const char* rule) {
         double value = 0;
         const char* const end = text.data() + size;
@@ -493,8 +498,9 @@ void add_refinement(const Command& command, RefineChoice& refine) {
     const auto given = std::make_shared<bool>(false);
     command.add_value(
         "--tolerance",
-        [&refine, number, given](const std::string& text) {
+        [&refine, number, given, asked](const std::string& text) {
             *given = true;
+            if (asked) *asked = true;
             if (text == "nodes") {
                 refine.reset();
                 return;
@@ -506,11 +512,12 @@ void add_refinement(const Command& command, RefineChoice& refine) {
         },
         "T|P%|nodes",
         "Quadratic cells: largest error of the field, in its unit or in % of its range, default: 0.1%; nodes splits "
-        "cells at their nodes, without a bound");
+        "cells at their nodes, without a bound, as by default for fields that are averaged from cells");
     const auto add_length = [&](const std::string& name, auto set, const char* help) {
         command.add_value(
             name,
-            [&refine, number, name, set](const std::string& text) {
+            [&refine, number, name, set, asked](const std::string& text) {
+                if (asked) *asked = true;
                 const double value = number(name, text, text.size(), "a number above 0");
                 if (!refine)
                     refuse_value(name, text, "a distance only where cells are refined: not with --tolerance nodes");

@@ -18,7 +18,8 @@ Command add_bench_command(const Command& program, BenchCommand& bench);
 Option add_field(const Command& command, FieldChoice& field, const std::string& description);
 void add_centre(const Command& command, FieldChoice& field);
 Option add_isovalues(const Command& command, std::vector<double>& isovalues);
-void add_refinement(const Command& command, RefineChoice& refine);
+/// `asked`   becomes true with any of the options; may be null
+void add_refinement(const Command& command, RefineChoice& refine, bool* asked = nullptr);
 void add_device(const Command& command, DeviceChoice& device);
 void add_device_memory(const Command& command, DeviceChoice& device);
 

@@ -174,7 +174,7 @@ class Grid:
         frame
             The grid is a piece of one with this frame: its surface is a part of the surface of the whole, bit for bit.
         tolerance
-            Curved cells are refined until the field is within this of their quadratic one: a number in its unit, or "0.1%" of its
+            Curved cells are refined until the field is within this of their own: a number in its unit, or "0.1%" of its
             range; `Surface.field_bound` is what was reached. None: they are split at their nodes, without a bound.
         geometry_tolerance
             With `tolerance`: the tets are at most this far from the curved cells. 0: edges leave them by a hundredth of their

@@ -134,7 +134,7 @@ class Surface:
 
     @property
     def field_bound(self) -> float | None:
-        """With `tolerance`, where there are curved cells: how far the field is at most from their quadratic one. Else None."""
+        """With `tolerance`, where there are curved cells: how far the field is at most from their own. Else None."""
         return self._how.get("field_bound")
 
     @property

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include <isotet/jobs/output_names.hpp>
+#include <isotet/linear_cells.hpp>
 #include <isotet/read.hpp>
 
 #include "jobs/refuse.hpp"
@@ -46,6 +48,44 @@ Result<Origin> read_origin(const CheckJob& job, Caller& caller) {
     return origin;
 }
 
+/// What a surface of several isovalues tells of them.
+std::vector<double> isovalues_of(const Surface& surface) {
+    std::vector<double> out;
+    for (const Field& field : surface.cell_fields) {
+        if (field.name != "isovalue" || field.values.components() != 1) continue;
+        for (std::size_t i = 0; i < field.values.tuples(); ++i)
+            if (const double value = field.values.at(i); out.empty() || out.back() != value) out.push_back(value);
+    }
+    std::ranges::sort(out);
+    const auto repeated = std::ranges::unique(out);
+    out.erase(repeated.begin(), repeated.end());
+    return out;
+}
+
+/// The grid with its curved cells refined as for the surface, where they were.
+Result<Origin> refined_origin(Origin origin, const CheckJob& job, const Surface& surface, const Run& run) {
+    if (!job.refine || !origin.field || !has_curved_cells(origin.grid.cells)) return origin;
+    if (origin.field->averaged && !job.refine_averaged) return origin;
+    RefineOptions options = *job.refine;
+    options.isovalues = job.isovalues.empty() ? isovalues_of(surface) : job.isovalues;
+    if (options.isovalues.empty()) return origin;
+    const auto linear = refine(origin.grid, *origin.field, options, run);
+    if (!linear) return linear.error();
+    auto values = linear->extend(origin.field->values, run);
+    if (!values) return values.error();
+    origin.field->values = *std::move(values);
+    origin.grid = linear->grid;
+    return origin;
+}
+
+/// Points that the grid does not have are of curved cells that were refined.
+Error with_advice(Error error, const CheckJob& job, bool curved) {
+    if (curved && error.code == ErrorCode::invalid_data && job.isovalues.empty())
+        error.message += "; where curved cells were refined, `isovalue` and `tolerance` must be given as for extracting, "
+                         "so that the points are derived again";
+    return error;
+}
+
 /// All surfaces as one, of the format of the first.
 Result<SurfaceFile> read_surfaces(const CheckJob& job, Caller& caller) {
     std::vector<std::string> inputs{job.surface, job.grid.file};
@@ -75,6 +115,7 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
     options.closed = job.closed;
     options.weld = file->format == "stl" || !job.more.empty(); // without vertex numbers that say what is the same
     std::optional<Origin> origin;
+    bool curved = false;
     if (!job.grid.file.empty()) {
         if (file->surface.edge_ends.empty() && file->surface.vertex_count() > 0)
             return refusal("{} has no point array edge_ends, but `grid` needs it: isotet extract `edge_ends` writes it "
@@ -82,13 +123,16 @@ Result<CheckedFiles> check_files(const CheckJob& job, Caller& caller) {
                            job.surface);
         Result<Origin> read = read_origin(job, caller);
         if (!read) return read.error();
+        curved = has_curved_cells(read->grid.cells);
+        read = refined_origin(*std::move(read), job, file->surface, caller.run());
+        if (!read) return read.error();
         origin = *std::move(read);
         options.grid = &origin->grid;
         options.split_cells = job.split_cells;
         if (origin->field) options.field = &*origin->field;
     }
     Result<SurfaceReport> report = check(file->surface, options, caller.run());
-    if (!report) return report.error();
+    if (!report) return with_advice(report.error(), job, curved);
     const bool passed = report->sound && (report->clean || !job.strict);
     return CheckedFiles{*std::move(report), file->format, passed};
 }

@@ -250,6 +250,13 @@ Result<bool> ExtractRun::load(std::size_t step) {
     numbers_.read_seconds += reading.seconds();
     numbers_.cells = static_cast<std::size_t>(cells_in_file->value_or(grid_.cells.count()));
     numbers_.averaged = field->averaged;
+    if (field->averaged && plan_.contour.refine && !job_.refine_averaged) {
+        plan_.contour.refine.reset();
+        if (has_curved_cells(grid_.cells))
+            caller_.note(fmt::format("field '{}' is averaged from cells: curved cells are split at their nodes only, "
+                                     "which is what its accuracy is worth, unless a tolerance is given",
+                                     field->name));
+    }
     field_ = field->values;
     coarse_tets_ = 0;
     ContourInput input{grid_, *std::move(field), std::move(fields->point), std::move(fields->cell)};

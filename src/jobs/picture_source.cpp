@@ -330,6 +330,7 @@ Result<DrawInput> PictureSource::read(std::size_t which, const std::optional<Dev
     options.draw = job_.method.draw;
     options.split_cells = job_.split_cells;
     options.refine = job_.refine;
+    if (options.field.averaged && !job_.refine_averaged) options.refine.reset();
     options.index = job_.index.value_or(default_index);
     options.picture = job_.picture;
     options.where = job_.engine == EngineChoice::vulkan ? ExtractOn::device

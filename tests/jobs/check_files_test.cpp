@@ -22,6 +22,31 @@ std::string extracted(const test::TemporaryFolder& folder, double isovalue, bool
     return extract_files(job, listener).value().surfaces[0].file;
 }
 
+TEST(CheckFiles, DerivesThePointsOfRefinedCellsAgain) {
+    const test::TemporaryFolder folder;
+    for (const char* shape : {"make:tet10:2:sphere", "make:hex27:2:sphere"}) {
+        Listener listener;
+        ExtractJob extract;
+        extract.grid.file = shape;
+        extract.out = folder.file("refined.vtp");
+        extract.isovalues = {0.5, 0.7};
+        extract.refine->relative_tolerance = 0.01;
+        extract.edge_ends = true;
+        CheckJob job;
+        job.surface = extract_files(extract, listener).value().surfaces[0].file;
+        job.grid.file = shape;
+        job.refine = extract.refine;
+        const CheckedFiles checked = check_files(job, listener).value(); // the file has its isovalues
+        EXPECT_TRUE(checked.passed) << shape;
+        EXPECT_EQ(checked.report.blamed_edges, 0u);
+        EXPECT_GT(checked.report.triangles, 100u);
+        job.refine.reset();
+        const auto at_nodes = check_files(job, listener);
+        ASSERT_FALSE(at_nodes) << "other points";
+        EXPECT_NE(at_nodes.error().message.find("derived again"), std::string::npos) << at_nodes.error().message;
+    }
+}
+
 TEST(CheckFiles, JudgesAgainstTheGrid) {
     const test::TemporaryFolder folder;
     Listener listener;

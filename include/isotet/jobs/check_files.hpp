@@ -2,12 +2,14 @@
 // Surfaces in files, measured and judged: what `isotet check` does.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <isotet/check.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
+#include <isotet/refine.hpp>
 
 namespace isotet::jobs {
 
@@ -21,6 +23,12 @@ struct CheckJob {
     bool split_cells = false;
     GridOptions grid; ///< that the surface was extracted from; `file` is empty without one
     FieldChoice field;
+    /// Of a grid with curved cells: as they were refined for the surface, so that its points are derived again.
+    std::optional<RefineOptions> refine = RefineOptions{};
+    bool refine_averaged = false;
+    /// All that were extracted together; empty: those of the cell field `isovalue` of a file with several, else the cells
+    /// are taken at their nodes.
+    std::vector<double> isovalues;
 };
 
 struct CheckedFiles {

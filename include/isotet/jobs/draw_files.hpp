@@ -72,6 +72,7 @@ struct DrawJob {
     double threshold = 0.001; ///< share of its pixels that may differ
     DeviceChoice device;
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
+    bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
 };
 
 /// What is drawn, of the last step.

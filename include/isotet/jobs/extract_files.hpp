@@ -54,6 +54,7 @@ struct ExtractJob {
     std::optional<PieceOf> piece;
     Compression compression = Compression::none;
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
+    bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
     std::optional<SolidChoice> solid;                      ///< nothing: isosurfaces
 };
 
