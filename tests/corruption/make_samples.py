@@ -320,6 +320,98 @@ def write_xdmf_series(path):
         file['f/cells'] = numpy.array([[0], [1]])
 
 
+def write_legacy_polyhedra(path, version, binary):
+    writer = vtk.vtkUnstructuredGridWriter()
+    writer.SetInputData(vtk_polyhedra(0, SIDE ** 3))
+    writer.SetFileName(path)
+    writer.SetFileVersion(version)
+    writer.SetFileType(vtk.VTK_BINARY if binary else vtk.VTK_ASCII)
+    if writer.Write() != 1:
+        raise RuntimeError(path)
+
+
+def write_gmsh(path, binary):
+    """4.1 binary or 4.0 ascii, in two partitions, with values at nodes, in elements and at nodes of elements."""
+    points, cells = box()
+    out = []
+    put = lambda code, *values: out.append(struct.pack(f'<{len(values)}{code}', *values) if binary else
+                                           ''.join(f'{value} ' for value in values).encode())
+    text = lambda words: out.append(words.encode())
+    ints = lambda *values: put('i', *values)
+    counts = lambda *values: put('q', *values)
+    tags = counts if binary else ints
+    reals = lambda *values: put('d', *values)
+    line = lambda: None if binary else text('\n')
+    block = lambda dimension, entity: ints(dimension, entity) if binary else ints(entity, dimension)
+    text(f'$MeshFormat\n{"4.1 1" if binary else "4 0"} 8\n')
+    if binary:
+        ints(1)
+    text('\n$EndMeshFormat\n$PhysicalNames\n1\n3 8 "box"\n$EndPhysicalNames\n$Entities\n')
+    counts(0, 0, 0, 1)
+    ints(1)
+    reals(0, 0, 0, SIDE, SIDE, SIDE)
+    counts(1)
+    ints(8)
+    counts(0)
+    text('\n$EndEntities\n$PartitionedEntities\n')
+    counts(2, 1)
+    ints(9, 1)
+    counts(0, 0, 0, 2)
+    for volume in (5, 6):
+        ints(volume, 3, 1)
+        counts(1)
+        ints(volume - 4)
+        reals(0, 0, 0, SIDE, SIDE, SIDE)
+        counts(1)
+        ints(8)
+        counts(0)
+    text('\n$EndPartitionedEntities\n$Nodes\n')
+    counts(1, len(points), *((1, len(points)) if binary else ()))
+    block(3, 5)
+    ints(0)
+    counts(len(points))
+    if binary:
+        counts(*range(1, len(points) + 1))
+    for number, point in enumerate(points):
+        if not binary:
+            ints(number + 1)
+        reals(*point)
+    text('\n$EndNodes\n$Elements\n')
+    half = len(cells) // 2
+    counts(2, len(cells), *((1, len(cells)) if binary else ()))
+    line()
+    for volume, first, end in ((5, 0, half), (6, half, len(cells))):
+        block(3, volume)
+        ints(5)
+        counts(end - first)
+        line()
+        for number in range(first, end):
+            tags(number + 1, *cells[number])
+            line()
+    text('\n$EndElements\n')
+    for kind, count in (('NodeData', len(points)), ('ElementData', len(cells)), ('ElementNodeData', len(cells))):
+        text(f'${kind}\n1\n"{kind}"\n1\n0\n3\n0\n1\n{count}\n')
+        for number in range(1, count + 1):
+            ints(number, *((8,) if kind == 'ElementNodeData' else ()))
+            reals(*[(number * 7 % 11 + i) / 10 for i in range(8 if kind == 'ElementNodeData' else 1)])
+        text(f'\n$End{kind}\n')
+    with open(path, 'wb') as file:
+        file.write(b''.join(out))
+
+
+def write_medit(folder):
+    points, cells = box()
+    line = lambda items: ' '.join(f'{item:g}' for item in items) + '\n'
+    write_files(folder, {
+        'cells.mesh': ('MeshVersionFormatted 2\nDimension 3\n' + f'Vertices\n{len(points)}\n' +
+                       ''.join(line([*point, 0]) for point in points) + f'Hexahedra\n{len(cells)}\n' +
+                       ''.join(line([*cell, 1]) for cell in cells) + 'End\n').encode(),
+        'cells.sol': ('MeshVersionFormatted 2\nDimension 3\n' + f'SolAtVertices\n{len(points)}\n1 1\n' +
+                      ''.join(line([i * 7 % 11]) for i in range(len(points))) + f'SolAtHexahedra\n{len(cells)}\n2 1 2\n' +
+                      ''.join(line([i * 7 % 11, i, 0, 1]) for i in range(len(cells))) + 'End\n').encode(),
+    })
+
+
 def main():
     folder = sys.argv[1]
     os.makedirs(folder, exist_ok=True)
@@ -341,6 +433,12 @@ def main():
     write_openfoam(at('openfoam'))
     os.makedirs(at('corner_points'), exist_ok=True)
     write_corner_points(at('corner_points'))
+    os.makedirs(at('meshes'), exist_ok=True)
+    write_legacy_polyhedra(at('meshes/polyhedra_42.vtk'), 42, False)
+    write_legacy_polyhedra(at('meshes/polyhedra_51.vtk'), 51, True)
+    write_gmsh(at('meshes/partitioned_v40.msh'), False)
+    write_gmsh(at('meshes/partitioned_v41.msh'), True)
+    write_medit(at('meshes'))
 
 
 if __name__ == '__main__':

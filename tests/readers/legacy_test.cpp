@@ -408,6 +408,12 @@ TEST(ReadLegacyPlanes, AreToldAsWhatTheyAre) {
               ": a single point" + end);
 }
 
+TEST(ReadLegacyStructured, WhoseOnlyFieldIsShorterThanItsDimensionsIsRefused) {
+    EXPECT_EQ(error_in_legacy("# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 60000 60000 "
+                              "60000\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 2\nSCALARS s float\n1 2\n"),
+              "point field 's' cannot be read: it has 2 values, but the grid has 216000000000000 points");
+}
+
 TEST(ReadLegacyNotes, NameWhatIsLeftOutAndAskingForItIsAnErrorWithTheReason) {
     const TemporaryFolder folder;
     const std::string path = folder.write("odd.vtk", LegacyText(false)

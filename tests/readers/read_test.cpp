@@ -108,6 +108,17 @@ TEST_F(ReadFile, InUtf16IsNamedAsThat) {
     }
 }
 
+TEST_F(ReadFile, ThatIsPackedOrAPointerOrOfAnotherProgramIsNamed) {
+    const auto message = [&](const std::string& name, std::string_view content) {
+        const auto result = read(write(name, content));
+        return result ? "no error" : result.error().message;
+    };
+    EXPECT_NE(message("a.vtu.gz", "\x1f\x8b\x08 and more").find("is packed by gzip"), std::string::npos);
+    EXPECT_NE(message("a.vtu", "version https://git-lfs.github.com/spec/v1\noid").find("is a pointer of Git LFS"),
+              std::string::npos);
+    EXPECT_NE(message("a.inp", "\n** made\n*NODE\n").find("Abaqus or CalculiX"), std::string::npos);
+}
+
 TEST_F(ReadFile, ThatIsNoPlainFileOrEmptyIsAnError) {
     EXPECT_EQ(read(path("missing.msh")).error().code, ErrorCode::file);
     EXPECT_EQ(read(write("empty.msh", "")).error().code, ErrorCode::file);

@@ -38,6 +38,50 @@ TEST(ReadUcd, GivesPointsCellsAndFields) {
     EXPECT_EQ(grid.cell_fields[1].values.at(1), 1.5);
 }
 
+TEST(ReadUcd, IsRecognizedBehindCommentsAndEmptyLinesByBothEndings) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.inp", "a.avs"})
+        for (const char* before : {"", "\n", "  # by hand\n\n# again\n \r\n"}) {
+            const auto info = inspect(folder.write(name, before + ucd));
+            ASSERT_TRUE(info) << info.error().message;
+            EXPECT_EQ(info->format, "ucd");
+        }
+    const auto abaqus = inspect(folder.write("b.inp", "** made\n*HEADING\n*NODE\n1, 0, 0, 0\n"));
+    ASSERT_FALSE(abaqus);
+    EXPECT_NE(abaqus.error().message.find("Abaqus"), std::string::npos) << abaqus.error().message;
+}
+
+TEST(ReadUcd, PutsCellValuesToTheirNumbers) {
+    const TemporaryFolder folder;
+    const auto loads = [&](const std::string& values) {
+        std::string text = ucd;
+        text.replace(text.find("1 0.5\n2 1.5\n"), 12, values);
+        const auto result = read(folder.write("a.inp", text));
+        return result ? std::vector<double>{result->grid.cell_fields.at(1).values.at(0),
+                                            result->grid.cell_fields.at(1).values.at(1)}
+                      : std::vector<double>{};
+    };
+    EXPECT_EQ(loads("2 0.5\n1 1.5\n"), (std::vector<double>{1.5, 0.5}));
+    EXPECT_EQ(loads("7 0.5\n8 1.5\n"), (std::vector<double>{0.5, 1.5})) << "numbers of their own: in order";
+    EXPECT_TRUE(loads("1 0.5\n8 1.5\n").empty());
+}
+
+TEST(ReadUcd, LeavesOutArraysWithoutNameAndRepeatedOnes) {
+    const TemporaryFolder folder;
+    std::string text = ucd;
+    text.replace(text.find("temp, K\nflow"), 12, ", K\nflow, x");
+    const auto unnamed = read(folder.write("a.inp", text));
+    ASSERT_TRUE(unnamed) << unnamed.error().message;
+    ASSERT_EQ(unnamed->grid.point_fields.size(), 1u);
+    EXPECT_EQ(unnamed->grid.point_fields[0].values.at(4, 1), 15);
+    EXPECT_EQ(unnamed->info.left_out.size(), 1u);
+    text.replace(text.find(", K"), 3, "flow");
+    const auto repeated = read(folder.write("a.inp", text));
+    ASSERT_TRUE(repeated) << repeated.error().message;
+    EXPECT_EQ(repeated->grid.point_fields.size(), 1u);
+    EXPECT_EQ(repeated->info.left_out.at(0).reason, "an earlier one has the same name");
+}
+
 TEST(ReadUcd, IsAnErrorForEveryTruncation) {
     const TemporaryFolder folder;
     for (std::size_t length = 20; length < ucd.size() - 3; length += 7)

@@ -174,6 +174,11 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     if (!step) return step.error();
     Piece piece;
     const bool structured = file->dataset != "unstructured_grid";
+    // If no field is as long as DIMENSIONS say, the file may be much smaller than such a grid.
+    if (structured && loaded.info.fields.empty() && !loaded.info.left_out.empty()) {
+        const LeftOut& first = loaded.info.left_out.front();
+        return invalid_data(fmt::format("{} {} cannot be read: {}", first.what, in_quotes(first.name), first.reason));
+    }
     if (structured) {
         if (auto taken = take_structured(*file, piece, loaded.notes); !taken) return taken.error();
     } else {

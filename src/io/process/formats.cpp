@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 // The formats that the reader program reads, and how each is recognized. src/io/vtk/loaders.cpp has its side.
+#include <algorithm>
 #include <array>
 
 #include "io/process/reader_process.hpp"
@@ -20,12 +21,12 @@ bool is_netcdf(Head head) {
     return head.size() > 3 && head.starts_with("CDF") && (head[3] == 1 || head[3] == 2 || head[3] == 5);
 }
 
-/// A line of `count` whole numbers first, as UCD has it; lines of comments start with '#'.
+/// A line of `count` whole numbers first, as UCD has it, behind empty lines and comments, which start with '#'.
 bool starts_with_numbers(Head head, int count) {
-    while (head.starts_with("#")) {
-        const auto end = head.find('\n');
-        if (end == Head::npos) return false;
-        head.remove_prefix(end + 1);
+    for (;;) {
+        head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
+        if (!head.starts_with("#")) break;
+        head.remove_prefix(std::min(head.find('\n'), head.size()));
     }
     const Head line = head.substr(0, head.find('\n'));
     int numbers = 0;
@@ -62,7 +63,7 @@ int recognizes_ensight(Head head, std::string_view extension) {
     return extension == ".case" || extension == ".encas" ? 1 : 0;
 }
 int recognizes_ucd(Head head, std::string_view extension) {
-    if (extension != ".inp") return 0; // Abaqus uses the name, too
+    if (extension != ".inp" && extension != ".avs") return 0; // Abaqus uses the first name, too
     return starts_with_numbers(head, 5) || head.starts_with("\x07") ? 2 : 0;
 }
 
@@ -96,7 +97,7 @@ const auto& table() {
         {"vtkhdf", recognizes_vtkhdf, "VTKHDF", {".hdf", ".vtkhdf"}},
         {"xdmf", recognizes_xdmf, "XDMF 2 and 3", {".xdmf", ".xmf"}},
         {"ensight", recognizes_ensight, "EnSight Gold and 6", {".case", ".encas"}},
-        {"ucd", recognizes_ucd, "AVS UCD", {".inp"}},
+        {"ucd", recognizes_ucd, "AVS UCD", {".inp", ".avs"}},
     }};
     return formats;
 }

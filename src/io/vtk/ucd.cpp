@@ -6,6 +6,7 @@
 //   number material type point...             for each cell
 //   arrays components...                      then "name, unit" for each array, then number value... for each point
 //   the same for cells
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -101,6 +102,7 @@ private:
             std::int64_t number = 0;
             std::int32_t material = 0;
             if (!next(number, "number of a cell") || !next(material, "material of a cell")) return false;
+            cell_numbers_.add(number);
             const std::string_view name = scanner_.word();
             const Element* element = nullptr;
             for (const Element& known : elements)
@@ -113,6 +115,7 @@ private:
             types.push_back(element->type);
             materials.push_back(material);
         }
+        cells_are_numbered_ = static_cast<bool>(cell_numbers_.close("cell"));
         grid().cells.connectivity = Array::own(std::move(connectivity));
         grid().cells.offsets = Array::own(std::move(offsets));
         grid().cells.types = Array::own(std::move(types));
@@ -151,8 +154,7 @@ private:
             std::int64_t number = 0;
             if (!next(number, "number of a line of values")) return false;
             std::uint64_t tuple = i;
-            if (association == Association::point && (tuple = numbers_.find(number)) == NumberMap::none)
-                return fail(fmt::format("values for point {}, which the file does not have,", number));
+            if (!place(association, number, tuple)) return false;
             for (Column& column : columns)
                 for (std::uint64_t c = 0; c < column.components; ++c) {
                     double value = 0;
@@ -161,9 +163,25 @@ private:
                 }
         }
         for (Column& column : columns) {
+            if (column.name.empty()) continue;
             if (column.wanted) keep(column.name, association, Array::own(std::move(column.values), column.components));
             else announce(loaded_.info, {column.name, association, ScalarType::float64, column.components});
         }
+        return true;
+    }
+    /// Some programs number the lines of cell values without regard to the numbers of the cells: then their order counts.
+    bool place(Association association, std::int64_t number, std::uint64_t& tuple) {
+        const bool point = association == Association::point;
+        if (!point && !cells_are_numbered_) return true;
+        const std::uint64_t found = point ? numbers_.find(number) : cell_numbers_.find(number);
+        if (found == NumberMap::none && !point && tuple == 0) {
+            cells_are_numbered_ = false;
+            return true;
+        }
+        if (found == NumberMap::none)
+            return fail(
+                fmt::format("values for {} {}, which the file does not have,", point ? "point" : "cell", number));
+        tuple = found;
         return true;
     }
     bool value_header(Association association, std::uint64_t stated, std::vector<Column>& columns) {
@@ -180,8 +198,16 @@ private:
             std::string_view name = scanner_.line();
             name = name.substr(0, name.find(','));
             while (!name.empty() && is_space(name.back())) name.remove_suffix(1);
-            if (name.empty()) return fail("name of an array expected");
-            columns.push_back({std::string(name), count, wanted(options_, association, name), {}});
+            if (scanner_.left() == 0) return fail("name of an array expected");
+            const std::string kind = association == Association::point ? "point field" : "cell field";
+            const bool repeated = std::ranges::find(columns, name, &Column::name) != columns.end();
+            if (name.empty()) leave_out(loaded_.info, {kind, "", "it has no name"});
+            else if (repeated) leave_out(loaded_.info, {kind, std::string(name), "an earlier one has the same name"});
+            const bool is_read = !name.empty() && !repeated;
+            columns.push_back({is_read ? std::string(name) : std::string(),
+                               count,
+                               is_read && wanted(options_, association, name),
+                               {}});
         }
         return true;
     }
@@ -199,7 +225,8 @@ private:
     Depth depth_;
     Loaded loaded_;
     Counts counts_;
-    NumberMap numbers_;
+    NumberMap numbers_, cell_numbers_;
+    bool cells_are_numbered_ = false;
     std::optional<Error> problem_;
 };
 
