@@ -63,10 +63,15 @@ public:
                const std::array<NodeValues, 3>& points)
         : cells_(user, before, tets), tets_(tets), of_{&field, &points[0], &points[1], &points[2]} {}
 
-    /// False where the quadratic tets are the cell.
-    bool take(std::uint64_t cell) {
+    /// For weights only: without values. False where the quadratic tets are the cell.
+    bool look_at(std::uint64_t cell) {
         cells_.find(cell, cell_);
-        if (!cell_.functions) return false;
+        return cell_.functions != nullptr;
+    }
+
+    /// The same, with the values.
+    bool take(std::uint64_t cell) {
+        if (!look_at(cell)) return false;
         finite_ = true;
         for (std::size_t k = 0; k < fields; ++k) {
             cell_.values(*of_[k], values_);
@@ -725,7 +730,7 @@ Result<OwnBounds> follow_own_functions(const Grid& user, LinearGrid& before, Qua
         for (std::size_t i = begin; i < end; ++i) {
             const PieceNode& node = nodes[i];
             if (const std::uint64_t cell = tets.sources[node.tet]; at_hand != cell) {
-                has_own = hand.take(cell);
+                has_own = hand.look_at(cell);
                 at_hand = cell;
             }
             std::array<std::uint32_t, 4> steps{};
