@@ -84,8 +84,8 @@ struct ReadOptions {
     bool skip_missing_fields = false; ///< names that the step does not have are passed over, else they are an error
     std::optional<std::size_t> step;  ///< index into FileInfo::times; nothing: the first, and of a case of OpenFOAM
                                       ///< inspect() tells the fields of all steps
-    bool merge_pieces_by_coordinates = true; ///< pieces without global ids: join points of different pieces with
-                                             ///< exactly equal coordinates, so that surfaces have no seams there
+    bool merge_pieces_by_coordinates = true; ///< join points of different pieces that are one (docs/pieces.md),
+                                             ///< so that surfaces have no seams there
     bool allow_outside = false;              ///< index files may name files outside their own folder
     std::string displace;                    ///< a point vector field to add to the coordinates
     std::string reader_program;              ///< the program isotet-reader; empty: the one beside the library or this

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <isotet/array.hpp>
+#include <isotet/export.hpp>
 
 #include "core/exact.hpp"
 
@@ -21,7 +22,7 @@ namespace isotet::core {
 ///
 /// Guarantees   the same for any thread count
 /// Cost         O(n log n), 40 bytes a point; more only where crowds of points are just out of each other's reach
-std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted,
+ISOTET_API std::vector<std::uint64_t> lowest_of_chain(const Array& points, const std::vector<std::uint8_t>& wanted,
                                            const Point& lower, double tolerance);
 
 } // namespace isotet::core

@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (loaded.error().message.empty() || loaded.error().code == ErrorCode::internal) std::abort();
         return 0;
     }
-    const auto joined = io::join(std::move(*loaded), true);
+    const auto joined = io::join(std::move(*loaded), {});
     test::expect_consistent(joined);
     return 0;
 }

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return io::vtk_xml::load(source, type.empty() ? "UnstructuredGrid" : type, {}, depth, true, {});
     };
     auto loaded = load(io::Depth::arrays);
-    const Result<ReadResult> result = loaded ? io::join(std::move(*loaded), false) : Result<ReadResult>(loaded.error());
+    const Result<ReadResult> result = loaded ? io::join(std::move(*loaded), {}) : Result<ReadResult>(loaded.error());
     if (!result) {
         if (result.error().message.empty() || result.error().code == ErrorCode::internal) std::abort();
         return 0;

@@ -539,14 +539,23 @@ TEST_F(ReadOpenfoamCase, TakesPackedFiles) {
 }
 
 TEST_F(ReadOpenfoamCase, RegionsAreJoined) {
-    FoamFiles files, fluid = foam_case(box_, wave, {});
-    for (const char* region : {"air", "iron"})
-        for (const auto& [name, content] : fluid) {
+    FoamFiles files;
+    FoamBox beside = box_;
+    double width = 0;
+    for (const auto& point : box_.points) width = std::max(width, point[0]);
+    std::size_t shared = 0;
+    for (auto& point : beside.points) {
+        shared += point[0] == 0;
+        point[0] += width;
+    }
+    for (const auto& [region, box] : {std::pair<const char*, const FoamBox*>("air", &box_), {"iron", &beside}})
+        for (const auto& [name, content] : foam_case(*box, wave, {})) {
             const std::size_t slash = name.find('/');
             files[name.substr(0, slash + 1) + region + name.substr(slash)] = content;
         }
     write_case(folder_, files);
     const Grid grid = read_whole(folder_.file(""));
+    EXPECT_EQ(grid.points.tuples(), 2 * box_.points.size() - shared);
     EXPECT_EQ(grid.cells.count(), 2 * box_.centres.size());
     EXPECT_EQ(field_of(grid.cell_fields, "T").tuples(), 2 * box_.centres.size());
 }

@@ -154,7 +154,7 @@ TEST(VtkXml, PiecesMustCoverAStructuredGrid) {
               "a piece reaches out of the whole extent");
 }
 
-TEST(VtkXml, PiecesOfOneFileAreAppended) {
+TEST(VtkXml, PiecesOfOneFileAreToldApart) {
     TetFile file;
     const std::string one = file.text();
     const auto begin = one.find("<Piece"), end = one.find("</Piece>") + 8;
@@ -162,11 +162,13 @@ TEST(VtkXml, PiecesOfOneFileAreAppended) {
     const std::string two = file.text();
     const auto loaded = io::vtk_xml::load(ByteSource(two), "UnstructuredGrid", {}, Depth::arrays, false, {});
     ASSERT_TRUE(loaded) << loaded.error().message;
-    const Grid& grid = loaded->pieces.at(0).grid;
-    EXPECT_EQ(grid.points.tuples(), 8U);
-    EXPECT_EQ(grid.cells.count(), 2U);
-    EXPECT_EQ(grid.cells.connectivity.at(4), 4);
-    EXPECT_EQ(grid.point_fields.at(0).values.at(7), 4);
+    ASSERT_EQ(loaded->pieces.size(), 2U);
+    for (const io::Piece& piece : loaded->pieces) {
+        EXPECT_EQ(piece.grid.points.tuples(), 4U);
+        EXPECT_EQ(piece.grid.cells.count(), 1U);
+        EXPECT_EQ(piece.grid.cells.connectivity.at(3), 3);
+        EXPECT_EQ(piece.grid.point_fields.at(0).values.at(3), 4);
+    }
 }
 
 TEST(VtkXml, ReadsBase64WithLineBreaks) {

@@ -136,7 +136,7 @@ Result<void> drop_left_out_cells(Piece& piece) {
     Piece& all = loaded.pieces.emplace_back();
     all.grid = std::move(piece.grid);
     all.left_out = std::exchange(piece.left_out, {});
-    auto rest = join(std::move(loaded), false); // its notes speak of ghost cells
+    auto rest = join(std::move(loaded), {}); // its notes speak of ghost cells
     if (!rest) return rest.error();
     piece.grid = std::move(rest->grid);
     drop_unused_points(piece);

@@ -18,17 +18,12 @@ Result<void> check_face_streams(const Cells& cells, std::uint64_t points);
 /// Cells one after another; those of checked pieces only.
 class FaceStreams {
 public:
+    /// The cells of a piece but those marked in `left_out`, which may be empty.
     template <class Number>
-    void add_cell(const Cells& cells, std::size_t cell, const Number& number) {
+    void add(const Cells& cells, const std::vector<std::uint8_t>& left_out, const Number& number) {
         const auto faces = core::FaceReader::open(cells);
-        add(*faces, cell, number);
-    }
-
-    /// All cells of a piece.
-    template <class Number>
-    void add(const Cells& cells, const Number& number) {
-        const auto faces = core::FaceReader::open(cells);
-        for (std::size_t cell = 0; cell < cells.count(); ++cell) add(*faces, cell, number);
+        for (std::size_t cell = 0; cell < cells.count(); ++cell)
+            if (left_out.empty() || left_out[cell] == 0) add_cell(*faces, cell, number);
     }
 
     /// Nothing where no cell has faces.
@@ -40,7 +35,7 @@ public:
 
 private:
     template <class Number>
-    void add(const core::FaceReader& faces, std::size_t cell, const Number& number) {
+    void add_cell(const core::FaceReader& faces, std::size_t cell, const Number& number) {
         std::uint64_t at = faces.begin(cell);
         const std::uint64_t end = faces.end(cell);
         if (at < end) stream_.push_back(static_cast<std::int64_t>(faces.at(at++))); // faces

@@ -1,354 +1,212 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/own/join.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
-#include <functional>
-#include <limits>
-#include <map>
-#include <optional>
-#include <unordered_map>
-#include <unordered_set>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "core/buffer.hpp"
-#include "io/own/common_type.hpp"
 #include "io/own/escape.hpp"
-#include "io/own/face_streams.hpp"
-#include "io/own/join.hpp"
+#include "io/own/joined_cells.hpp"
+#include "io/own/joined_fields.hpp"
+#include "io/own/piece_points.hpp"
 #include "io/own/point_numbers.hpp"
+#include "io/own/repeated_cells.hpp"
+#include "io/own/seams.hpp"
+#include "io/own/vtk_xml/uniform_cells.hpp"
 
 namespace isotet::io {
 namespace {
 
-constexpr int corners_of_uniform[] = {4, 8, 8, 6, 5}; // tetrahedron, voxel, hexahedron, wedge, pyramid
-
-/// The corners of the cells of a grid, whatever the types of its arrays.
-class CellView {
-public:
-    explicit CellView(const Cells& cells) : cells_(cells), count_(cells.count()) {
-        uniform_corners_ = corners_of_uniform[static_cast<int>(cells.uniform_type) - 10];
-    }
-    std::size_t count() const { return count_; }
-    std::uint8_t type(std::size_t cell) const {
-        return cells_.types.empty() ? static_cast<std::uint8_t>(cells_.uniform_type)
-                                    : cells_.types.as<std::uint8_t>()[cell];
-    }
-    std::int64_t begin(std::size_t cell) const {
-        if (cells_.offsets.empty()) return static_cast<std::int64_t>(cell) * uniform_corners_;
-        return cells_.offsets.visit([&](auto offsets) { return static_cast<std::int64_t>(offsets[cell]); });
-    }
-
-private:
-    const Cells& cells_;
-    std::size_t count_;
-    int uniform_corners_;
-};
-
-std::optional<std::string> misfit(const Piece& piece) {
-    const Cells& cells = piece.grid.cells;
-    if (piece.grid.points.components() != 3) return "its points do not have three coordinates";
-    if (cells.types.empty() && !cells.offsets.empty()) return "its cells have no types";
-    if (!cells.offsets.empty() && cells.offsets.tuples() != cells.types.tuples() + 1)
-        return fmt::format("it has {} cell types and {} offsets", cells.types.tuples(), cells.offsets.tuples());
-    if (cells.types.size() > 0 && cells.types.type() != ScalarType::uint8) return "its cell types are not bytes";
-    const std::size_t points = piece.grid.points.tuples(), count = cells.count();
-    for (const Field& field : piece.grid.point_fields)
-        if (field.values.tuples() != points)
-            return fmt::format("its point field \"{}\" has {} values for {} points", escaped(field.name),
-                               field.values.tuples(), points);
-    for (const Field& field : piece.grid.cell_fields)
-        if (field.values.tuples() != count)
-            return fmt::format("its cell field \"{}\" has {} values for {} cells", escaped(field.name),
-                               field.values.tuples(), count);
-    if (!piece.point_ids.empty() && piece.point_ids.size() != points) return "it does not have one number a point";
-    if (!piece.cell_ids.empty() && piece.cell_ids.size() != count) return "it does not have one number a cell";
-    if (!piece.left_out.empty() && piece.left_out.size() != count) return "it does not have one ghost mark a cell";
-    return std::nullopt;
+/// -1, 0, 1 by bytes, the shorter first.
+int compare_bytes(const Array& a, const Array& b) {
+    if (a.bytes() != b.bytes()) return a.bytes() < b.bytes() ? -1 : 1;
+    return a.bytes() == 0 ? 0 : std::memcmp(a.data(), b.data(), a.bytes());
 }
 
-/// For each piece the cells that stay; empty: all of them.
-struct KeptCells {
-    std::vector<std::vector<std::uint64_t>> cells;
-    std::uint64_t ghosts = 0, repeated = 0;
-};
+int compare_fields(const std::vector<Field>& a, const std::vector<Field>& b) {
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (const int order = a[i].name.compare(b[i].name); order != 0) return order;
+        if (const int order = compare_bytes(a[i].values, b[i].values); order != 0) return order;
+    }
+    return a.size() < b.size() ? -1 : a.size() > b.size();
+}
 
-KeptCells keep(const std::vector<Piece>& pieces) {
-    KeptCells result;
-    result.cells.resize(pieces.size());
-    const bool has_ids = pieces.size() > 1 && std::all_of(pieces.begin(), pieces.end(), [](const Piece& p) {
-                             return !p.cell_ids.empty() || p.grid.cells.count() == 0;
-                         });
-    std::unordered_map<std::uint64_t, std::size_t> owner; // global number -> the piece that had it first
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        const Piece& piece = pieces[p];
-        const std::size_t count = piece.grid.cells.count();
-        std::vector<std::uint64_t> kept;
-        kept.reserve(count);
-        const auto ghost = [&](std::size_t cell) { return !piece.left_out.empty() && piece.left_out[cell] != 0; };
-        const auto repeated = [&](std::uint64_t id) { return owner.try_emplace(id, p).first->second != p; };
-        const auto choose = [&](auto id_of) {
-            for (std::size_t cell = 0; cell < count; ++cell) {
-                if (ghost(cell)) ++result.ghosts;
-                else if (has_ids && repeated(id_of(cell))) ++result.repeated;
-                else kept.push_back(cell);
-            }
+/// By content, for pieces with one box: two that are equal are the same piece twice.
+int compare_content(const Piece& a, const Piece& b) {
+    if (const int order = compare_bytes(a.grid.points, b.grid.points); order != 0) return order;
+    if (const int order = compare_bytes(a.grid.cells.connectivity, b.grid.cells.connectivity); order != 0) return order;
+    if (const int order = compare_fields(a.grid.point_fields, b.grid.point_fields); order != 0) return order;
+    return compare_fields(a.grid.cell_fields, b.grid.cell_fields);
+}
+
+/// Pieces and what is known of their points; where each stands in the file.
+struct Pieces {
+    std::vector<Piece> pieces;
+    std::vector<std::vector<PointUse>> uses;
+    std::vector<Box> boxes;
+    std::vector<std::size_t> places; ///< in the file
+
+    std::size_t size() const { return pieces.size(); }
+
+    /// `order[i]` is the number of the piece that becomes the i-th.
+    void arrange(const std::vector<std::size_t>& order) {
+        const auto arranged = [&](auto& items) {
+            auto old = std::exchange(items, {});
+            for (const std::size_t i : order) items.push_back(std::move(old[i]));
         };
-        if (has_ids && count > 0)
-            piece.cell_ids.visit(
-                [&](auto ids) { choose([&](std::size_t cell) { return static_cast<std::uint64_t>(ids[cell]); }); });
-        else if (!piece.left_out.empty()) choose([](std::size_t) { return std::uint64_t(0); });
-        if (kept.size() != count && (has_ids || !piece.left_out.empty())) {
-            if (kept.empty()) kept.push_back(std::numeric_limits<std::uint64_t>::max()); // none at all
-            result.cells[p] = std::move(kept);
-        }
+        arranged(pieces);
+        arranged(uses);
+        arranged(boxes);
+        arranged(places);
     }
-    return result;
-}
-
-/// The cells of piece p that stay, one after another, through `visit(cell)`.
-template <class Visit>
-void each_kept(const KeptCells& kept, std::size_t p, std::size_t count, Visit visit) {
-    if (kept.cells[p].empty())
-        for (std::size_t cell = 0; cell < count; ++cell) visit(cell);
-    else
-        for (const std::uint64_t cell : kept.cells[p])
-            if (cell < count) visit(cell);
-}
-
-std::optional<std::string> append_cells(const Piece& piece, std::size_t p, const PointNumbers& numbers,
-                                        const KeptCells& kept, std::vector<std::int64_t>& connectivity,
-                                        std::vector<std::int64_t>& offsets, std::vector<std::uint8_t>& types,
-                                        FaceStreams& faces) {
-    const CellView cells(piece.grid.cells);
-    if (const auto sound = check_face_streams(piece.grid.cells, piece.grid.points.tuples()); !sound)
-        return sound.error().message;
-    const auto size = static_cast<std::int64_t>(piece.grid.cells.connectivity.size());
-    const std::uint64_t points = piece.grid.points.tuples();
-    std::optional<std::string> problem;
-    piece.grid.cells.connectivity.visit([&](auto corners) {
-        each_kept(kept, p, cells.count(), [&](std::size_t cell) {
-            const std::int64_t begin = cells.begin(cell), end = cells.begin(cell + 1);
-            if (problem || begin < 0 || end < begin || end > size) {
-                if (!problem) problem = fmt::format("cell {} has corners {} to {} of {}", cell, begin, end, size);
-                return;
-            }
-            for (std::int64_t i = begin; i < end; ++i) {
-                const auto point = static_cast<std::uint64_t>(corners[static_cast<std::size_t>(i)]);
-                if (point >= points) {
-                    problem = fmt::format("cell {} has point {}, but there are {} points", cell,
-                                          corners[static_cast<std::size_t>(i)], points);
-                    return;
-                }
-                connectivity.push_back(static_cast<std::int64_t>(numbers(p, point)));
-            }
-            offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-            types.push_back(cells.type(cell));
-            faces.add_cell(piece.grid.cells, cell, [&](std::uint64_t point) { return numbers(p, point); });
+    /// An order that the file does not decide.
+    std::vector<std::size_t> order_of_content() const {
+        std::vector<std::size_t> order(size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+            const auto key = [&](std::size_t i) {
+                return std::tuple(boxes[i].lower, boxes[i].upper, pieces[i].grid.points.tuples(),
+                                  pieces[i].grid.cells.count());
+            };
+            return key(a) != key(b) ? key(a) < key(b) : compare_content(pieces[a], pieces[b]) < 0;
         });
-    });
-    return problem;
-}
-
-struct Column {
-    std::string name;
-    ScalarType type = ScalarType::float64;
-    std::size_t components = 1;
-    std::size_t pieces = 0;           ///< how many have it
-    std::size_t other_components = 0; ///< of a piece where they are not `components`; else 0
+        return order;
+    }
+    std::vector<std::size_t> order_of_file() const {
+        std::vector<std::size_t> order(size());
+        for (std::size_t i = 0; i < size(); ++i) order[places[i]] = i;
+        return order;
+    }
 };
 
-using Fields = std::vector<Field> Grid::*;
-
-const Field* find(const std::vector<Field>& fields, const std::string& name) {
-    for (const Field& field : fields)
-        if (field.name == name) return &field;
-    return nullptr;
-}
-
-/// Pieces without points or cells have no values: they do not count.
-bool counts(const Piece& piece, Fields which) {
-    return which == &Grid::point_fields ? piece.grid.points.tuples() > 0 : piece.grid.cells.count() > 0;
-}
-
-std::size_t count_filled(const std::vector<Piece>& pieces, Fields which) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(pieces, [&](const Piece& piece) { return counts(piece, which); }));
-}
-
-std::vector<Column> columns(const std::vector<Piece>& pieces, Fields which) {
-    std::vector<Column> result;
-    const std::size_t filled = count_filled(pieces, which);
-    std::unordered_map<std::string, std::size_t> places;
-    for (const Piece& piece : pieces) {
-        if (filled > 0 && !counts(piece, which)) continue;
-        for (const Field& field : piece.grid.*which) {
-            const auto [place, is_new] = places.try_emplace(field.name, result.size());
-            if (is_new) result.push_back({field.name, field.values.type(), field.values.components(), 0, 0});
-            Column& column = result[place->second];
-            ++column.pieces;
-            column.type = common_type(column.type, field.values.type());
-            if (column.components != field.values.components()) column.other_components = field.values.components();
-        }
-    }
-    for (Column& column : result)
-        if (column.pieces < filled) column.type = with_missing(column.type);
-    return result;
-}
-
-/// Copies scalars of `size` bytes, tuple by tuple. `tuples_of(visit)` calls visit(tuple in the piece, tuple in the
-/// result).
-template <std::size_t size, class TuplesOf>
-void copy_tuples(const std::byte* from, std::byte* to, std::size_t components, const TuplesOf& tuples_of) {
-    tuples_of([&](std::size_t in_piece, std::size_t in_result) {
-        for (std::size_t c = 0; c < components; ++c)
-            std::memcpy(to + (in_result * components + c) * size, from + (in_piece * components + c) * size, size);
-    });
-}
-
-/// Puts the tuples of a piece's field to their places in a column, whose type holds them.
-template <class TuplesOf>
-void place_tuples(const Array& field, const Column& column, void* to, const TuplesOf& tuples_of) {
-    const std::size_t components = column.components;
-    const bool converts = field.type() != column.type;
-    core::Buffer<std::byte> converted(converts ? field.size() * size_of(column.type) : 0);
-    if (converts) convert_scalars(field, column.type, converted.data());
-    const auto* const bytes = converts ? converted.data() : static_cast<const std::byte*>(field.data());
-    auto* const places = static_cast<std::byte*>(to);
-    switch (size_of(column.type)) {
-    case 1: return copy_tuples<1>(bytes, places, components, tuples_of);
-    case 2: return copy_tuples<2>(bytes, places, components, tuples_of);
-    case 4: return copy_tuples<4>(bytes, places, components, tuples_of);
-    default: return copy_tuples<8>(bytes, places, components, tuples_of);
-    }
-}
-
-/// `tuples` x `components` scalars: NaN, or 0 of integers, before `fill(data)` writes to them.
-Array made_array(ScalarType type, std::size_t tuples, std::size_t components, const std::function<void(void*)>& fill) {
-    return Array(type, nullptr, 0, 1, nullptr).visit([&]<class T>(std::span<const T>) {
-        T missing{};
-        if constexpr (std::is_floating_point_v<T>) missing = std::numeric_limits<T>::quiet_NaN();
-        std::vector<T> values(tuples * components, missing);
-        fill(static_cast<void*>(values.data()));
-        return Array::own(std::move(values), components);
-    });
-}
-
-/// One field over all pieces. `tuples_of(p, visit)` calls visit(tuple in piece p, tuple in the result).
-template <class TuplesOf>
-Array joined_field(std::vector<Piece>& pieces, Fields which, const Column& column, std::size_t tuples,
-                   const TuplesOf& tuples_of) {
-    return made_array(column.type, tuples, column.components, [&](void* to) {
-        for (std::size_t p = pieces.size(); p-- > 0;) // where points were joined the first piece's value stays
-            if (const Field* field = find(pieces[p].grid.*which, column.name))
-                place_tuples(field->values, column, to, [&](const auto& visit) { tuples_of(p, visit); });
-    });
-}
-
-/// What was made of fields that not all pieces have alike; one note for all that are in as many pieces.
-void tell_columns(const std::vector<Column>& columns, std::size_t pieces, std::string_view kind, ReadResult& result) {
-    std::map<std::size_t, std::vector<std::string>> in_some; // by pieces
-    for (const Column& column : columns) {
-        if (column.other_components > 0)
-            leave_out(result.info, {fmt::format("{} field", kind), column.name,
-                                    fmt::format("it has {} component{} in one piece and {} in another",
-                                                column.components, column.components == 1 ? "" : "s",
-                                                column.other_components)});
-        else if (column.pieces < pieces) in_some[column.pieces].push_back(fmt::format("\"{}\"", escaped(column.name)));
-    }
-    for (const auto& [count, names] : in_some)
-        result.notes.push_back(fmt::format("{} field{} {} {} in {} of {} pieces only: NaN in the others", kind,
-                                           names.size() == 1 ? "" : "s", fmt::join(names, ", "),
-                                           names.size() == 1 ? "is" : "are", count, pieces));
-}
-
-/// Points that were joined though their values differ: a field that jumps from piece to piece.
-void note_jumps(const std::vector<Piece>& pieces, const PointNumbers& numbers, const Field& joined,
-                std::vector<std::string>& notes) {
-    const std::size_t components = joined.values.components();
-    std::size_t jumps = 0;
-    for (const auto& [piece, point] : numbers.joined_points) {
-        const Field* field = find(pieces[piece].grid.point_fields, joined.name);
-        bool same = true;
-        for (std::size_t c = 0; field && c < components; ++c) {
-            const double a = field->values.at(point, c), b = joined.values.at(numbers(piece, point), c);
-            same = same && (a == b || (a != a && b != b));
-        }
-        if (!same) ++jumps;
-    }
-    if (jumps > 0)
-        notes.push_back(
-            fmt::format("point field \"{}\" differs in {} points that were joined: the first piece's values "
-                        "were taken; --keep-pieces keeps them apart",
-                        escaped(joined.name), jumps));
-}
-
-template <class TuplesOf, class Look>
-std::vector<Field> joined_fields(std::vector<Piece>& pieces, Fields which, std::string_view kind, std::size_t tuples,
-                                 const TuplesOf& tuples_of, const Look& look, ReadResult& whole) {
-    std::vector<Field> result;
-    const std::vector<Column> all = columns(pieces, which);
-    tell_columns(all, count_filled(pieces, which), kind, whole);
-    for (const Column& column : all) {
-        if (column.other_components == 0) {
-            result.push_back({column.name, joined_field(pieces, which, column, tuples, tuples_of)});
-            look(result.back());
-        }
-        for (Piece& piece : pieces)
-            std::erase_if(piece.grid.*which, [&](const Field& field) { return field.name == column.name; });
+Result<Pieces> checked(std::vector<Piece> all) {
+    Pieces result;
+    result.pieces = std::move(all);
+    for (Piece& piece : result.pieces) {
+        auto use = check_piece(piece);
+        if (!use) return use.error();
+        result.uses.push_back(*std::move(use));
+        result.boxes.push_back(box_of(piece.grid.points, result.uses.back()));
+        result.places.push_back(result.places.size());
+        vtk_xml::simplify(piece.grid.cells);
     }
     return result;
 }
 
-PointNumbers number_points(const std::vector<Piece>& pieces, bool by_coordinates, std::vector<std::string>& notes) {
-    if (pieces.size() == 1) return number_one_after_another(pieces);
-    const bool have_ids = std::all_of(pieces.begin(), pieces.end(), [](const Piece& piece) {
-        return piece.point_ids.size() == piece.grid.points.tuples();
-    });
-    if (have_ids) {
-        if (auto numbers = number_by_ids(pieces)) {
-            notes.push_back(fmt::format("{} pieces joined by global point numbers: {} points were merged",
-                                        pieces.size(), numbers->joined));
-            return std::move(*numbers);
-        }
+bool is_empty(const Piece& piece) { return piece.grid.points.tuples() == 0 && piece.grid.cells.count() == 0; }
+
+std::uint64_t count_left_out(const std::vector<Piece>& pieces) {
+    std::uint64_t count = 0;
+    for (const Piece& piece : pieces)
+        count += static_cast<std::uint64_t>(std::ranges::count_if(piece.left_out, [](auto out) { return out != 0; }));
+    return count;
+}
+
+/// The tolerance in two digits, rounded up.
+std::string tolerance_text(double gap) {
+    if (gap == 0) return "0";
+    const double digit = std::pow(10, std::floor(std::log10(gap)) - 1);
+    return fmt::format("{:.2g}", (std::floor(gap / digit) + 1) * digit);
+}
+
+void note_seams(const Seams& seams, std::size_t pieces, double shortest_tolerance, std::vector<std::string>& notes) {
+    if (seams.ids == IdUse::wrong)
         notes.push_back("the global point numbers of the pieces mean different places and were not used");
-    }
-    if (by_coordinates) {
-        auto numbers = number_by_coordinates(pieces);
-        notes.push_back(fmt::format("{} pieces joined by equal coordinates: {} points were merged; --keep-pieces keeps "
-                                    "them apart",
-                                    pieces.size(), numbers.joined));
-        return numbers;
-    }
-    notes.push_back(
-        fmt::format("{} pieces without global point numbers lie side by side: surfaces have seams between them "
-                    "since points with equal coordinates were to be kept apart (--keep-pieces)",
-                    pieces.size()));
-    return number_one_after_another(pieces);
+    if (seams.ids == IdUse::unshared)
+        notes.push_back("no two pieces have a global point number in common, so these were not used");
+    notes.push_back(seams.ids == IdUse::trusted
+                        ? fmt::format("{} pieces joined by global point numbers: {} points were merged", pieces,
+                                      seams.joined.size())
+                        : fmt::format("{} pieces joined by equal coordinates: {} points were merged; --keep-pieces "
+                                      "keeps them apart",
+                                      pieces, seams.joined.size()));
+    if (seams.apart + seams.near == 0) return;
+    const std::string tolerance = tolerance_text(seams.gap > 0 ? std::max(seams.gap, shortest_tolerance) : 0);
+    if (seams.apart > 0)
+        notes.push_back(fmt::format(
+            "{} points lie at the place of another piece's {} and were kept apart; --merge-points {} joins them",
+            seams.apart,
+            seams.ids == IdUse::trusted ? "with another global number"
+                                        : "which has several there (a crack, or values that jump between cells)",
+            tolerance));
+    if (seams.near > 0)
+        notes.push_back(
+            fmt::format("{} points lie up to {:.2g} beside another piece's and were kept apart: surfaces have "
+                        "seams there; --merge-points {} joins them",
+                        seams.near, seams.gap, tolerance));
 }
 
-/// Narrow indices where they fit; no types and offsets where all cells are tetrahedra.
-Cells compact(std::vector<std::int64_t> connectivity, std::vector<std::int64_t> offsets,
-              std::vector<std::uint8_t> types) {
-    Cells cells;
-    if (std::all_of(types.begin(), types.end(), [](std::uint8_t type) { return type == 10; }) &&
-        connectivity.size() == 4 * types.size()) {
-        bool uniform = true;
-        for (std::size_t i = 0; i < offsets.size(); ++i)
-            uniform = uniform && offsets[i] == static_cast<std::int64_t>(4 * i);
-        if (uniform) {
-            cells.connectivity = Array::own(std::move(connectivity));
-            return cells;
-        }
-    }
-    cells.connectivity = Array::own(std::move(connectivity));
-    cells.offsets = Array::own(std::move(offsets));
-    cells.types = Array::own(std::move(types));
-    return cells;
+std::string names_of(const std::vector<Piece>& pieces, const std::vector<std::size_t>& some) {
+    constexpr std::size_t max_shown = 4;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(some.size(), max_shown); ++i)
+        list += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", escaped(pieces[some[i]].name));
+    if (some.size() > max_shown) list += fmt::format(" and {} more", some.size() - max_shown);
+    return list;
+}
+
+/// Which points are one, with the pieces in an order that the file does not decide.
+Result<Seams> seams_of(Pieces& all, const Progress& progress) {
+    all.arrange(all.order_of_content());
+    std::vector<SeamPiece> seam_pieces;
+    for (std::size_t p = 0; p < all.size(); ++p)
+        seam_pieces.push_back({all.pieces[p].grid.points, all.pieces[p].point_ids, all.uses[p], all.boxes[p]});
+    return find_seams(seam_pieces, progress);
+}
+
+PointNumbers numbers_of(const Pieces& all, const Seams& seams) {
+    std::vector<std::uint64_t> points;
+    for (const Piece& piece : all.pieces) points.push_back(piece.grid.points.tuples());
+    const bool drops = all.size() > 1;
+    return PointNumbers::make(points, drops ? std::span(all.uses) : std::span<const std::vector<PointUse>>(),
+                              seams.joined);
+}
+
+/// 2^-40 of the grid's length, the least tolerance that merge_points() takes, with room for rounding.
+double least_tolerance(const std::vector<Box>& boxes) {
+    Box whole;
+    double length = 0;
+    for (const Box& box : boxes) whole.add(box);
+    for (std::size_t axis = 0; axis < 3; ++axis) length = std::max(length, whole.upper[axis] - whole.lower[axis]);
+    return 0x1p-39 * length;
+}
+
+Result<void> leave_out_repeated(Pieces& all, const PointNumbers& numbers, std::vector<std::string>& notes,
+                                const Progress& progress) {
+    const auto repeated = leave_out_repeated(all.pieces, numbers, progress);
+    if (!repeated) return repeated.error();
+    if (repeated->left_out > 0)
+        notes.push_back(fmt::format("{} cells that an earlier piece has, too, were left out: pieces overlap, {}",
+                                    repeated->left_out, names_of(all.pieces, repeated->pieces)));
+    return {};
+}
+
+Result<void> join_arrays(Pieces& all, const PointNumbers& numbers, const Seams& seams, ReadResult& result,
+                         const Progress& progress) {
+    auto cells = join_cells(all.pieces, all.order_of_file(), numbers, progress);
+    if (!cells) return cells.error();
+    result.grid.cells = std::move(cells->cells);
+    auto cell_fields = join_cell_fields(all.pieces, cells->first, cells->kept, cells->count, result, progress);
+    if (!cell_fields) return cell_fields.error();
+    result.grid.cell_fields = *std::move(cell_fields);
+    auto point_fields = join_point_fields(all.pieces, numbers, seams.joined, result, progress);
+    if (!point_fields) return point_fields.error();
+    result.grid.point_fields = *std::move(point_fields);
+    auto points = join_points(all.pieces, numbers);
+    if (!points) return points.error();
+    result.grid.points = *std::move(points);
+    return {};
 }
 
 } // namespace
 
-Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
+Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progress& progress) {
     ReadResult result;
     result.info = std::move(loaded.info);
     result.step = loaded.step;
@@ -357,60 +215,40 @@ Result<ReadResult> join(Loaded loaded, bool by_coordinates) {
     if (std::ranges::all_of(pieces, [](const Piece& piece) { return piece.grid.cells.count() == 0; }))
         for (const Piece& piece : pieces)
             if (!piece.flat.empty()) return broken(piece.name, piece.flat + " has no cells with a volume");
-    for (Piece& piece : pieces) {
+    for (Piece& piece : pieces)
         if (piece.grid.cells.count() == 0) piece.grid.cells = {}; // offsets of no cells need no types
-        if (auto problem = misfit(piece))
-            return Error{ErrorCode::invalid_data, fmt::format("piece \"{}\": {}", escaped(piece.name), *problem)};
-    }
-    if (pieces.size() > 1) std::erase_if(pieces, [](const Piece& piece) { return piece.grid.points.tuples() == 0; });
-
-    const KeptCells kept = keep(pieces);
-    const bool all_kept =
-        std::all_of(kept.cells.begin(), kept.cells.end(), [](const auto& cells) { return cells.empty(); });
-    if (kept.ghosts > 0) result.notes.push_back(fmt::format("{} ghost or blanked cells were left out", kept.ghosts));
-    if (kept.repeated > 0)
-        result.notes.push_back(fmt::format("{} cells that an earlier piece has, too, were left out", kept.repeated));
+    if (pieces.size() > 1) std::erase_if(pieces, is_empty);
     if (pieces.empty()) { // none has a point
         result.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
         return result;
     }
-    if (pieces.size() == 1 && all_kept) {
-        result.grid = std::move(pieces.front().grid);
-        result.cells_in_file = pieces.front().cells_in_file;
+    if (pieces.size() == 1 && pieces[0].left_out.empty()) {
+        if (const auto sound = check_shape(pieces[0]); !sound) return sound.error();
+        result.grid = std::move(pieces[0].grid);
+        result.cells_in_file = pieces[0].cells_in_file;
         return result;
     }
 
-    const PointNumbers numbers = number_points(pieces, by_coordinates, result.notes);
-    std::vector<std::int64_t> connectivity, offsets{0};
-    std::vector<std::uint8_t> types;
-    FaceStreams faces;
-    std::vector<std::size_t> first_cell;
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-        first_cell.push_back(types.size());
-        if (auto problem = append_cells(pieces[p], p, numbers, kept, connectivity, offsets, types, faces))
-            return Error{ErrorCode::invalid_data, fmt::format("piece \"{}\": {}", escaped(pieces[p].name), *problem)};
+    auto all = checked(std::move(pieces));
+    if (!all) return all.error();
+    if (const std::uint64_t count = count_left_out(all->pieces); count > 0)
+        result.notes.push_back(fmt::format("{} ghost or blanked cells were left out", count));
+    Seams seams;
+    const bool apart = !options.merge_pieces_by_coordinates;
+    if (all->size() > 1 && apart)
+        result.notes.push_back(fmt::format("{} pieces lie side by side: surfaces have seams between them since points "
+                                           "of different pieces were to be kept apart (--keep-pieces)",
+                                           all->size()));
+    if (all->size() > 1 && !apart) {
+        auto found = seams_of(*all, progress);
+        if (!found) return found.error();
+        seams = *std::move(found);
+        note_seams(seams, all->size(), least_tolerance(all->boxes), result.notes);
+        if (seams.joined.empty()) all->arrange(all->order_of_file()); // nothing that the order could decide
     }
-    const std::size_t cell_count = types.size();
-    const auto points_of = [&](std::size_t p, auto visit) {
-        const std::size_t points = pieces[p].grid.points.tuples();
-        for (std::size_t i = 0; i < points; ++i) visit(i, numbers(p, i));
-    };
-    const auto cells_of = [&](std::size_t p, auto visit) {
-        std::size_t next = first_cell[p];
-        each_kept(kept, p, pieces[p].grid.cells.count(), [&](std::size_t cell) { visit(cell, next++); });
-    };
-    result.grid.cell_fields =
-        joined_fields(pieces, &Grid::cell_fields, "cell", cell_count, cells_of, [](const Field&) {}, result);
-    result.grid.cells = compact(std::move(connectivity), std::move(offsets), std::move(types));
-    std::move(faces).give_to(result.grid.cells);
-    for (Piece& piece : pieces) piece.grid.cells = Cells();
-    result.grid.point_fields = joined_fields(
-        pieces, &Grid::point_fields, "point", numbers.count, points_of,
-        [&](const Field& field) { note_jumps(pieces, numbers, field, result.notes); }, result);
-    // The coordinates, as one more field.
-    for (Piece& piece : pieces) piece.grid.point_fields.push_back({"points", piece.grid.points});
-    const Column coordinates = columns(pieces, &Grid::point_fields).front();
-    result.grid.points = joined_field(pieces, &Grid::point_fields, coordinates, numbers.count, points_of);
+    const PointNumbers numbers = numbers_of(*all, seams);
+    if (auto done = leave_out_repeated(*all, numbers, result.notes, progress); !done) return done.error();
+    if (auto done = join_arrays(*all, numbers, seams, result, progress); !done) return done.error();
     return result;
 }
 

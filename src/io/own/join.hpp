@@ -2,20 +2,22 @@
 #pragma once
 
 #include <isotet/export.hpp>
+#include <isotet/progress.hpp>
 
 #include "io/own/loaded.hpp"
 
 namespace isotet::io {
 
-/// Makes one grid of all pieces, one after another.
+/// Makes one grid of all pieces, cells one piece after another.
 ///
-/// Points are joined by their global numbers where every piece has them (and equal numbers mean equal places), else by
-/// exactly equal coordinates of different pieces if `by_coordinates`, else not at all. Left-out cells and cells whose
-/// global number an earlier piece had are dropped. A field that only some pieces have is NaN elsewhere. All of this is
-/// told in notes. A single piece without left-out cells is passed on without a copy.
+/// Points are joined as find_seams() says, unless they are to be kept apart (ReadOptions::merge_pieces_by_coordinates).
+/// Left-out cells are dropped, and so are cells that an earlier piece has. A field that only some
+/// pieces have is NaN elsewhere. All of this is told in notes. A single piece without left-out cells is passed on
+/// without a copy. Where points are joined, they are numbered by pieces in the order of their boxes: surfaces do not
+/// depend on the order in which a file names its pieces.
 ///
-/// Errors   invalid_data when arrays do not fit together or a cell has a point out of range
-/// Cost     O(P + T); frees each piece's arrays once they are joined
-ISOTET_API Result<ReadResult> join(Loaded loaded, bool by_coordinates);
+/// Errors   invalid_data when arrays do not fit together or a cell has a point out of range; out_of_memory; cancelled
+/// Cost     O(P + T) and what find_seams() takes; frees each piece's arrays once they are joined
+ISOTET_API Result<ReadResult> join(Loaded loaded, const ReadOptions& options, const Progress& progress = {});
 
 } // namespace isotet::io

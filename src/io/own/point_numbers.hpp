@@ -1,36 +1,55 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "io/own/loaded.hpp"
+#include "io/own/seams.hpp"
 
 namespace isotet::io {
 
-/// Where the points of each piece go in the joined grid.
-struct PointNumbers {
-    std::vector<std::vector<std::uint64_t>> numbers; ///< per piece, one a point; empty where no point was joined
-    std::vector<std::uint64_t> first;                ///< number of a piece's first point, where `numbers` is empty
-    std::uint64_t count = 0;
-    std::uint64_t joined = 0; ///< points merged with one of an earlier piece
+/// Numbers of a piece's points in the joined grid: one after another, but for a few that are listed.
+class PieceNumbers {
+public:
+    static constexpr std::uint64_t none = ~std::uint64_t{0}; ///< a point that the joined grid does not have
 
-    struct Joined {
-        std::size_t piece, point;
-    };
-    std::vector<Joined> joined_points; ///< by coordinates only
-
-    std::uint64_t operator()(std::size_t piece, std::uint64_t point) const {
-        return numbers.empty() ? first[piece] + point : numbers[piece][point];
+    std::uint64_t operator()(std::uint64_t point) const {
+        if (is_listed_.empty()) return first_ + point;
+        const std::uint64_t word = is_listed_[point / 64], bit = std::uint64_t{1} << point % 64;
+        const std::uint64_t before = before_[point / 64] + static_cast<std::uint64_t>(std::popcount(word & (bit - 1)));
+        return word & bit ? listed_[before] : first_ + point - before;
     }
+
+    /// Whether another piece has it, too.
+    bool is_shared(std::uint64_t point) const {
+        return !is_shared_.empty() && (is_shared_[point / 64] >> point % 64 & 1) != 0;
+    }
+    bool has_shared() const { return !is_shared_.empty(); }
+
+private:
+    friend struct PointNumbers;
+    std::uint64_t first_ = 0;
+    std::vector<std::uint64_t> is_listed_, is_shared_; ///< a bit a point; empty: none is
+    std::vector<std::uint64_t> before_;                ///< listed points before each word
+    std::vector<std::uint64_t> listed_;
 };
 
-PointNumbers number_one_after_another(const std::vector<Piece>& pieces);
+/// Where the points of each piece go in the joined grid.
+struct PointNumbers {
+    std::vector<PieceNumbers> pieces;
+    std::uint64_t count = 0;
 
-/// By global number. Nothing when one number stands for points at different places: then it is no global number.
-std::optional<PointNumbers> number_by_ids(const std::vector<Piece>& pieces);
+    /// `points`   of each piece
+    /// `uses`     empty, or for each piece: points that only left-out cells have are dropped
+    /// `joined`   as find_seams() gives them
+    static PointNumbers make(std::span<const std::uint64_t> points, std::span<const std::vector<PointUse>> uses,
+                             std::span<const JoinedPoint> joined);
 
-/// By exactly equal coordinates (-0 equals +0) of different pieces; points of one piece stay apart.
-PointNumbers number_by_coordinates(const std::vector<Piece>& pieces);
+private:
+    void list(std::span<const std::uint64_t> points, std::span<const std::vector<PointUse>> uses,
+              std::span<const JoinedPoint> joined);
+};
 
 } // namespace isotet::io

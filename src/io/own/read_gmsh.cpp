@@ -253,7 +253,7 @@ Result<ReadResult> without_ghosts(ReadResult result, std::vector<std::uint8_t> g
     ghosts.resize(result.grid.cells.count());
     piece.grid = std::move(result.grid);
     piece.left_out = std::move(ghosts);
-    return join(std::move(loaded), false);
+    return join(std::move(loaded), {});
 }
 
 } // namespace

@@ -225,7 +225,7 @@ GridReader legacy_vtk_reader() {
     reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         auto loaded = load_legacy_file(path, options, Depth::arrays, progress);
         if (!loaded) return Result<ReadResult>(loaded.error());
-        return join(std::move(*loaded), options.merge_pieces_by_coordinates);
+        return join(std::move(*loaded), options, progress);
     };
     return reader;
 }

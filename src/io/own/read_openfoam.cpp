@@ -299,7 +299,7 @@ Result<ReadResult> read_openfoam(const std::string& path, const ReadOptions& opt
     auto loaded = load_openfoam_case(files, options, Depth::arrays);
     if (!loaded) return loaded.error();
     add_opened(path, files, loaded->info);
-    return join(std::move(*loaded), options.merge_pieces_by_coordinates);
+    return join(std::move(*loaded), options, progress);
 }
 
 } // namespace

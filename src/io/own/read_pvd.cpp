@@ -36,8 +36,12 @@ Result<std::vector<Entry>> entries(const std::string& path) {
     for (const auto& found : document.select_nodes("/VTKFile/Collection/DataSet")) {
         const pugi::xml_node node = found.node();
         const pugi::xml_attribute stated = node.attribute("timestep"), part = node.attribute("part");
-        Entry entry{0, node.attribute("group").as_string(), part.as_string(), node.attribute("name").as_string(),
-                    node.attribute("file").as_string(), part && *part.value()};
+        Entry entry{0,
+                    node.attribute("group").as_string(),
+                    part.as_string(),
+                    node.attribute("name").as_string(),
+                    node.attribute("file").as_string(),
+                    part && *part.value()};
         if (stated && *stated.value() && (!parse_number(stated.value(), entry.time) || entry.time != entry.time))
             return broken(path,
                           fmt::format("a data set has timestep \"{}\", which is no number", escaped(stated.value())));
@@ -69,8 +73,9 @@ std::map<double, std::vector<const Entry*>> last_ones(const std::vector<Entry>& 
 
 std::string note_of_replaced(const std::vector<Entry>& entries, std::size_t kept) {
     const std::size_t replaced = entries.size() - kept;
-    return fmt::format("{} of {} data sets of the collection {} replaced by a later one of the same time, group and part",
-                       replaced, entries.size(), replaced == 1 ? "is" : "are");
+    return fmt::format(
+        "{} of {} data sets of the collection {} replaced by a later one of the same time, group and part", replaced,
+        entries.size(), replaced == 1 ? "is" : "are");
 }
 
 } // namespace

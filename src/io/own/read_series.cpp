@@ -33,8 +33,8 @@ Result<NamesByTime> entries(const std::string& path, std::string_view text, std:
         names[time->get<double>()] = {name};
     }
     if (const std::size_t replaced = files->size() - names.size(); replaced > 0)
-        notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time", replaced,
-                                    files->size(), replaced == 1 ? "is" : "are"));
+        notes.push_back(fmt::format("{} of {} files of the series {} replaced by a later one of the same time",
+                                    replaced, files->size(), replaced == 1 ? "is" : "are"));
     return names;
 }
 
@@ -68,7 +68,7 @@ GridReader series_reader() {
     reader.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         auto loaded = load(path, options, Depth::arrays, progress);
         if (!loaded) return Result<ReadResult>(loaded.error());
-        return join(std::move(*loaded), options.merge_pieces_by_coordinates);
+        return join(std::move(*loaded), options, progress);
     };
     return reader;
 }

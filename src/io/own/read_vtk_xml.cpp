@@ -53,7 +53,7 @@ GridReader reader() {
     result.read = [](const std::string& path, const ReadOptions& options, const Progress& progress) {
         auto loaded = load(kinds[number], path, options, Depth::arrays, progress);
         if (!loaded) return Result<ReadResult>(loaded.error());
-        return join(std::move(*loaded), options.merge_pieces_by_coordinates);
+        return join(std::move(*loaded), options, progress);
     };
     return result;
 }

@@ -77,7 +77,7 @@ Reply do_task(const Request& request) {
     loaded->info.format = request.format;
     loaded->info.files = take_opened_files();
     if (inspecting) return std::move(loaded->info);
-    auto joined = join(std::move(*loaded), request.options.merge_pieces_by_coordinates);
+    auto joined = join(std::move(*loaded), request.options);
     return joined ? Reply(std::move(*joined)) : Reply(joined.error());
 }
 

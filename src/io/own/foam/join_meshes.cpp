@@ -1,5 +1,6 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -7,8 +8,8 @@
 #include <fmt/core.h>
 
 #include "io/own/foam/mesh.hpp"
-#include "io/own/loaded.hpp"
 #include "io/own/point_numbers.hpp"
+#include "io/own/seams.hpp"
 
 namespace isotet::io::foam {
 
@@ -34,6 +35,17 @@ Result<std::optional<Numbers>> addressing(const CaseFiles& files, const std::vec
     return std::optional(std::move(numbers));
 }
 
+Array points_of(const Mesh& mesh) { return {ScalarType::float64, mesh.points.data(), mesh.point_count(), 3, nullptr}; }
+
+/// How far apart the places of one point may be: of a mesh that moves each processor rounds them by itself.
+double closeness(const std::vector<Mesh>& meshes) {
+    Box whole;
+    for (const Mesh& mesh : meshes) whole.add(box_of(points_of(mesh), {}));
+    double length = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) length = std::max(length, whole.upper[axis] - whole.lower[axis]);
+    return 1e-6 * length;
+}
+
 /// How many points the numbers count, where they are the numbers of a whole grid: all of them used, at one place each.
 std::optional<std::size_t> points_counted(const Numbers& numbers, const std::vector<Mesh>& meshes) {
     std::size_t most = 0;
@@ -43,14 +55,17 @@ std::optional<std::size_t> points_counted(const Numbers& numbers, const std::vec
     }
     std::vector<double> places(3 * most, 0);
     std::vector<bool> used(most);
+    const double tolerance = closeness(meshes);
+    const auto is_close = [&](double a, double b) { return std::abs(a - b) <= tolerance; };
     std::size_t different = 0, end = 0;
     for (std::size_t p = 0; p < meshes.size(); ++p)
         for (std::size_t i = 0; i < numbers[p].size(); ++i) {
             if (numbers[p][i] < 0 || static_cast<std::size_t>(numbers[p][i]) >= most) return std::nullopt;
             const auto number = static_cast<std::size_t>(numbers[p][i]);
             const double* place = meshes[p].points.data() + 3 * i;
-            if (used[number] && !std::equal(place, place + 3, places.data() + 3 * number)) return std::nullopt;
-            std::copy_n(place, 3, places.data() + 3 * number);
+            double* const known = places.data() + 3 * number;
+            if (used[number] && !std::equal(place, place + 3, known, is_close)) return std::nullopt;
+            std::copy_n(place, 3, known);
             different += !used[number];
             used[number] = true;
             end = std::max(end, number + 1);
@@ -75,17 +90,25 @@ bool is_permutation_of_cells(const Numbers& numbers, const std::vector<Mesh>& me
 }
 
 /// Numbers by equal coordinates, or one part after another, and how many points that makes.
-std::pair<Numbers, std::size_t> own_numbers(const std::vector<Mesh>& meshes, bool by_coordinates) {
-    std::vector<Piece> pieces(meshes.size());
-    for (std::size_t p = 0; p < meshes.size(); ++p)
-        pieces[p].grid.points =
-            Array(ScalarType::float64, meshes[p].points.data(), meshes[p].point_count(), 3, nullptr);
-    const PointNumbers found = by_coordinates ? number_by_coordinates(pieces) : number_one_after_another(pieces);
+Result<std::pair<Numbers, std::size_t>> own_numbers(const std::vector<Mesh>& meshes, bool by_coordinates) {
+    std::vector<SeamPiece> pieces;
+    std::vector<std::uint64_t> counts;
+    for (const Mesh& mesh : meshes) {
+        pieces.push_back({points_of(mesh), {}, {}, box_of(points_of(mesh), {})});
+        counts.push_back(mesh.point_count());
+    }
+    Seams seams;
+    if (by_coordinates) {
+        auto found = find_seams(pieces, {});
+        if (!found) return found.error();
+        seams = *std::move(found);
+    }
+    const PointNumbers found = PointNumbers::make(counts, {}, seams.joined);
     Numbers numbers(meshes.size());
     for (std::size_t p = 0; p < meshes.size(); ++p)
         for (std::size_t i = 0; i < meshes[p].point_count(); ++i)
-            numbers[p].push_back(static_cast<std::int32_t>(found(p, i)));
-    return {std::move(numbers), static_cast<std::size_t>(found.count)};
+            numbers[p].push_back(static_cast<std::int32_t>(found.pieces[p](i)));
+    return std::pair(std::move(numbers), static_cast<std::size_t>(found.count));
 }
 
 void append_mesh(Mesh from, Part& part, Mesh& whole) {
@@ -135,7 +158,9 @@ Result<WholeMesh> join_meshes(const CaseFiles& files, std::vector<Mesh> meshes, 
     if (!cell_numbers) return cell_numbers.error();
     const auto counted = *point_numbers ? points_counted(**point_numbers, meshes) : std::nullopt;
     if (!counted) {
-        auto [numbers, count] = own_numbers(meshes, by_coordinates);
+        auto own = own_numbers(meshes, by_coordinates);
+        if (!own) return own.error();
+        auto& [numbers, count] = *own;
         out.notes.push_back(fmt::format("{} processor folders {} pointProcAddressing{}: {} points were {}",
                                         meshes.size(), *point_numbers ? "have no sound" : "have no", "", points - count,
                                         by_coordinates ? "merged by equal coordinates" : "merged (--keep-pieces)"));

@@ -40,11 +40,17 @@ Result<Loaded> load_document(Document& document, const ReadOptions& options, Dep
     loaded.cells = *cells;
     if (depth == Depth::description) return loaded;
     const Wanted wanted{options, loaded.step, ids};
-    auto piece = unstructured ? load_unstructured(document, *layouts, wanted, progress, loaded)
-                              : load_structured(document, wanted, progress, loaded);
-    if (!piece) return piece.error();
-    if (piece->grid.points.empty()) piece->grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
-    loaded.pieces.push_back(std::move(*piece));
+    if (unstructured) {
+        auto pieces = load_unstructured(document, *layouts, wanted, progress, loaded);
+        if (!pieces) return pieces.error();
+        loaded.pieces = *std::move(pieces);
+    } else {
+        auto piece = load_structured(document, wanted, progress, loaded);
+        if (!piece) return piece.error();
+        loaded.pieces.push_back(std::move(*piece));
+    }
+    for (Piece& piece : loaded.pieces)
+        if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);
     note_odd_lengths(document, loaded.notes);
     return loaded;
 }
@@ -87,7 +93,7 @@ Result<Loaded> load_file(const std::string& path, std::string_view type, const R
     if (!source) return source.error();
     auto loaded = load(*source, type, options, depth, ids, progress);
     if (!loaded) return in_file(path, loaded.error());
-    for (Piece& piece : loaded->pieces) piece.name = path;
+    for (Piece& piece : loaded->pieces) piece.name = piece.name.empty() ? path : fmt::format("{}, {}", path, piece.name);
     return loaded;
 }
 

@@ -22,7 +22,7 @@ namespace isotet::io::vtk_xml {
 /// The attribute `type` of the element VTKFile in the first bytes of a file; empty if there is none.
 std::string_view type_of(std::string_view head);
 
-/// One file: a grid of type UnstructuredGrid, ImageData, RectilinearGrid or StructuredGrid, as one piece.
+/// One file: a grid of type UnstructuredGrid, as its pieces; or ImageData, RectilinearGrid or StructuredGrid, as one piece.
 ///
 /// `type`     that it must have
 /// `ids`      global numbers are read, too, to join files by
@@ -63,9 +63,9 @@ Result<std::vector<std::string>> files_of_pieces(const std::string& path, std::s
 Result<Loaded> load_pieces(const std::string& path, std::string_view type, const ReadOptions& options, Depth depth,
                            const Progress& progress);
 
-/// Points and cells of all pieces of an UnstructuredGrid, and its fields.
-Result<Piece> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
-                                const Progress& progress, Loaded& loaded);
+/// The pieces of an UnstructuredGrid with their points, cells and fields; of several with global numbers.
+Result<std::vector<Piece>> load_unstructured(Document& document, const Layouts& layouts, const Wanted& wanted,
+                                             const Progress& progress, Loaded& loaded);
 
 /// How many points and cells the pieces announce.
 Result<Layouts> layouts_of_unstructured(const Document& document);
