@@ -18,6 +18,7 @@
 #include "io/own/read_legacy_vtk.hpp"
 #include "io/own/text_scanner.hpp"
 #include "io/own/vtk_xml/base64.hpp"
+#include "io/own/vtk_xml/columns.hpp"
 #include "io/own/vtk_xml/load.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -152,6 +153,15 @@ TEST(VtkXml, PiecesMustCoverAStructuredGrid) {
               "the pieces have 8 of the 12 points of the whole extent");
     EXPECT_EQ(error_of(image("<Piece Extent=\"0 3 0 1 0 1\"/>"), "ImageData"),
               "a piece reaches out of the whole extent");
+}
+
+TEST(VtkXml, GhostRanksOfGeosMarkGhostCells) {
+    std::vector<std::uint8_t> left_out;
+    io::vtk_xml::mark_left_out(Array::own(std::vector<std::int32_t>{-2, -1, 0, 3}), "ghostRank", left_out);
+    EXPECT_EQ(left_out, (std::vector<std::uint8_t>{0, 0, 1, 1}));
+    left_out.clear();
+    io::vtk_xml::mark_left_out(Array::own(std::vector<std::int32_t>{0, 0, 1}), "ghostRank", left_out);
+    EXPECT_TRUE(left_out.empty()) << "a field of that name with another meaning";
 }
 
 TEST(VtkXml, PiecesOfOneFileAreToldApart) {

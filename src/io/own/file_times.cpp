@@ -14,7 +14,7 @@ namespace isotet::io {
 namespace {
 
 Result<Loaded> load_named(const std::string& index, const std::string& name, const ReadOptions& options, Depth depth,
-                          const Progress& progress) {
+                          bool ids, const Progress& progress) {
     const bool legacy = name.ends_with(".vtk");
     const std::string_view type = vtk_type_of_name(name);
     // Never another index by time, so nothing can include itself.
@@ -26,7 +26,7 @@ Result<Loaded> load_named(const std::string& index, const std::string& name, con
     const auto file = named_file(index, name, options.allow_outside);
     if (!file) return file.error();
     return legacy ? load_legacy_file(*file, options, depth, progress)
-                  : load_vtk_file(*file, type, options, depth, true, progress);
+                  : load_vtk_file(*file, type, options, depth, ids, progress);
 }
 
 } // namespace
@@ -47,7 +47,7 @@ Result<Loaded> load_times(const std::string& path, const NamesByTime& names, con
     const auto& of_step = std::next(names.begin(), static_cast<std::ptrdiff_t>(*step))->second;
     if (of_step.size() > 1) of_entries.blocks.clear(); // only the blocks of a single file can be told apart
     for (const std::string& name : of_step) {
-        auto part = load_named(path, name, of_entries, depth, progress);
+        auto part = load_named(path, name, of_entries, depth, of_step.size() > 1, progress);
         if (!part) return part.error();
         if (of_step.size() == 1) loaded.info.blocks = std::move(part->info.blocks);
         append(loaded, std::move(*part));

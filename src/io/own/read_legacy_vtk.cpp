@@ -191,6 +191,8 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     const bool flat = structured && piece.grid.cells.count() == 0; // its cells are not volumes
     for (Attribute& field : file->cell_data) {
         if (flat) continue;
+        if (field.name == vtk_xml::ghost_rank_name && field.values.tuples() == piece.grid.cells.count())
+            vtk_xml::mark_left_out(field.values, field.name, piece.left_out);
         if (!vtk_xml::is_ghost_array(field.name))
             piece.grid.cell_fields.push_back({field.name, std::move(field.values)});
         else if (field.values.tuples() == piece.grid.cells.count())

@@ -294,13 +294,16 @@ Result<void> HdfGrid::load_fields(const HdfPartition& part, const HdfStepPlace& 
     const std::string group = data_group_of(association);
     for (const std::string& name : data_sets_of(path_, group_ + group)) {
         const bool ghost = is_ghost_array(name);
-        if ((!wanted(options, association, name) && !(ghost && !of_points)) || (ghost && of_points)) continue;
+        const bool is_field = !ghost && wanted(options, association, name);
+        const bool marks = !of_points && (ghost || name == vtk_xml::ghost_rank_name);
+        if (!is_field && !marks) continue;
         if (!has(group + "/" + name)) continue;
         auto values = read_field(part, place, step, association, name);
         if (!values && (ghost || values.error().code != ErrorCode::invalid_data)) return values.error();
         if (!values) leave_out(info, {kind_of_field(association), name, values.error().message});
-        else if (ghost) vtk_xml::mark_left_out(*values, name, piece.left_out);
-        else (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, *std::move(values)});
+        else if (marks) vtk_xml::mark_left_out(*values, name, piece.left_out);
+        if (values && is_field)
+            (of_points ? piece.grid.point_fields : piece.grid.cell_fields).push_back({name, *std::move(values)});
     }
     return {};
 }

@@ -235,7 +235,7 @@ struct Job {
 bool may_be_left_out(const Job& job, const Error& error, const ReadOptions& options) {
     const bool named = job.association == Association::point ? options.point_fields.has_value()
                                                              : options.cell_fields.has_value();
-    return error.code == ErrorCode::invalid_data && !job.is_ghost && !(job.is_field && named);
+    return error.code == ErrorCode::invalid_data && (job.is_field || !job.is_ghost) && !(job.is_field && named);
 }
 
 void add_jobs(const Document& document, Association association, const Layout& layout, const Wanted& wanted,
@@ -249,8 +249,8 @@ void add_jobs(const Document& document, Association association, const Layout& l
         Job job{{}, association, &layout, false, false, &column == ids, {}, {}};
         job.is_ghost = is_ghost_array(column.name);
         job.is_field = !job.is_ghost && io::wanted(wanted.options, association, column.name);
-        if (!job.is_field && !job.is_ids && (!job.is_ghost || of_points)) continue;
-        job.is_ghost = job.is_ghost && !of_points;
+        job.is_ghost = !of_points && (job.is_ghost || column.name == ghost_rank_name);
+        if (!job.is_field && !job.is_ids && !job.is_ghost) continue;
         job.column = std::move(column);
         jobs.push_back(std::move(job));
     }
@@ -288,16 +288,33 @@ void give(Job& job, Piece& piece) {
 
 } // namespace
 
+namespace {
+
+/// GEOS: the rank that owns a ghost cell; below 0 for the cells of the piece. A piece without such has another meaning.
+void mark_by_rank(const Array& ranks, std::vector<std::uint8_t>& left_out) {
+    ranks.visit([&](auto values) {
+        if (ranks.components() != 1 ||
+            std::ranges::none_of(values, [](auto rank) { return static_cast<double>(rank) < 0; }))
+            return;
+        for (std::size_t cell = 0; cell < left_out.size(); ++cell)
+            if (static_cast<double>(values[cell]) >= 0) left_out[cell] = 1;
+    });
+}
+
+} // namespace
+
 void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out) {
     left_out.resize(marks.tuples(), 0);
     const bool levels = name == "vtkGhostLevels";
-    marks.visit([&](auto values) {
-        core::parallel_each(left_out.size(), std::size_t{1} << 16, [&](std::size_t cell) {
-            const auto value = static_cast<double>(values[cell * marks.components()]);
-            const int mark = value > 0 && value < 0x1p31 ? static_cast<int>(value) : 0;
-            if (levels ? mark > 0 : (mark & cell_is_out) != 0) left_out[cell] = 1;
+    if (name == ghost_rank_name) mark_by_rank(marks, left_out);
+    else
+        marks.visit([&](auto values) {
+            core::parallel_each(left_out.size(), std::size_t{1} << 16, [&](std::size_t cell) {
+                const auto value = static_cast<double>(values[cell * marks.components()]);
+                const int mark = value > 0 && value < 0x1p31 ? static_cast<int>(value) : 0;
+                if (levels ? mark > 0 : (mark & cell_is_out) != 0) left_out[cell] = 1;
+            });
         });
-    });
     if (std::ranges::none_of(left_out, [](std::uint8_t out) { return out != 0; })) left_out.clear();
 }
 

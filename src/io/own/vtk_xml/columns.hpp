@@ -68,7 +68,10 @@ struct Wanted {
 Result<void> load_fields(Document& document, const Layouts& layouts, const Wanted& wanted, const Progress& progress,
                          Loaded& loaded, Piece& piece);
 
-/// Marks the cells that vtkGhostType or vtkGhostLevels takes out; empty where there are none.
+/// The field by which GEOS marks ghost cells.
+inline constexpr std::string_view ghost_rank_name = "ghostRank";
+
+/// Marks the cells that vtkGhostType, vtkGhostLevels or GEOS's ghostRank takes out; empty where there are none.
 ISOTET_API void mark_left_out(const Array& marks, std::string_view name, std::vector<std::uint8_t>& left_out);
 
 /// True for arrays that describe the grid (ghost marks), which are no fields.
