@@ -180,7 +180,8 @@ Result<void> StoredArray::find_plain_block(std::vector<std::string>& odd_lengths
         }
     }
     // GetFEM writes the length as a float, and VTK does not look at it.
-    if (array_.inside && stored_ != needed_ && stream_.place.size() == (data_ + needed_ + 2) / 3 * 4) {
+    const bool fits = stored_ >= needed_ && stored_ <= stream_.size() - std::min(data_, stream_.size());
+    if (array_.inside && !fits && stream_.place.size() == (data_ + needed_ + 2) / 3 * 4) {
         stored_ = needed_;
         odd_lengths.push_back(array_.name);
     }
