@@ -42,6 +42,7 @@ std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
     count("boundary edges", report.boundary_edges);
     count("inconsistent edges", report.inconsistent_edges);
     if (job.closed || !job.grid.file.empty()) count("edges not allowed", report.blamed_edges, "of both kinds above");
+    if (report.hanging_edges > 0) count("edges at hanging points", report.hanging_edges, "the grid's doing");
     count("equal-corner triangles", report.equal_corner_triangles);
     count("repeated triangles", report.duplicate_triangles,
           report.duplicate_triangles == report.blamed_duplicates
@@ -60,7 +61,11 @@ std::string check_table(const CheckedFiles& checked, const CheckJob& job) {
     table.row({"genus", genus_text(report.genus)});
     table.row({"area", rounded(report.area)});
     table.row({"volume", report.closed ? rounded(report.volume) : "not closed"});
-    const std::string unclean = job.strict ? "sound, but not clean" : "sound";
+    const std::string unclean = report.hanging_edges > 0
+                                    ? fmt::format("sound, but open at hanging points: {} edge{}",
+                                                  grouped(report.hanging_edges), report.hanging_edges == 1 ? "" : "s")
+                                : job.strict ? "sound, but not clean"
+                                             : "sound";
     const bool judges_edges = job.closed || !job.grid.file.empty();
     table.row({"verdict", (!report.sound  ? "not sound"
                            : report.clean ? "sound and clean"
@@ -96,6 +101,7 @@ Json check_json(const CheckedFiles& checked, const CheckJob& job) {
     json["non_manifold_edges"] = report.non_manifold_edges;
     json["inconsistent_edges"] = report.inconsistent_edges;
     json["blamed_edges"] = report.blamed_edges;
+    json["hanging_edges"] = report.hanging_edges;
     json["equal_corner_triangles"] = report.equal_corner_triangles;
     json["zero_area_triangles"] = report.zero_area_triangles;
     json["duplicate_triangles"] = report.duplicate_triangles;

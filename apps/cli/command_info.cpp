@@ -98,7 +98,8 @@ std::string grid_table(const GridSummary& found, const std::string& path) {
           {report.unused_points, "unused points"},
           {report.duplicate_points, "duplicate points"},
           {report.quads_on_triangles, "quadrilaterals that meet triangles of other cells: the "
-                                      "surface may be open there; --split-cells"}}) {
+                                      "surface may be open there; --split-cells"},
+          {found.hanging_points, "hanging points, in a face or edge of a larger cell: the surface is open there"}}) {
         if (count > 0) table.row({"", fmt::format("{} {}", grouped(count), what)});
     }
     if (found.surveyed) table.row({"boundary faces", grouped(report.boundary_faces)});
@@ -218,6 +219,7 @@ Json json_of(const GridSummary& found, const std::string& path) {
         report["duplicate_points"] = grid.duplicate_points;
         report["boundary_faces"] = grid.boundary_faces;
         report["quads_on_triangles"] = grid.quads_on_triangles;
+        report["hanging_points"] = found.hanging_points;
     }
     report["bounds"] = {{"lower", grid.lower}, {"upper", grid.upper}};
     report["times"] = found.file.times;

@@ -91,6 +91,7 @@ point array edge_ends, which isotet extract --edge-ends writes into .vtp and .vt
 a face with two tets on one side. A tet is valid when the field has a value (not NaN) at its four points. Where
 quadratic cells were refined for the surface, -i and the tolerances say how, as for isotet extract: all isovalues of
 that call. Their points are derived again.
+Edges at hanging points, where the face of a larger cell meets smaller ones, are excused, too; the verdict counts them.
 
 With --strict it also fails for: triangles of zero area, edges with more than two triangles, double sheets (two
 triangles on the same corners in opposite directions), touching vertices (triangles that are not one fan), coincident
@@ -195,7 +196,8 @@ void add_info(const Command& program, InfoCommand& info) {
     add_reading(command, info.grid, "--format");
     command.add_flag(
         "--survey", info.survey,
-        "Count repeated tets, duplicate points and boundary faces, too: that takes about as long as reading");
+        "Count repeated tets, duplicate points, boundary faces and hanging points, too: that takes about as long as "
+        "reading");
     const Option chart = command.add_count(
         "--chart", {1, 65'535}, [&](std::uint64_t n) { info.chart = n; }, "N",
         "Area of the isosurface and volume below it at N + 1 isovalues, from end to end of the field's range");

@@ -28,6 +28,8 @@ struct SurfaceReport {
     std::uint64_t boundary_edges = 0;         ///< used by one triangle
     std::uint64_t inconsistent_edges = 0;     ///< used by more, unequally often in the two directions
     std::uint64_t blamed_edges = 0;           ///< of both, those where the rule asked for does not allow it
+    std::uint64_t hanging_edges = 0;          ///< with `grid`: of both, those in a face of a cell that meets smaller ones, or
+                                              ///< a larger one: the grid has hanging points there
     std::uint64_t non_manifold_edges = 0;     ///< used by more than two triangles
     std::uint64_t equal_corner_triangles = 0; ///< two equal corners
     std::uint64_t zero_area_triangles = 0;    ///< three different corners, area exactly zero
@@ -62,6 +64,8 @@ struct CheckOptions {
 };
 
 /// Measures a surface and looks for what should not be there. An empty surface is closed and clean.
+///
+/// Edges at hanging points are open because of the grid: they are not blamed, but a surface with them is not clean.
 ///
 /// Blamed are edges as the options ask (without `closed` and `grid`: none), triangles with two equal corners, and
 /// triangles that repeat an earlier one, except, with `grid`, on a face that two valid cells use from one side. Cells

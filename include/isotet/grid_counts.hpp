@@ -7,6 +7,8 @@
 
 #include <isotet/export.hpp>
 #include <isotet/grid.hpp>
+#include <isotet/progress.hpp>
+#include <isotet/result.hpp>
 
 namespace isotet {
 
@@ -34,6 +36,14 @@ struct CoincidentPoints {
 /// Cost         one parallel pass over the points, about 65,000 of which are sorted; another over the connectivity only
 ///              where points coincide
 ISOTET_API CoincidentPoints estimate_coincident_points(const Grid& grid);
+
+/// Places in a face or edge of a larger cell that does not have them, as between levels of refinement: the surface is open
+/// there. Points of the same place count once.
+///
+/// Guarantees   the same for any thread count; 0 where more than 4 million faces, and more than there are tets, are boundary
+/// Cost         as survey() with faces; a sort of the boundary's faces
+/// Errors       as survey()
+ISOTET_API Result<std::uint64_t> count_hanging_points(const Grid& grid, const Run& run = {});
 
 /// False where estimate_coincident_points() finds none, whatever the cells are. Cost: the first of its passes
 ISOTET_API bool may_have_coincident_points(const Array& points);

@@ -48,6 +48,7 @@ nb::dict report_out(const SurfaceReport& report) {
     out["boundary_edges"] = report.boundary_edges;
     out["inconsistent_edges"] = report.inconsistent_edges;
     out["blamed_edges"] = report.blamed_edges;
+    out["hanging_edges"] = report.hanging_edges;
     out["non_manifold_edges"] = report.non_manifold_edges;
     out["equal_corner_triangles"] = report.equal_corner_triangles;
     out["zero_area_triangles"] = report.zero_area_triangles;

@@ -71,15 +71,21 @@ public:
         r.closed = r.boundary_edges == 0 && r.inconsistent_edges == 0;
         r.sound = r.blamed_edges == 0 && r.equal_corner_triangles == 0 && r.blamed_duplicates == 0;
         r.clean = r.sound && r.zero_area_triangles == 0 && r.non_manifold_edges == 0 && r.double_sheets == 0 &&
-                  r.touching_vertices == 0 && r.coincident_vertices == 0;
+                  r.touching_vertices == 0 && r.coincident_vertices == 0 && r.hanging_edges == 0;
         return std::move(report_);
     }
 
 private:
     void find(std::string what, const core::Point& where) { report_.findings.push_back({std::move(what), where}); }
-    void find_edge(const EdgeUse& edge) {
+    core::Point middle_of(const EdgeUse& edge) const {
         const core::Point a = mesh_.position(edge.low), b = mesh_.position(edge.high);
-        find(describe(edge), {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+        return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+    }
+    void find_edge(const EdgeUse& edge) { find(describe(edge), middle_of(edge)); }
+    void find_hanging_edge(const EdgeUse& edge) {
+        find(fmt::format("edge {}-{} is open at a hanging point: a face of a larger cell meets smaller ones", edge.low,
+                         edge.high),
+             middle_of(edge));
     }
     void find_triangle(std::uint64_t triangle, std::string what) {
         find(std::move(what), mesh_.position(mesh_.corners(triangle)[0]));
@@ -193,7 +199,10 @@ private:
 
         for (const EdgeUse& edge : lists_.unequal_edges) {
             const auto set = grid_points<2>({edge.low, edge.high});
-            if (set && faces->in_boundary_face(*set)) continue;
+            if (set && faces->in_boundary_face(*set)) {
+                if (faces->in_hanging_face(*set) && report_.hanging_edges++ < most_) find_hanging_edge(edge);
+                continue;
+            }
             if (report_.blamed_edges++ < most_) find_edge(edge);
         }
         for (const Repeat& repeat : lists_.duplicate_list) {

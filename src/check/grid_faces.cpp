@@ -11,6 +11,7 @@
 #include <tbb/parallel_sort.h>
 
 #include "core/cells.hpp"
+#include "core/hanging.hpp"
 #include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
@@ -174,6 +175,19 @@ OrientedFace oriented(const WholeCell& cell, const core::CellFace& face) {
     return {points, forward};
 }
 
+/// Whether one of the triangles of a face, by either diagonal, is among some.
+bool has_triangle_of(const std::vector<std::array<std::uint64_t, 3>>& triangles,
+                     const std::array<std::uint64_t, 4>& around) {
+    for (std::size_t left_out = 0; left_out < 4; ++left_out) {
+        std::array<std::uint64_t, 3> points{};
+        for (std::size_t k = 0, count = 0; k < 4; ++k)
+            if (k != left_out) points[count++] = around[k];
+        std::ranges::sort(points);
+        if (std::ranges::binary_search(triangles, points)) return true;
+    }
+    return false;
+}
+
 template <class T>
 void sort_unique(std::vector<T>& list) {
     tbb::parallel_sort(list.begin(), list.end());
@@ -219,14 +233,23 @@ Result<GridFaces> GridFaces::find(const Grid& grid, const PointField* field, boo
         for (const core::CellFace& face : core::shape_of(found.cell.kind).faces())
             all.push_back(oriented(found.cell, face));
     tbb::parallel_sort(all.begin(), all.end());
+    std::vector<std::array<std::uint64_t, 4>> boundary;
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
         std::size_t forward = 0;
         for (end = begin; end < all.size() && all[end].around == all[begin].around; ++end) forward += all[end].forward;
         const std::size_t backward = end - begin - forward;
         if (!marks.enough(all[begin].around)) continue;
         if (forward > 1 || backward > 1) faces.doubled_.add(all[begin].around);
-        if (forward != backward) faces.boundary_.add(all[begin].around);
+        if (forward != backward) boundary.push_back(all[begin].around);
     }
+    for (const auto& around : boundary) faces.boundary_.add(around);
+    if (!boundary.empty()) {
+        const auto hanging = core::find_hanging(grid, *cells, progress);
+        if (!hanging) return hanging.error();
+        for (const auto& around : boundary)
+            if (has_triangle_of(hanging->faces, around)) faces.hanging_.add(around);
+    }
+    faces.hanging_.sort();
     faces.doubled_.sort();
     faces.boundary_.sort();
     return faces;

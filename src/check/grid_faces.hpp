@@ -58,11 +58,14 @@ public:
     /// True when some face that the cells do not use equally often in its two directions has all points of the set.
     bool in_boundary_face(const PointSet& set) const { return boundary_.hold(set); }
 
+    /// True when such a face lies on smaller ones, or on a larger one.
+    bool in_hanging_face(const PointSet& set) const { return hanging_.hold(set); }
+
     /// True when three points lie in a face that cells use twice in one direction.
     bool has_two_cells_on_one_side(const PointSet& set) const { return set.size() == 3 && doubled_.hold(set); }
 
 private:
-    SetsOfFaces boundary_, doubled_;
+    SetsOfFaces boundary_, hanging_, doubled_;
 };
 
 } // namespace isotet::checking

@@ -2,7 +2,9 @@
 #include "core/faces.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -53,8 +55,8 @@ public:
           progress_(progress),
           chunks_(std::clamp<std::size_t>(cells.count() / min_chunk, 1, max_chunks)) {}
 
-    /// Faces are kept, too.
-    void keep_faces() { keeps_faces_ = true; }
+    /// Faces are kept, too, unless there are more.
+    void keep_faces(std::uint64_t most) { most_kept_ = most; }
 
     std::vector<BoundaryFace> faces() {
         std::size_t count = 0;
@@ -72,7 +74,7 @@ public:
         if (cells_.points() * FaceSums::bytes_per_point <= memory) find_doubted();
         buckets_ = buckets_for(cells_.points(), to_count_);
         bucket_count_ = buckets_.of(cells_.points() - 1) + 1;
-        if (keeps_faces_) faces_.resize(bucket_count_);
+        if (most_kept_ > 0) faces_.resize(bucket_count_);
         const std::uint64_t bytes = 2 * to_count_ * sizeof(AscendingTet<Point>); // a tet is in at most two buckets
         const std::uint64_t rounds =
             std::min<std::uint64_t>(1 + bytes / std::max<std::uint64_t>(memory, 1), bucket_count_);
@@ -80,7 +82,9 @@ public:
         for (std::size_t first = 0; first < bucket_count_ && !progress_.cancelled(); first += buckets_per_round)
             count(first, std::min(first + buckets_per_round, bucket_count_));
         if (progress_.cancelled()) return Error{ErrorCode::cancelled, "checking the grid was cancelled"};
-        return FaceSurvey{total_.repeated, total_.unbalanced};
+        FaceSurvey found{total_.repeated, total_.unbalanced, {}};
+        if (total_.unbalanced <= most_kept_) found.faces = faces();
+        return found;
     }
 
 private:
@@ -120,7 +124,7 @@ private:
             FaceCounter<Point>& counter = counters.local();
             const auto is_here = [&](Point point) { return buckets_.of(point) == first + b && is_counted(point); };
             counter.add(dealt.bucket(b), is_here, progress_, counts.local());
-            if (keeps_faces_) keep_unbalanced(counter, faces_[first + b]);
+            if (kept_ < most_kept_) keep_unbalanced(counter, faces_[first + b]);
             report(first + 0.4 * static_cast<double>(last - first) + 0.6 * static_cast<double>(++done));
         });
         for (const FaceCounts& part : counts) {
@@ -130,13 +134,14 @@ private:
     }
 
     /// Where all tets are mirrored alike, is_mirrored() says that none is.
-    void keep_unbalanced(const FaceCounter<Point>& counter, std::vector<BoundaryFace>& out) const {
+    void keep_unbalanced(const FaceCounter<Point>& counter, std::vector<BoundaryFace>& out) {
         const bool other_way = survey_.all_alike() && survey_.mirrored > 0;
         counter.each_unbalanced([&](const std::array<Point, 3>& points, bool mirrored) {
             out.push_back({{points[0], points[1], points[2]}, mirrored != other_way});
         });
         std::sort(out.begin(), out.end(),
                   [](const BoundaryFace& a, const BoundaryFace& b) { return a.points < b.points; });
+        kept_ += out.size();
     }
 
     void report(double buckets) const {
@@ -202,7 +207,8 @@ private:
     PointBuckets buckets_;
     std::size_t bucket_count_ = 1;
     FaceCounts total_;
-    bool keeps_faces_ = false;
+    std::uint64_t most_kept_ = 0;
+    std::atomic<std::uint64_t> kept_{0};
     std::vector<std::vector<BoundaryFace>> faces_; ///< by bucket
 };
 
@@ -249,18 +255,20 @@ auto with_surveyor(const Grid& grid, const CellReader& cells, const TetSurvey& s
 Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
                                 const FaceSurveyOptions& options, const Progress& progress) {
     return with_surveyor(grid, cells, survey, options.wide, progress,
-                         [&](auto surveyor) { return surveyor.run(options.memory); });
+                         [&](auto&& surveyor) {
+                             surveyor.keep_faces(options.most_faces);
+                             return surveyor.run(options.memory);
+                         });
 }
 
 Result<std::vector<BoundaryFace>> find_boundary_faces(const Grid& grid, const CellReader& cells,
                                                       const TetSurvey& survey, const FaceSurveyOptions& options,
                                                       const Progress& progress) {
-    return with_surveyor(grid, cells, survey, options.wide, progress,
-                         [&](auto surveyor) -> Result<std::vector<BoundaryFace>> {
-                             surveyor.keep_faces();
-                             if (const auto counted = surveyor.run(options.memory); !counted) return counted.error();
-                             return surveyor.faces();
-                         });
+    FaceSurveyOptions keeping = options;
+    keeping.most_faces = std::numeric_limits<std::uint64_t>::max();
+    auto found = survey_faces(grid, cells, survey, keeping, progress);
+    if (!found) return found.error();
+    return std::move(found->faces);
 }
 
 } // namespace isotet::core

@@ -26,11 +26,19 @@ std::vector<StoredFace> faces_of(const std::vector<Tet>& tets);
 struct FaceSurveyOptions {
     std::uint64_t memory = std::uint64_t{1} << 30; ///< bytes that it should not take more of
     bool wide = false;                             ///< point numbers of 64 bits, even where 32 would do
+    std::uint64_t most_faces = 0;                  ///< so many boundary faces are kept, none where there are more
+};
+
+/// A face of the boundary: points in ascending order, and whether it faces outwards in the mirrored order.
+struct BoundaryFace {
+    std::array<std::uint64_t, 3> points;
+    bool mirrored = false;
 };
 
 struct FaceSurvey {
     std::uint64_t repeated = 0;       ///< tets with the corners of an earlier one
     std::uint64_t boundary_faces = 0; ///< faces that tets but repeated ones do not use equally often in both directions
+    std::vector<BoundaryFace> faces;  ///< these, if they are kept: ascending within ranges of their lowest points
 };
 
 /// Counts repeated tets and boundary faces of a checked grid of any size.
@@ -46,12 +54,6 @@ struct FaceSurvey {
 /// Errors       cancelled
 Result<FaceSurvey> survey_faces(const Grid& grid, const CellReader& cells, const TetSurvey& survey,
                                 const FaceSurveyOptions& options, const Progress& progress);
-
-/// A face of the boundary: points in ascending order, and whether it faces outwards in the mirrored order.
-struct BoundaryFace {
-    std::array<std::uint64_t, 3> points;
-    bool mirrored = false;
-};
 
 /// The faces that survey_faces() counts, each once, ascending within ranges of their lowest points; the same
 /// guarantees, cost and errors, and 32 bytes a face.

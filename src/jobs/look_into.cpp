@@ -1,6 +1,7 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
 #include <isotet/jobs/look_into.hpp>
 
+#include <isotet/grid_counts.hpp>
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/refine.hpp>
 
@@ -73,6 +74,11 @@ Result<GridSummary> look_into(const InfoJob& job, Caller& caller) {
     Result<GridReport> surveyed = survey(*grid, {.faces = job.survey}, caller.run());
     if (!surveyed) return surveyed.error();
     summary.report = *std::move(surveyed);
+    if (job.survey) {
+        const Result<std::uint64_t> hanging = count_hanging_points(*grid, caller.run());
+        if (!hanging) return hanging.error();
+        summary.hanging_points = *hanging;
+    }
     Result<std::vector<FieldSummary>> fields = summarize(*grid, caller.run());
     if (!fields) return fields.error();
     summary.fields = *std::move(fields);

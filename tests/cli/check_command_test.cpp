@@ -21,6 +21,7 @@ TEST_F(Program, CheckHasEveryPromisedKey) {
     const json report = json_of({"check", path("s.obj")});
     for (const char* key :
          {"schema", "vertices", "triangles", "closed", "boundary_edges", "non_manifold_edges", "inconsistent_edges",
+          "hanging_edges",
           "equal_corner_triangles", "zero_area_triangles", "duplicate_triangles", "double_sheets", "touching_vertices",
           "coincident_vertices", "components", "euler", "genus", "area", "volume", "clean"}) {
         EXPECT_TRUE(report.contains(key)) << key;

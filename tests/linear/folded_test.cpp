@@ -21,7 +21,7 @@
 namespace isotet::test {
 namespace {
 
-PointField random_field(const Grid& grid, unsigned seed, unsigned values) {
+PointField whole_numbers(const Grid& grid, unsigned seed, unsigned values) {
     std::mt19937 random(seed);
     std::vector<double> out(grid.points.tuples());
     for (double& value : out) value = static_cast<double>(random() % values);
@@ -152,7 +152,7 @@ TEST(BadlyShapedPolyhedra, GiveSoundSurfaces) {
     for (const double moved : {1e-16, 1e-7, 1e-3, 0.1, 0.3, 0.6, 2.0})
         for (unsigned seed = 1; seed <= 3; ++seed) {
             const Grid grid = octree_grid({.seed = seed, .moved = moved});
-            const PointField field = random_field(grid, seed, 5);
+            const PointField field = whole_numbers(grid, seed, 5);
             for (const double isovalue : {1.0, 2.5})
                 expect_sound(grid, field, isovalue, "moved " + std::to_string(moved) + ", seed " + std::to_string(seed));
         }
@@ -164,7 +164,7 @@ TEST(BadlyShapedPolyhedra, OfSinglePrecisionGiveSoundSurfaces) {
         std::vector<float> places;
         for (const double x : grid.points.as<double>()) places.push_back(static_cast<float>(x + 1000));
         grid.points = Array::own(std::move(places), 3);
-        expect_sound(grid, random_field(grid, seed, 4), 1.5, "seed " + std::to_string(seed));
+        expect_sound(grid, whole_numbers(grid, seed, 4), 1.5, "seed " + std::to_string(seed));
     }
 }
 

@@ -54,6 +54,7 @@ struct GridSummary {
     ScalarType point_type = ScalarType::float32;
     GridReport report;
     bool surveyed = false; ///< whether faces and places were counted, too
+    std::uint64_t hanging_points = 0; ///< if so: places in a face of a larger cell, where the surface is open
     std::vector<FieldSummary> fields;
     CurvedSummary curved;
     std::optional<FieldChart> chart;

@@ -93,7 +93,7 @@ struct RegionChoice {
 };
 
 /// `only`   the step whose fields are told; nothing: those of all steps
-Result<void> announce_fields(const CaseFiles& files, const CaseLayout& layout,
+Result<void> announce_chosen_fields(const CaseFiles& files, const CaseLayout& layout,
                              const std::vector<RegionChoice>& choices, std::optional<std::size_t> only,
                              FileInfo& info) {
     for (std::size_t region = 0; region < choices.size(); ++region) {
@@ -326,7 +326,7 @@ Result<Loaded> load_openfoam_case(const CaseFiles& case_files, const ReadOptions
                                 fmt::format("{} of the case {} in its place; --block polyMesh (or 1) reads it",
                                             layout->regions.size() == 2 ? "a region" : "regions",
                                             layout->regions.size() == 2 ? "is read" : "are read")});
-    if (auto announced = announce_fields(files, *layout, *chosen,
+    if (auto announced = announce_chosen_fields(files, *layout, *chosen,
                                          depth == Depth::description ? options.step : std::nullopt, loaded.info);
         !announced)
         return announced.error();
