@@ -54,9 +54,9 @@ protected:
         folder_.write("v.vec", of_nodes(3));
         folder_.write("e.scl", of_elements());
         if (!name.empty()) folder_.write(name, text);
-        return read(folder_.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
+        return whole(read(folder_.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
                                             "scalar per node: t t.scl\nvector per node: v v.vec\n"
-                                            "scalar per element: e e.scl\n"));
+                                            "scalar per element: e e.scl\n")));
     }
 
     TemporaryFolder folder_;
@@ -69,6 +69,35 @@ TEST_P(EnsightFiles, AreReadWhole) {
     EXPECT_EQ(result->grid.point_fields.size(), 2u);
     ASSERT_EQ(result->grid.cell_fields.size(), 1u);
     EXPECT_EQ(result->grid.cell_fields[0].values.at(2), 9);
+}
+
+TEST_P(EnsightFiles, MayHaveQuotesAndBlanksInNamesAndFilesThatAreMissing) {
+    folder_.write("the grid.geo", geometry());
+    folder_.write("t 1.scl", of_nodes(1));
+    folder_.write("e.scl", of_elements());
+    folder_.write("cut.scl", of_nodes(1).substr(0, 200));
+    const std::string path = folder_.write(
+        "a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 \"the grid.geo\"\nVARIABLE\n"
+                  "scalar per node: 1 wall temperature \"t *.scl\"\nscalar per node: gone gone.scl\n"
+                  "vector per node: 'cut' cut.scl\nscalar per element: 1 \"e\" \"e.scl\"\n"
+                  "TIME\ntime set: 1\nnumber of steps: 2\nfilename start number: 1\nfilename increment: 1\n"
+                  "time values: 0.05\n   0.1\n");
+    const auto result = read(path);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->info.times, (std::vector<double>{0.05, 0.1})) << "as they are in the case";
+    ASSERT_EQ(result->grid.point_fields.size(), 1u);
+    EXPECT_EQ(result->grid.point_fields[0].name, "wall temperature");
+    ASSERT_EQ(result->grid.cell_fields.size(), 1u);
+    EXPECT_EQ(result->grid.cell_fields[0].values.at(2), 9);
+    ASSERT_EQ(result->info.left_out.size(), 2u);
+    EXPECT_EQ(result->info.left_out[0].name, "gone");
+    EXPECT_NE(result->info.left_out[0].reason.find("gone.scl: there is no such file"), std::string::npos);
+    EXPECT_EQ(result->info.left_out[1].name, "cut");
+    ReadOptions asked;
+    asked.point_fields = {"gone"};
+    const auto error = read(path, asked);
+    ASSERT_FALSE(error);
+    EXPECT_NE(error.error().message.find("gone.scl"), std::string::npos) << error.error().message;
 }
 
 TEST_P(EnsightFiles, VariablesThatAreCutAreErrorsThatNameTheFile) {
@@ -135,8 +164,8 @@ TEST_P(EnsightFiles, WithElementsThatHaveNoValuesAreErrors) {
     geometry.line("tetra4").integers({1}).integers({1, 2, 3, 5}, 4).line("pyramid5").integers({1});
     folder_.write("grid.geo", geometry.integers({1, 2, 3, 4, 5}, 5).text());
     folder_.write("e.scl", GoldText(GetParam()).line("e").line("part").integers({1}).line("tetra4").floats({7}).text());
-    const auto result = read(folder_.write("b.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
-                                                     "VARIABLE\nscalar per element: e e.scl\n"));
+    const auto result = whole(read(folder_.write("b.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\n"
+                                                     "VARIABLE\nscalar per element: e e.scl\n")));
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().message.find("1 elements \"pyramid5\", but there are no values"), std::string::npos)
         << result.error().message;
@@ -241,8 +270,8 @@ TEST(EnsightText, OfGoldMustHaveItsNumbersOnLinesOfTheirOwn) {
         folder.write("grid.geo", grid);
         folder.write("t", values);
         return message_of(
-            read(folder.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
-                                        "scalar per node: t t\n")));
+            whole(read(folder.write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: grid.geo\nVARIABLE\n"
+                                              "scalar per node: t t\n"))));
     };
     const std::string head = "t\npart\n1\ncoordinates\n";
     EXPECT_EQ(error(geometry, head + "1\n2\n3\n4\n"), "read");
@@ -269,10 +298,10 @@ TEST(EnsightSteps, AreLookedAtInTheFilesOfTheStep) {
                   "time values: 0 1\n");
     ReadOptions options;
     options.step = 0;
-    const auto whole = read(path, options);
-    ASSERT_TRUE(whole) << whole.error().message;
+    const auto sound = whole(read(path, options));
+    ASSERT_TRUE(sound) << sound.error().message;
     options.step = 1;
-    const auto cut = read(path, options);
+    const auto cut = whole(read(path, options));
     ASSERT_FALSE(cut);
     EXPECT_NE(cut.error().message.find("t.007"), std::string::npos) << cut.error().message;
 }

@@ -17,7 +17,8 @@ class HostileFile : public testing::Test {
 protected:
     static std::string message_of(const std::string& path) {
         const auto result = read(path);
-        return result ? "read" : result.error().message;
+        if (!result) return result.error().message;
+        return result->info.left_out.empty() ? "read" : result->info.left_out.front().reason;
     }
     static void expect_error(const std::string& path, std::initializer_list<std::string_view> words) {
         const std::string message = message_of(path);
@@ -71,8 +72,8 @@ TEST_F(HostileEnsight, APipeIsAnErrorAndNotWaitedFor) {
     EXPECT_NE(message_of(path), "read");
 }
 
-/// VTK's reader looks for the time step of measured points behind the end of their file.
-TEST_F(HostileEnsight, AnEndlessOneIsStoppedByItsProcessorTime) {
+/// VTK's reader, asked for them, looks for their time step behind the end of their file, for ever.
+TEST_F(HostileEnsight, MeasuredPointsAreNotRead) {
     const std::string path = ensight("");
     folder_.write("case/steps.geo",
                   "BEGIN TIME STEP\n" + content_of(folder_.file("case/grid.geo")) + "END TIME STEP\n");
@@ -80,7 +81,7 @@ TEST_F(HostileEnsight, AnEndlessOneIsStoppedByItsProcessorTime) {
     folder_.write("case/a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 1 steps.geo\nmeasured: 1 1 points\n"
                                  "TIME\ntime set: 1\nnumber of steps: 1\ntime values: 0\n"
                                  "FILE\nfile set: 1\nnumber of steps: 1\n");
-    expect_error(path, {"a.case", "processor time"});
+    EXPECT_EQ(message_of(path), "read");
 }
 
 using HostileHdf5 = HostileFile;

@@ -20,18 +20,53 @@ std::optional<std::int64_t> integer_at(const Words& words, std::size_t at) {
     return value;
 }
 
-/// "1 2 rest", "1 rest" or "rest": the sets of a file; returns where the rest begins.
-std::size_t read_sets(const Words& words, EnsightCase::File& file) {
+/// "1 2 rest", "1 rest" or "rest": the sets of a file, taken off the line.
+void take_sets(std::string_view& line, EnsightCase::File& file) {
+    const Words words = words_of(line);
     const auto first = integer_at(words, 0);
-    if (!first || words.size() < 2) return 0;
-    file.time_set = *first;
+    if (!first || words.size() < 2) return;
     const auto second = integer_at(words, 1);
-    if (!second || words.size() < 3) return 1;
-    file.file_set = *second;
-    return 2;
+    const bool has_both = second && words.size() > 2;
+    file.time_set = *first;
+    if (has_both) file.file_set = *second;
+    const std::string_view last = words[has_both ? 1 : 0];
+    line.remove_prefix(static_cast<std::size_t>(last.data() + last.size() - line.data()));
 }
 
-std::optional<EnsightCase::Variable> variable_of(std::string_view key, const Words& words) {
+std::string_view without_outer_spaces(std::string_view text) {
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+/// Takes what stands in quotes off the end of a line, or else its last word.
+std::string take_last_name(std::string_view& line) {
+    line = without_outer_spaces(line);
+    std::string name;
+    if (line.size() > 1 && (line.back() == '"' || line.back() == '\'')) {
+        const char quote = line.back();
+        const auto begin = line.find_last_of(quote, line.size() - 2);
+        if (begin != std::string_view::npos) {
+            name = line.substr(begin + 1, line.size() - begin - 2);
+            line = without_outer_spaces(line.substr(0, begin));
+            return name;
+        }
+    }
+    const auto begin = line.find_last_of(" \t");
+    name = line.substr(begin == std::string_view::npos ? 0 : begin + 1);
+    line = begin == std::string_view::npos ? std::string_view() : without_outer_spaces(line.substr(0, begin));
+    return name;
+}
+
+/// The name of a variable, without the quotes around it.
+std::string unquoted(std::string_view name) {
+    name = without_outer_spaces(name);
+    if (name.size() > 1 && name.front() == name.back() && (name.front() == '"' || name.front() == '\''))
+        name = name.substr(1, name.size() - 2);
+    return std::string(name);
+}
+
+std::optional<EnsightCase::Variable> variable_of(std::string_view key, std::string_view rest) {
     struct Kind {
         std::string_view name;
         std::size_t components;
@@ -53,21 +88,27 @@ std::optional<EnsightCase::Variable> variable_of(std::string_view key, const Wor
     variable.of_nodes = place == "node" || variable.is_measured;
     if (!variable.of_nodes && place != "element") return std::nullopt;
     EnsightCase::File file;
-    const std::size_t at = read_sets(words, file);
-    for (std::size_t i = 0; i < (variable.is_complex ? 2 : 1) && at + 1 + i < words.size(); ++i) {
-        file.name = words[at + 1 + i];
-        variable.files.push_back(file);
+    take_sets(rest, file);
+    if (variable.is_complex) { // the files of both parts, then a frequency
+        const Words words = words_of(rest);
+        if (words.size() < 3) return std::nullopt;
+        for (const std::size_t i : {1, 2}) {
+            file.name = words[i];
+            variable.files.push_back(file);
+        }
+        variable.description = words[0];
+        return variable;
     }
-    if (variable.files.size() != (variable.is_complex ? 2 : 1)) return std::nullopt;
-    variable.description = words[at];
+    file.name = take_last_name(rest);
+    variable.files.push_back(file);
+    variable.description = unquoted(rest);
+    if (variable.description.empty() || file.name.empty()) return std::nullopt;
     return variable;
 }
 
-/// The words before the colon with a space between them; empty where VTK's reader would not find them, since it parts
-/// words at spaces only.
+/// The words before the colon with a space between them.
 std::string key_of(std::string_view line, std::size_t colon) {
-    if (colon == std::string_view::npos || colon == 0 || is_space(line[colon - 1])) return {};
-    if (colon + 1 < line.size() && !is_space(line[colon + 1])) return {};
+    if (colon == std::string_view::npos) return {};
     return fmt::format("{}", fmt::join(words_of(line.substr(0, colon)), " "));
 }
 
@@ -122,7 +163,8 @@ private:
         }
         const auto colon = line.find(':');
         const std::string key = key_of(line, colon);
-        const Words words = words_of(line.substr(colon == std::string_view::npos ? 0 : colon + 1));
+        const std::string_view rest = line.substr(colon == std::string_view::npos ? 0 : colon + 1);
+        const Words words = words_of(rest);
         if (colon != std::string_view::npos) list_ = List::none;
         switch (section_) {
         case Section::none: return refuse(line, "FORMAT");
@@ -134,12 +176,12 @@ private:
                 refuse(line, "\"type: ensight\" or \"type: ensight gold\"");
             return;
         case Section::geometry:
-            if (key == "model") return take_model(words);
+            if (key == "model") return take_model(rest);
             if (!line.starts_with('m') && key != "boundary" && key != "rigid_body") refuse(line, "model:");
             return;
         case Section::variable:
             if (line.starts_with("constant")) return;
-            if (auto variable = variable_of(key, words)) found_.variables.push_back(*std::move(variable));
+            if (auto variable = variable_of(key, rest)) found_.variables.push_back(*std::move(variable));
             else refuse(line, "a variable");
             return;
         case Section::file: return take_file_set(key, words);
@@ -148,10 +190,15 @@ private:
         if (list_ != List::none) take_list(words);
     }
 
-    void take_model(const Words& words) {
-        const std::size_t at = read_sets(words, found_.model);
-        found_.model_names_sets = at > 0;
-        if (at < words.size()) found_.model.name = words[at]; // before "change_coords_only"
+    void take_model(std::string_view rest) {
+        const std::string_view whole = rest;
+        take_sets(rest, found_.model);
+        found_.model_names_sets = rest.size() < whole.size();
+        if (const auto change = rest.rfind("change_coords_only"); change != std::string_view::npos)
+            rest = rest.substr(0, change);
+        else if (const auto parts = rest.rfind("changing_geometry_per_part"); parts != std::string_view::npos)
+            rest = rest.substr(0, parts);
+        found_.model.name = take_last_name(rest);
     }
 
     void take_time_set(std::string_view key, const Words& words) {
@@ -173,7 +220,7 @@ private:
             std::int32_t number = 0;
             double value = 0;
             if (list_ == List::numbers && parse_number(word, number)) set.numbers.push_back(number);
-            if (list_ == List::values && parse_number(word, value)) set.values.push_back(static_cast<float>(value));
+            if (list_ == List::values && parse_number(word, value)) set.values.push_back(value);
         }
     }
 
@@ -214,16 +261,21 @@ auto with_id(const Sets& sets, std::int64_t id) {
 
 EnsightCase parse_case(std::string_view text) { return CaseParser().parse(text); }
 
-EnsightTime::EnsightTime(const EnsightCase& from, std::size_t step) : case_(from) {
-    std::vector<float> all;
-    for (const auto& set : case_.time_sets) all.insert(all.end(), set.values.begin(), set.values.end());
+std::vector<double> times_of(const EnsightCase& found) {
+    std::vector<double> all;
+    for (const auto& set : found.time_sets) all.insert(all.end(), set.values.begin(), set.values.end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
+EnsightTime::EnsightTime(const EnsightCase& from, std::size_t step) : case_(from) {
+    const std::vector<double> all = times_of(case_);
     if (!all.empty()) time_ = all[std::min(step, all.size() - 1)];
     const auto set = with_id(case_.time_sets, case_.model.time_set);
     if (set == case_.time_sets.end() || set->values.empty()) return;
     model_time_ = set->values[0];
-    for (const float value : set->values) {
+    for (const double value : set->values) {
         if (value > time_ || value <= model_time_) continue;
         model_time_ = value;
         ++model_step_;
@@ -242,7 +294,7 @@ EnsightTime::Found EnsightTime::file_of(const EnsightCase::File& file) const {
     if (set == case_.time_sets.end()) return {{}, fmt::format("there is no time set {}", file.time_set)};
     std::size_t step = 0;
     bool valid = false;
-    for (const float value : set->values) {
+    for (const double value : set->values) {
         if (value > time_) continue;
         ++step;
         valid = valid || value >= model_time_;
@@ -258,8 +310,9 @@ EnsightTime::Found EnsightTime::place_of(const EnsightCase::File& file, std::siz
         if (const auto number = number_of_file(times, step)) place.name = with_number(file.name, *number);
         return {place, {}};
     }
-    const auto set = with_id(case_.file_sets, file.file_set.value_or(1));
-    if (set == case_.file_sets.end()) return {{}, fmt::format("there is no file set {}", file.file_set.value_or(1))};
+    const std::int64_t id = file.file_set.value_or(case_.file_sets.empty() ? 1 : case_.file_sets.front().id);
+    const auto set = with_id(case_.file_sets, id);
+    if (set == case_.file_sets.end()) return {{}, fmt::format("there is no file set {}", id)};
     std::size_t index = 0;
     place.step = step;
     while (index + 1 < set->steps.size() && place.step > set->steps[index]) place.step -= set->steps[index++];

@@ -30,7 +30,7 @@ struct EnsightCase {
         std::optional<std::int64_t> first_number; ///< of files; the next ones are `increment` apart
         std::int64_t increment = 1;
         std::vector<std::int64_t> numbers;        ///< of files, instead
-        std::vector<float> values;
+        std::vector<double> values;
     };
     /// Files that have several steps each.
     struct FileSet {
@@ -38,7 +38,7 @@ struct EnsightCase {
         std::vector<std::int64_t> numbers;        ///< of files; empty: there is one, whose name has no stars
         std::vector<std::uint64_t> steps;         ///< of each file
     };
-    std::string error; ///< a line that VTK's reader would not get past; empty: none
+    std::string error; ///< a line that stands where it may not; empty: none
     bool is_ensight = false, is_gold = false, has_time = false, has_file_sets = false;
     File model;
     bool model_names_sets = false;
@@ -47,8 +47,12 @@ struct EnsightCase {
     std::vector<FileSet> file_sets;
 };
 
-/// Reads lines as VTK's reader does: empty ones and comments are left out, and a section begins at the first column.
+/// Empty lines and comments are left out, and a section begins at the first column. A file name is the last word, or what stands
+/// in quotes at the end of the line; the name of a variable is all before it.
 EnsightCase parse_case(std::string_view text);
+
+/// The times of all time sets, ascending, each once.
+std::vector<double> times_of(const EnsightCase& found);
 
 /// Where the values of a step are.
 struct EnsightPlace {
@@ -56,7 +60,7 @@ struct EnsightPlace {
     std::size_t step = 1;  ///< in the file, from 1; its steps lie between BEGIN TIME STEP and END TIME STEP
 };
 
-/// Finds files of one time as VTK's reader does. Borrows the case.
+/// Finds files of one time. Borrows the case.
 class EnsightTime {
 public:
     /// `step`   index into all times of the case, from 0
@@ -74,8 +78,8 @@ private:
     Found place_of(const EnsightCase::File& file, std::size_t step, const EnsightCase::TimeSet& times) const;
 
     const EnsightCase& case_;
-    float time_ = 0;
-    float model_time_ = -1;
+    double time_ = 0;
+    double model_time_ = -1;
     std::size_t model_step_ = 1;
 };
 

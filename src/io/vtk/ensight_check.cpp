@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "io/own/escape.hpp"
 #include "io/own/loaded.hpp"
 #include "io/vtk/ensight_walk.hpp"
 #include "io/vtk/mapped_file.hpp"
@@ -13,10 +15,10 @@
 namespace isotet::io::vtk {
 namespace {
 
-/// Nothing where it is not there: VTK's reader tells.
-std::optional<MappedFile> opened(const std::string& path) {
+MappedFile opened(const std::string& path) {
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        throw EnsightError({ErrorCode::file, fmt::format("{}: there is no such file", escaped(path))});
     auto file = MappedFile::open(path);
     if (!file) throw EnsightError(file.error());
     if (file->bytes().empty()) throw EnsightError(broken(path, "the file is empty"));
@@ -38,21 +40,19 @@ public:
     EnsightCheck(const std::string& path, const EnsightCase& from, std::size_t step)
         : path_(path), case_(from), time_(from, step) {}
 
-    std::optional<EnsightBinary6> run() {
-        if (!walk_geometry()) return std::nullopt;
+    EnsightFound run(const std::vector<bool>& wanted) {
+        walk_geometry();
         for (std::size_t i = 0; i < case_.variables.size(); ++i) {
-            const EnsightCase::Variable& variable = case_.variables[i];
-            if (case_.has_file_sets && !variable.files[0].file_set)
-                refuse(
-                    fmt::format("variable \"{}\" names no file set, which VTK's reader needs from every variable once "
-                                "there is one",
-                                variable.description));
-            if (variable.is_complex && case_.has_time) expect_time_of_complex(variable, i);
-            if (variable.is_measured || (!case_.is_gold && variable.components > 6)) continue;
-            for (const EnsightCase::File& file : variable.files) walk_variable(variable, file);
+            EnsightFound::Variable& found = found_.variables.emplace_back();
+            if (!wanted[i]) continue;
+            try {
+                walk_all_files(i, found);
+            } catch (const EnsightError& error) {
+                found.problem = error.error().message;
+            }
         }
-        if (case_.is_gold || form_ == EnsightForm::ascii) return std::nullopt;
-        return EnsightBinary6{order_ == EnsightOrder::big};
+        found_.is_big_endian = order_ == EnsightOrder::big;
+        return std::move(found_);
     }
 
 private:
@@ -66,24 +66,21 @@ private:
         return (std::filesystem::path(path_).parent_path() / name).string();
     }
 
-    /// VTK's reader takes the time set of another variable.
-    void expect_time_of_complex(const EnsightCase::Variable& variable, std::size_t at) const {
-        std::size_t complex = 0;
-        for (std::size_t i = 0; i < at; ++i) complex += case_.variables[i].is_complex ? 1 : 0;
-        std::size_t real = 0;
-        for (const auto& other : case_.variables)
-            if (!other.is_complex && real++ == complex && other.files[0].time_set == variable.files[0].time_set &&
-                !case_.has_file_sets)
-                return;
-        refuse(fmt::format("VTK's reader does not find the time of complex variable \"{}\"", variable.description));
+    void walk_all_files(std::size_t at, EnsightFound::Variable& found) {
+        const EnsightCase::Variable& variable = case_.variables[at];
+        if (variable.is_measured) refuse("it is a variable of measured points, which have no cells");
+        if (!case_.is_gold && variable.components > 6) refuse("EnSight 6 has no tensors of 9 components");
+        for (const EnsightCase::File& file : variable.files) {
+            if (auto place = walk_variable(variable, file)) found.places.push_back(*std::move(place));
+        }
     }
 
-    bool walk_geometry() {
+    void walk_geometry() {
         const auto place = placed(time_.model(), case_.model.name);
         const std::string path = beside(place->name);
         const auto mapped = opened(path);
-        if (!mapped) return false;
-        const std::string_view bytes = mapped->text();
+        const std::string_view bytes = mapped.text();
+        found_.model = {path, place->step};
         form_ = form_of(bytes, case_.is_gold);
         if (form_ == EnsightForm::fortran && (!case_.is_gold || case_.has_file_sets))
             throw EnsightError(
@@ -98,7 +95,7 @@ private:
             if (case_.is_gold || file.order() == EnsightOrder::unknown || !walk_in_other_order(file, place->step))
                 throw;
         }
-        return true;
+        found_.form = form_;
     }
 
     /// The count that told the byte order may be small enough in the other one, too.
@@ -136,13 +133,14 @@ private:
         order_ = file.order();
     }
 
-    void walk_variable(const EnsightCase::Variable& variable, const EnsightCase::File& from) {
+    /// Nothing: there are no values at this time.
+    std::optional<EnsightPlace> walk_variable(const EnsightCase::Variable& variable, const EnsightCase::File& from) {
         const auto place = placed(time_.file_of(from), from.name);
-        if (!place) return; // no values at this time
+        if (!place) return std::nullopt;
         const std::string path = beside(place->name);
+        const EnsightPlace found{path, place->step};
         const auto mapped = opened(path);
-        if (!mapped) return;
-        const std::string_view bytes = mapped->text();
+        const std::string_view bytes = mapped.text();
         const bool binary = form_ != EnsightForm::ascii;
         const EnsightForm form = !binary                              ? EnsightForm::ascii
                                  : case_.is_gold && is_fortran(bytes) ? EnsightForm::fortran
@@ -156,15 +154,17 @@ private:
         if (!case_.has_file_sets) {
             walk(true);
             expect_whole_last_line(file, 12);
-            return;
+            return found;
         }
         const auto begins = walk_steps(file, place->step, OtherSteps::before, walk);
         if (case_.is_gold) check_gold_index(file, place->step, begins);
+        return found;
     }
 
     const std::string& path_;
     const EnsightCase& case_;
     EnsightTime time_;
+    EnsightFound found_;
     EnsightGrid grid_;
     EnsightForm form_ = EnsightForm::ascii;
     EnsightOrder order_ = EnsightOrder::unknown;
@@ -172,15 +172,20 @@ private:
 
 } // namespace
 
-Result<std::optional<EnsightBinary6>> check_ensight(const std::string& case_file, std::size_t step) {
+Result<EnsightCase> read_case(const std::string& case_file) {
     const auto text = MappedFile::open(case_file);
     if (!text) return text.error();
-    const EnsightCase found = parse_case(text->text());
-    if (!found.is_ensight) return std::optional<EnsightBinary6>(); // VTK's reader tells
+    EnsightCase found = parse_case(text->text());
+    if (!found.is_ensight) return broken(case_file, "it is no EnSight case: \"type: ensight\" is missing");
     if (!found.error.empty()) return broken(case_file, found.error);
     if (found.model.name.empty()) return broken(case_file, "it names no geometry: \"model:\" is missing");
+    return found;
+}
+
+Result<EnsightFound> check_ensight(const std::string& case_file, const EnsightCase& found, std::size_t step,
+                                   const std::vector<bool>& wanted) {
     try {
-        return EnsightCheck(case_file, found, step).run();
+        return EnsightCheck(case_file, found, step).run(wanted);
     } catch (const EnsightError& error) {
         return error.error();
     }

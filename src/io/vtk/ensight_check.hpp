@@ -4,30 +4,44 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include <isotet/result.hpp>
 
+#include "io/vtk/ensight_case.hpp"
+#include "io/vtk/ensight_file.hpp"
+
 namespace isotet::io::vtk {
 
-/// What VTK's reader has to be told of EnSight 6 as C binary: it guesses the byte order by the first count, wrongly for 64.
-struct EnsightBinary6 {
-    bool is_big_endian = false;
+/// What of a case is read at a step.
+struct EnsightFound {
+    struct Variable {
+        std::vector<EnsightPlace> places; ///< of its files; none: there are no values at this time
+        std::string problem;              ///< why it cannot be read; empty: it can
+    };
+    EnsightForm form = EnsightForm::ascii;
+    bool is_big_endian = false; ///< of EnSight 6 as C binary: VTK's reader guesses it by the first count, wrongly for 64
+    EnsightPlace model;
+    std::vector<Variable> variables; ///< as those of the case
 };
 
 /// Walks through the geometry and the variables of one step, of EnSight Gold and 6, in all their forms: every count is
 /// compared with what is left of the file, and every variable has as many values as the geometry has nodes or elements. What
-/// VTK's reader is known to read wrong is an error, too.
+/// VTK's reader is known to read wrong is a problem, too. Names of files in what is found are complete paths.
 ///
-/// `step`   its number, from 0
+/// `step`     its number, from 0
+/// `wanted`   for each variable of the case: others are not looked at
 ///
-/// Not looked at: measured points, which are no grid, and files that are not there, which VTK's reader tells.
-///
-/// Returns  nothing for all but C binary files of EnSight 6
-/// Errors   invalid_data: the file, what it should have, and where it ends
+/// Errors   invalid_data, of the geometry: the file, what it should have, and where it ends; file: it is not there
 /// Cost     binary files: a look at each part, and at each element where nodes of EnSight 6 have numbers; ascii files:
 ///          reading them once more
-Result<std::optional<EnsightBinary6>> check_ensight(const std::string& case_file, std::size_t step);
+Result<EnsightFound> check_ensight(const std::string& case_file, const EnsightCase& found, std::size_t step,
+                                   const std::vector<bool>& wanted);
+
+/// The case that a file holds.
+///
+/// Errors   invalid_data: a line that stands where it may not, no geometry
+Result<EnsightCase> read_case(const std::string& case_file);
 
 } // namespace isotet::io::vtk
