@@ -241,7 +241,7 @@ TEST(ReadLegacy, NamesWhatIsWrong) {
     EXPECT_EQ(message_of("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 999999999999 float\n0 0 0\n"),
               "POINTS: 999999999999 x 3 numbers were announced, but only 7 bytes are left");
     EXPECT_EQ(message_of(legacy_start + "CELL_DATA 3\nSCALARS c int\nLOOKUP_TABLE default\n1 2 3\n"),
-              "the array 'c' has 3 tuples, but the file has 0 cells");
+              "cell field 'c' cannot be read: it has 3 values, but the grid has 0 cells");
 }
 
 std::string vtp(std::string_view attributes, std::string_view piece, std::string_view after = {}) {
