@@ -293,18 +293,17 @@ std::uint8_t cell_type_of_element(std::string_view topology, std::uint64_t corne
         std::uint8_t type;
     };
     static constexpr Known known[] = {
-        {"TET", 4, 10},   {"TET", 10, 24},  {"TET", 0, 24},   {"HEX", 8, 12},    {"HEX", 20, 25}, {"HEX", 27, 29},
-        {"HEX", 0, 25},   {"WED", 6, 13},   {"WED", 15, 26},  {"WED", 18, 32},   {"WED", 0, 26},  {"PYR", 5, 14},
-        {"PYR", 13, 27},  {"PYR", 14, 74},  {"PYR", 0, 27},   {"TRI", 3, 5},     {"TRI", 6, 22},  {"TRI", 0, 22},
-        {"QUA", 4, 9},    {"QUA", 8, 23},   {"QUA", 9, 28},   {"QUA", 0, 23},    {"SHELL", 3, 5}, {"SHELL", 4, 9},
-        {"SHELL", 6, 22}, {"SHELL", 8, 23}, {"SHELL", 9, 28}, {"SHELL", 0, 23},  {"BAR", 2, 3},   {"BAR", 0, 21},
-        {"BEAM", 2, 3},   {"BEAM", 0, 21},  {"TRUSS", 2, 3},  {"TRUSS", 0, 21},  {"EDGE", 2, 3},  {"EDGE", 0, 21},
-        {"SPHERE", 0, 1}, {"CIRCLE", 0, 1}, {"NSIDED", 0, 7}, {"NFACED", 0, 42},
+        {"TET", 4, 10},  {"TET", 10, 24}, {"HEX", 8, 12},   {"HEX", 20, 25},  {"HEX", 27, 29},  {"WED", 6, 13},
+        {"WED", 15, 26}, {"WED", 18, 32}, {"PYR", 5, 14},   {"PYR", 13, 27},  {"PYR", 14, 74},  {"TRI", 3, 5},
+        {"TRI", 6, 22},  {"TRI", 0, 22},  {"QUA", 4, 9},    {"QUA", 8, 23},   {"QUA", 9, 28},   {"QUA", 0, 23},
+        {"SHELL", 3, 5}, {"SHELL", 4, 9}, {"SHELL", 6, 22}, {"SHELL", 8, 23}, {"SHELL", 9, 28}, {"SHELL", 0, 23},
+        {"BAR", 2, 3},   {"BAR", 0, 21},  {"BEAM", 2, 3},   {"BEAM", 0, 21},  {"TRUSS", 2, 3},  {"TRUSS", 0, 21},
+        {"EDGE", 2, 3},  {"EDGE", 0, 21}, {"SPHERE", 0, 1}, {"CIRCLE", 0, 1}, {"NSIDED", 0, 7}, {"NFACED", 0, 42},
     };
     for (const Known& element : known)
         if (topology.starts_with(element.begins) && (element.corners == corners || element.corners == 0))
             return element.type;
-    return 0; // an empty cell: left out
+    return 0; // other numbers of nodes (TET14, WEDGE20, PYRAMID18) too: an empty cell, left out
 }
 
 } // namespace isotet::io::vtk
