@@ -69,12 +69,14 @@ struct Pieces {
     std::vector<std::size_t> order_of_content() const {
         std::vector<std::size_t> order(size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+        std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
             const auto key = [&](std::size_t i) {
                 return std::tuple(boxes[i].lower, boxes[i].upper, pieces[i].grid.points.tuples(),
                                   pieces[i].grid.cells.count());
             };
-            return key(a) != key(b) ? key(a) < key(b) : compare_content(pieces[a], pieces[b]) < 0;
+            if (key(a) != key(b)) return key(a) < key(b);
+            const int content = compare_content(pieces[a], pieces[b]);
+            return content != 0 ? content < 0 : a < b;
         });
         return order;
     }

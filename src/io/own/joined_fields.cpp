@@ -74,10 +74,10 @@ void tell_columns(const std::vector<JoinedColumn>& columns, std::size_t pieces, 
     std::map<std::size_t, std::vector<std::string>> in_some; // by pieces
     for (const JoinedColumn& column : columns) {
         if (column.other_components > 0)
-            leave_out(whole.info, {fmt::format("{} field", kind), column.name,
-                                   fmt::format("it has {} component{} in one piece and {} in another",
-                                               column.components, column.components == 1 ? "" : "s",
-                                               column.other_components)});
+            leave_out(whole.info,
+                      {fmt::format("{} field", kind), column.name,
+                       fmt::format("it has {} component{} in one piece and {} in another", column.components,
+                                   column.components == 1 ? "" : "s", column.other_components)});
         else if (column.missing) in_some[column.pieces].push_back(fmt::format("\"{}\"", escaped(column.name)));
     }
     for (const auto& [count, names] : in_some)

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
-#include <tuple>
+#include <utility>
 
 #include "core/disjoint_sets.hpp"
 
@@ -50,7 +50,7 @@ private:
     void each_of_key(const Key& key, const Take& take) {
         Members all(points_.size());
         std::iota(all.begin(), all.end(), 0U);
-        std::ranges::stable_sort(all, {}, [&](std::uint32_t i) { return key(points_[i]); });
+        std::ranges::sort(all, {}, [&](std::uint32_t i) { return std::pair(key(points_[i]), i); });
         for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
             while (end < all.size() && key(points_[all[end]]) == key(points_[all[begin]])) ++end;
             take(Members(all.begin() + static_cast<std::ptrdiff_t>(begin),
