@@ -1,0 +1,109 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include <isotet/parts.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <isotet/contour.hpp>
+#include <isotet/solid.hpp>
+
+#include "support/small_grid.hpp"
+#include "support/surface_bytes.hpp"
+
+namespace isotet::test {
+namespace {
+
+/// Three balls of radius 0.3, 0.2 and 0.1, and what the field is away from them.
+Surface three_balls(const Run& run = {}) {
+    Grid grid = made_grid("kuhn", 40, {"sphere"});
+    std::vector<float> values(grid.points.tuples()), x(grid.points.tuples());
+    const double centres[3][4] = {{-0.5, -0.5, 0, 0.3}, {0.5, 0.4, 0, 0.2}, {0.5, -0.6, 0.3, 0.1}};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        double nearest = 10;
+        for (const auto& c : centres)
+            nearest = std::min(nearest, std::hypot(grid.points.at(i, 0) - c[0], grid.points.at(i, 1) - c[1],
+                                                   grid.points.at(i, 2) - c[2]) -
+                                            c[3]);
+        values[i] = static_cast<float>(nearest);
+        x[i] = static_cast<float>(grid.points.at(i, 0));
+    }
+    ContourInput input{
+        grid, {"distance", Array::own(std::move(values)), false, {}}, {{"x", Array::own(std::move(x))}}, {}};
+    Solids solids = Solids::create(std::move(input), {}, run).value();
+    return solids.extract(SolidRange::below(0), run).value().surface;
+}
+
+TEST(Parts, AreMeasuredLargestFirst) {
+    const Surface surface = three_balls();
+    const SurfaceParts found = find_parts(surface).value();
+    ASSERT_EQ(found.parts.size(), 3u);
+    const double radii[] = {0.3, 0.2, 0.1}, xs[] = {-0.5, 0.5, 0.5}, ys[] = {-0.5, 0.4, -0.6};
+    ASSERT_EQ(found.fields, (std::vector<std::string>{"x", "boundary"}));
+    std::uint64_t triangles = 0, vertices = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const SurfacePart& part = found.parts[i];
+        EXPECT_TRUE(part.closed);
+        EXPECT_NEAR(part.area, 4 * std::numbers::pi * radii[i] * radii[i], 0.02);
+        EXPECT_NEAR(part.volume, 4.0 / 3 * std::numbers::pi * std::pow(radii[i], 3), 0.003);
+        EXPECT_NEAR(part.centre[0], xs[i], 1e-3);
+        EXPECT_NEAR(part.centre[1], ys[i], 1e-3);
+        EXPECT_NEAR(part.means[0], xs[i], 1e-3);
+        EXPECT_EQ(part.means[1], 0);
+        EXPECT_NEAR(part.lower[0], xs[i] - radii[i], 0.01);
+        EXPECT_NEAR(part.upper[1], ys[i] + radii[i], 0.01);
+        triangles += part.triangles;
+        vertices += part.vertices;
+    }
+    EXPECT_EQ(triangles, surface.triangle_count());
+    EXPECT_EQ(vertices, surface.vertex_count());
+}
+
+TEST(Parts, AreTheSameForAnyThreads) {
+    const Surface surface = three_balls();
+    const SurfaceParts one = find_parts(surface, {.threads = 1}).value(),
+                       seven = find_parts(surface, {.threads = 7}).value();
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(one.parts[i].area, seven.parts[i].area);
+        EXPECT_EQ(one.parts[i].volume, seven.parts[i].volume);
+        EXPECT_EQ(one.parts[i].means, seven.parts[i].means);
+    }
+}
+
+TEST(Parts, ThatAreKeptAreWholeAndHaveTheirNumbers) {
+    const Surface surface = three_balls();
+    const SurfaceParts found = find_parts(surface).value();
+    const Surface kept = keep_parts(surface, found, {0, 2}).value();
+    EXPECT_EQ(kept.triangle_count(), found.parts[0].triangles + found.parts[2].triangles);
+    EXPECT_EQ(kept.vertex_count(), found.parts[0].vertices + found.parts[2].vertices);
+    ASSERT_EQ(kept.cell_fields.back().name, "part");
+    for (const std::uint32_t part : kept.cell_fields.back().values.as<std::uint32_t>()) EXPECT_NE(part, 1u);
+    const SurfaceParts again = find_parts(kept).value();
+    ASSERT_EQ(again.parts.size(), 2u);
+    EXPECT_EQ(again.parts[0].area, found.parts[0].area);
+    EXPECT_TRUE(again.parts[1].closed);
+    EXPECT_EQ(keep_parts(surface, found, {0, 1, 2}).value().triangle_count(), surface.triangle_count());
+    EXPECT_EQ(keep_parts(surface, found, {}).value().vertex_count(), 0u);
+}
+
+TEST(Parts, OfASurfaceThatEndsAtTheBoundaryAreOpen) {
+    const Grid grid = made_grid("hex", 8, {"plane"});
+    Contour contour = Contour::create({grid, find_field(grid, "plane").value(), {}, {}}).value();
+    const ContourResult result = contour.extract(0.1).value();
+    const SurfaceParts found = find_parts(result.surfaces[0].surface).value();
+    ASSERT_EQ(found.parts.size(), 1u);
+    EXPECT_FALSE(found.parts[0].closed);
+}
+
+TEST(Parts, OfNothingAreNone) { EXPECT_TRUE(find_parts(Surface{}).value().parts.empty()); }
+
+TEST(Parts, AskedForThatAreNotThereAreErrors) {
+    const Surface surface = three_balls();
+    const SurfaceParts found = find_parts(surface).value();
+    EXPECT_EQ(keep_parts(surface, found, {3}).error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(keep_parts(Surface{}, found, {0}).error().code, ErrorCode::invalid_argument);
+}
+
+} // namespace
+} // namespace isotet::test
