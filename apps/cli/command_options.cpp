@@ -269,6 +269,29 @@ SolidChoice parse_solid(const std::string& text) {
     return out;
 }
 
+/// "largest", "3", "area>0.5", "volume>2".
+PartChoice parse_parts(const std::string& text) {
+    if (text == "largest") return {};
+    PartChoice out;
+    std::string_view number = text;
+    for (const auto& [word, kind] : {std::pair<std::string_view, PartChoice::Kind>{"area>", PartChoice::Kind::area},
+                                     {"volume>", PartChoice::Kind::volume}}) {
+        if (!number.starts_with(word)) continue;
+        out.kind = kind;
+        number.remove_prefix(word.size());
+        break;
+    }
+    const bool counts = out.kind == PartChoice::Kind::largest;
+    std::uint64_t count = 0;
+    const char* const end = number.data() + number.size();
+    const std::from_chars_result read =
+        counts ? std::from_chars(number.data(), end, count) : std::from_chars(number.data(), end, out.limit);
+    if (counts) out.limit = static_cast<double>(count);
+    if (read.ec != std::errc{} || read.ptr != end || (counts && count == 0) || !(out.limit >= 0))
+        refuse_value("--keep", text, "largest, a number of parts from 1, area>A or volume>V");
+    return out;
+}
+
 void add_compression(const Command& command, Compression& compression, const char* format) {
     command.add_choice<Compression>(
         "--compress", compression,
@@ -296,7 +319,13 @@ void add_extract(const Command& program, ExtractCommand& extract) {
     command.add_value(
         "--solid", [&](const std::string& text) { extract.solid = parse_solid(text); }, "above|below|A:B",
         "Closed solids: the part of the grid where the field is at least the isovalue, below it, or from A to B, with the "
-        "grid's boundary there; cell field part: 0 isosurface, 1 boundary");
+        "grid's boundary there; cell field boundary: 1 there, 0 on isosurfaces");
+    command.add_value(
+        "--keep", [&](const std::string& text) { extract.keep = parse_parts(text); }, "largest|N|area>A|volume>V",
+        "Only these connected parts of each surface or solid: the largest by area, the N largest, or those of more area or "
+        "enclosed volume; cell field part: their numbers");
+    command.add_file("--parts", extract.parts_table, "FILE.csv",
+                     "Write a table of the connected parts: triangles, area, volume, place, means of the fields");
     command.add_flag("--keep-degenerate", extract.keep_degenerate,
                      "One vertex for every active edge and one or two triangles for every active tet, ties or not");
     command.add_flag("--fail-if-empty", extract.fail_if_empty,

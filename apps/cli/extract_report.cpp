@@ -109,6 +109,7 @@ std::string facts_table(const ExtractNumbers& numbers, bool verbose) {
     if (!numbers.surfaces.empty() && numbers.surfaces.back().solid)
         table.row({"", fmt::format("volume of the grid {}", rounded(numbers.surfaces.back().solid->grid_volume))});
     if (!numbers.collection.empty()) table.row({"series", numbers.collection});
+    if (!numbers.parts_table.empty()) table.row({"parts", numbers.parts_table});
     if (!verbose) return table.text();
     if (numbers.pack) add_pack_rows(*numbers.pack, table);
     table.row({"method", fmt::format("{} ({})", name_of(numbers.method), numbers.why)});
@@ -208,6 +209,8 @@ Json extract_json(const ExtractNumbers& numbers) {
                         {"area", surface.area},
                         {"seconds", {{"extract", surface.extract_seconds}, {"write", surface.write_seconds}}},
                         {"file", surface.file.empty() ? Json(nullptr) : json_text(surface.file)}});
+        if (surface.parts)
+            list.back()["parts"] = {{"found", surface.parts->parts.size()}, {"kept", surface.parts_kept}};
         if (surface.solid) list.back()["solid"] = solid_json(*surface.solid);
         if (surface.device)
             list.back()["device"] = {{"seconds", surface.device->device_seconds},

@@ -23,13 +23,13 @@ struct SolidRange {
     static SolidRange below(double isovalue) { return {-std::numeric_limits<double>::infinity(), isovalue}; }
 };
 
-/// What a triangle of a solid is part of: values of its cell field "part".
+/// What a triangle of a solid is part of: values of its cell field "boundary".
 enum class SolidPart : std::uint8_t { isosurface = 0, boundary = 1 };
 
 /// A solid and what is told of it.
 ///
 /// `surface`   triangles face outwards: those of the isosurfaces first, as extract() gives them, then the boundary. Its
-///             last cell field is "part", uint8, a SolidPart. Vertices: those of the isosurfaces, then points of the grid
+///             last cell field is "boundary", uint8, a SolidPart. Vertices: those of the isosurfaces, then points of the grid
 ///             (both edge ends are the point), then vertices inside faces that are not flat (both are -1)
 struct Solid {
     Surface surface;

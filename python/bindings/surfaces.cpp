@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <isotet/check.hpp>
+#include <isotet/parts.hpp>
 #include <isotet/read.hpp>
 #include <isotet/surface.hpp>
 #include <isotet/write.hpp>
@@ -30,6 +31,21 @@ namespace {
 bool is_there(const Array& numbers) { return !numbers.empty() || numbers.type() == ScalarType::int64; }
 
 nb::object array_or_none(const Array& array, bool there) { return there ? array_out(array) : nb::none(); }
+
+nb::dict part_out(const SurfacePart& part, const std::vector<std::string>& fields) {
+    nb::dict out, means;
+    out["triangles"] = part.triangles;
+    out["vertices"] = part.vertices;
+    out["area"] = part.area;
+    out["volume"] = part.closed ? nb::object(nb::float_(part.volume)) : nb::object(nb::none());
+    out["closed"] = part.closed;
+    out["centre"] = part.centre;
+    out["lower"] = part.lower;
+    out["upper"] = part.upper;
+    for (std::size_t i = 0; i < fields.size(); ++i) means[nb::str(fields[i].c_str())] = part.means[i];
+    out["means"] = means;
+    return out;
+}
 
 Array optional_array(const std::optional<ArrayIn>& array) { return array ? array_in(*array) : Array(); }
 
@@ -119,6 +135,27 @@ void add_surfaces(nb::module_& module) {
             return report_out(call(options, [&](const Run& run) { return check(surface, how, run); }));
         },
         "surface"_a, "closed"_a, "grid"_a.none(), "field"_a.none(), "weld"_a, "max_findings"_a, "call"_a);
+
+    module.def(
+        "find_parts",
+        [](const Surface& surface, const CallOptions& options) {
+            const SurfaceParts found = call(options, [&](const Run& run) { return find_parts(surface, run); });
+            nb::list out;
+            for (const SurfacePart& part : found.parts) out.append(part_out(part, found.fields));
+            return out;
+        },
+        "surface"_a, "call"_a);
+
+    module.def(
+        "keep_parts",
+        [](const Surface& surface, const std::vector<std::uint64_t>& kept, const CallOptions& options) {
+            return call(options, [&](const Run& run) -> Result<Surface> {
+                const Result<SurfaceParts> found = find_parts(surface, run);
+                if (!found) return found.error();
+                return keep_parts(surface, *found, kept, run);
+            });
+        },
+        "surface"_a, "kept"_a, "call"_a);
 
     module.def(
         "write_surface",

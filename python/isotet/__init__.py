@@ -24,9 +24,9 @@ from ._grid import Contour, Grid, PackedGrid, Solids, contour, formats, inspect,
 from ._isotet import Error, __version__
 from ._picture import render
 from ._pieces import Frame, make_frame, number_points
-from ._surface import Surface, SurfaceReport, check, read_surface
+from ._surface import Surface, SurfaceReport, check, parts, read_surface
 
 __all__ = [
     "Contour", "Error", "Frame", "Grid", "PackedGrid", "Solids", "Surface", "SurfaceReport", "__version__", "check", "contour", "formats",
-    "inspect", "make", "make_frame", "number_points", "pack", "read", "read_surface", "render", "solid",
+    "inspect", "make", "make_frame", "number_points", "pack", "parts", "read", "read_surface", "render", "solid",
 ]  # fmt: skip

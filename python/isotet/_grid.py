@@ -484,7 +484,7 @@ class Solids:
     def solid(self, *, above: float | None = None, below: float | None = None, threads: int = 0,
               progress: Progress | None = None) -> Surface:  # fmt: skip
         """The part of the grid where the field is at least `above` and less than `below`, one of them or both, as a closed
-        surface: the isosurfaces and the boundary of the grid between, triangles facing outwards. Its cell field "part" is 0
+        surface: the isosurfaces and the boundary of the grid between, triangles facing outwards. Its cell field "boundary" is 0
         for isosurfaces and 1 for the boundary; `Surface.solid` tells its volume.
 
         Raises ValueError where neither is given, or `above` is not less than `below`; MemoryError.
@@ -506,6 +506,11 @@ def solid(points, cells, values, *, above: float | None = None, below: float | N
           precision: str = "float32", split_cells: bool = False, threads: int = 0,
           progress: Progress | None = None) -> Surface:  # fmt: skip
     """The part of a grid between isovalues as a closed surface: `Solids.solid` of arrays as `contour` takes them.
+
+    above, below
+        The solid is where values are at least `above` and less than `below`; one of them may be left out.
+
+    The other parameters are those of `contour`.
 
     >>> import isotet
     >>> points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]

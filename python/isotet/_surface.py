@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -142,6 +142,17 @@ class Surface:
         """"direct" or "clusters": how the surface was made. Both give the same one, in another order."""
         return self._how.get("method")
 
+    def keep_parts(self, kept: int | Iterable[int] = 0, *, threads: int = 0, progress: Progress | None = None) -> Surface:
+        """The surface with some of its connected parts only, by their places in `parts` (0: the largest), and the cell field
+        "part" with these numbers.
+
+        Raises ValueError for a number that is not below that of the parts.
+        """
+        numbers = [kept] if isinstance(kept, (int, np.integer)) else [int(part) for part in kept]
+        if any(part < 0 for part in numbers):
+            raise ValueError(f"part {min(numbers)} is asked for, but parts are counted from 0")
+        return Surface._of(_isotet.keep_parts(self._surface, numbers, call_options(threads, progress)), dict(self._how))
+
     def write(
         self,
         path: str | os.PathLike[str],
@@ -243,6 +254,19 @@ class SurfaceReport(dict):
 
     def __dir__(self):
         return [*super().__dir__(), *self]
+
+
+def parts(surface: Surface, *, threads: int = 0, progress: Progress | None = None) -> list[dict[str, Any]]:
+    """The connected parts of a surface, largest area first: triangles, vertices, area, volume (None where it is not closed),
+    closed, centre, lower, upper, and the means of its fields over the area.
+
+    >>> import isotet
+    >>> surface = isotet.make("kuhn", 12, ["gyroid"]).contour(0.95)
+    >>> table = isotet.parts(surface)
+    >>> sum(part["triangles"] for part in table) == len(surface.triangles)
+    True
+    """
+    return _isotet.find_parts(surface._surface, call_options(threads, progress))
 
 
 def check(surface: Surface, *, grid: Grid | None = None, field=None, closed: bool = False, weld: bool = False,

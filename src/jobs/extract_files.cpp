@@ -17,6 +17,7 @@
 #include "core/stopwatch.hpp"
 #include "jobs/extract_notes.hpp"
 #include "jobs/extract_plan.hpp"
+#include "jobs/part_table.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -51,6 +52,7 @@ private:
     Result<std::vector<Surface>> extract_solid(double isovalue, std::size_t step);
     Result<FieldReport> range_of_field();
     Method method() const { return solids_ ? solids_->method() : contour_->method(); }
+    Result<void> find_parts_of(Surface& surface, SurfaceNumbers& numbers);
     Result<void> write(const Surface& surface, SurfaceNumbers& numbers);
     OutputKey key(double isovalue, std::size_t step) const;
 
@@ -101,6 +103,8 @@ Result<void> ExtractRun::open() {
     const bool fixed_name = OutputNames(job_.out).fixed();
     if (auto paths = check_output_paths({job_.grid.file}, with_others(job_, fixed_name ? job_.out : "")); !paths)
         return paths;
+    if (!job_.parts_table.empty())
+        if (auto writable = check_writable(job_.parts_table); !writable) return writable;
     if (Result<void> opened = open_device(); !opened) return opened;
     caller_.detail("looking at " + job_.grid.file);
     Result<GridSource> source = GridSource::open(job_.grid, caller_);
@@ -355,6 +359,7 @@ Result<std::vector<Surface>> ExtractRun::extract_pass(std::span<const double> is
         if (numbers.triangles == 0 && job_.fail_if_empty)
             return Error{ErrorCode::invalid_data, "`fail_if_empty`: " + why_empty(numbers_.field, isovalues[i])};
         note_what_extracting_found(numbers_, numbers, caller_);
+        if (auto found = find_parts_of(surface, numbers); !found) return found.error();
     }
     return surfaces;
 }
@@ -389,10 +394,34 @@ Result<std::vector<Surface>> ExtractRun::extract_solid(double isovalue, std::siz
     if (numbers.triangles == 0 && job_.fail_if_empty)
         return Error{ErrorCode::invalid_data, "`fail_if_empty`: the solid is empty"};
     note_what_a_solid_is(numbers_, numbers, caller_);
-    if (!plan_.holds_fields) made->surface.cell_fields.clear(); // "part" alone: no note for that
+    if (!plan_.holds_fields) made->surface.cell_fields.clear(); // "boundary" alone: no note for that
     std::vector<Surface> surfaces;
     surfaces.push_back(std::move(made->surface));
+    if (auto found = find_parts_of(surfaces[0], numbers); !found) return found.error();
     return surfaces;
+}
+
+/// Looks for the connected parts of a surface where the job asks for them, and leaves out those that are not kept.
+Result<void> ExtractRun::find_parts_of(Surface& surface, SurfaceNumbers& numbers) {
+    if (!job_.keep && job_.parts_table.empty()) return {};
+    caller_.detail("finding the parts of the surface");
+    Result<SurfaceParts> found = find_parts(surface, caller_.run());
+    if (!found) return found.error();
+    const std::vector<std::uint64_t> kept = kept_parts(*found, job_.keep);
+    Result<Surface> some = keep_parts(surface, *found, kept, caller_.run());
+    if (!some) return some.error();
+    surface = *std::move(some);
+    if (!plan_.holds_fields) std::erase_if(surface.cell_fields, [](const Field& field) { return field.name == "part"; });
+    numbers.vertices = surface.vertex_count();
+    numbers.triangles = surface.triangle_count();
+    numbers.parts_kept = kept.size();
+    if (kept.size() < found->parts.size()) {
+        numbers.area = area(surface);
+        caller_.note(fmt::format("{} of {} parts are kept", grouped(kept.size()), grouped(found->parts.size())));
+    }
+    found->numbers = {};
+    numbers.parts = *std::move(found);
+    return {};
 }
 
 Result<void> ExtractRun::write(const Surface& surface, SurfaceNumbers& numbers) {
@@ -468,6 +497,10 @@ Result<void> ExtractRun::run() {
     if (const auto peak = peak_resident_memory()) {
         if (resident_before_) numbers_.peak_bytes = *peak - std::min(*peak, *resident_before_);
         numbers_.process_bytes = std::max(numbers_.process_bytes, *peak);
+    }
+    if (!job_.parts_table.empty()) {
+        numbers_.parts_table = job_.parts_table;
+        if (auto written = write_text(parts_csv(numbers_), job_.parts_table, caller_.run()); !written) return written;
     }
     if (plan_.collection.empty()) return {};
     numbers_.collection = plan_.collection;

@@ -284,6 +284,7 @@ Estimate predict(const ExtractJob& job, const ExtractPlan& plan, const FieldSamp
 std::vector<std::string> with_others(const ExtractJob& job, const std::string& output) {
     std::vector<std::string> outputs{output};
     outputs.insert(outputs.end(), job.other_outputs.begin(), job.other_outputs.end());
+    if (!job.parts_table.empty()) outputs.push_back(job.parts_table);
     return outputs;
 }
 

@@ -183,7 +183,7 @@ Surface assemble(std::span<const Shell> shells, const Cap& cap, const ContourInp
         out.cell_fields.push_back({field.name, joined_of_cells(heads, field.values, cap.cells)});
     }
     out.cell_fields.push_back(
-        {"part", part_numbers(out.triangles.tuples() - cap.triangles.size(), cap.triangles.size())});
+        {"boundary", part_numbers(out.triangles.tuples() - cap.triangles.size(), cap.triangles.size())});
     if (options.edge_ends) {
         const auto ends = arrays_of(shells, [](const Surface& s) { return s.edge_ends; });
         const std::size_t more = cap.points.size() + cap.apexes.size();

@@ -435,11 +435,24 @@ def test_a_solid_is_closed_and_the_two_sides_make_up_the_grid():
     for solid in (above, below):
         assert solid.solid["open_edges"] == 0
         assert isotet.check(solid, closed=True).sound
-        assert set(np.unique(solid.cell_fields["part"])) == {0, 1}
-        assert solid.solid["isosurface_triangles"] == (solid.cell_fields["part"] == 0).sum()
+        assert set(np.unique(solid.cell_fields["boundary"])) == {0, 1}
+        assert solid.solid["isosurface_triangles"] == (solid.cell_fields["boundary"] == 0).sum()
     assert abs(above.solid["volume"] + below.solid["volume"] - solids.grid_volume) < 1e-5
     assert grid.contour(0.2, "gyroid").solid is None
     with pytest.raises(ValueError, match="above, below or both"):
         solids.solid()
     with pytest.raises(ValueError, match="must ascend"):
         solids.solid(above=1, below=0)
+
+
+def test_parts_are_told_and_kept():
+    surface = isotet.make("kuhn", 20, ["gyroid"]).contour(0.95, "gyroid")
+    table = isotet.parts(surface)
+    assert len(table) > 1 and [part["area"] for part in table] == sorted((part["area"] for part in table), reverse=True)
+    assert table[0]["means"]["gyroid"] == pytest.approx(0.95, abs=1e-3)
+    largest = surface.keep_parts()
+    assert len(largest.triangles) == table[0]["triangles"]
+    assert set(largest.cell_fields["part"]) == {0}
+    assert len(surface.keep_parts(range(len(table))).triangles) == len(surface.triangles)
+    with pytest.raises(ValueError, match="part"):
+        surface.keep_parts(len(table))

@@ -13,6 +13,7 @@
 #include <isotet/jobs/device_choice.hpp>
 #include <isotet/jobs/field_choice.hpp>
 #include <isotet/jobs/grid_source.hpp>
+#include <isotet/parts.hpp>
 #include <isotet/pieces.hpp>
 #include <isotet/solid.hpp>
 #include <isotet/write.hpp>
@@ -28,6 +29,17 @@ struct SolidChoice {
     };
     Kind kind = Kind::above;
     SolidRange range;
+};
+
+/// Which connected parts of each surface are kept.
+struct PartChoice {
+    enum class Kind : std::uint8_t {
+        largest, ///< the `limit` ones of largest area
+        area,    ///< those of a larger area than `limit`
+        volume   ///< closed ones that enclose more than `limit`
+    };
+    Kind kind = Kind::largest;
+    double limit = 1;
 };
 
 struct ExtractJob {
@@ -56,6 +68,8 @@ struct ExtractJob {
     std::optional<RefineOptions> refine = RefineOptions{}; ///< of curved cells; nothing: at their nodes only
     bool refine_averaged = false; ///< also for a field averaged from cells, which else is taken at the nodes only
     std::optional<SolidChoice> solid;                      ///< nothing: isosurfaces
+    std::optional<PartChoice> keep;                        ///< nothing: all parts
+    std::string parts_table; ///< a CSV file with a row for each part; empty: none, and parts are not looked for
 };
 
 /// What is told of a solid.
@@ -74,6 +88,8 @@ struct SurfaceNumbers {
     std::uint64_t vertices = 0, triangles = 0;
     double area = 0; ///< of a solid with its boundary
     std::optional<SolidNumbers> solid;
+    std::optional<SurfaceParts> parts; ///< of all parts that were found; without `numbers`
+    std::uint64_t parts_kept = 0;
     double extract_seconds = 0;
     std::optional<DeviceWork> device;
     double write_seconds = 0; ///< of several surfaces in one file the last has it all
@@ -104,6 +120,7 @@ struct ExtractNumbers {
     std::uint64_t process_bytes = 0; ///< most that the whole process had
     std::vector<SurfaceNumbers> surfaces;
     std::string collection;           ///< of a series; empty: none
+    std::string parts_table;          ///< the file that was written; empty: none
     RefinementReport refinement = {}; ///< of the last surface
 
     std::uint64_t transient_peak() const;

@@ -1,0 +1,20 @@
+// Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+// Connected parts of surfaces: which are kept, and a table of them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <isotet/jobs/extract_files.hpp>
+
+namespace isotet::jobs {
+
+/// Numbers of the parts that are kept, ascending; all without a choice.
+std::vector<std::uint64_t> kept_parts(const SurfaceParts& found, const std::optional<PartChoice>& choice);
+
+/// A row for each part of each surface, kept or not, with a line of names first; numbers as they read back.
+std::string parts_csv(const ExtractNumbers& numbers);
+
+} // namespace isotet::jobs
