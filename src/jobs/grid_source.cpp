@@ -2,6 +2,7 @@
 #include <isotet/jobs/grid_source.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 
@@ -14,6 +15,7 @@
 #include <isotet/jobs/output_names.hpp>
 #include <isotet/linear_cells.hpp>
 
+#include "core/orientation.hpp"
 #include "jobs/refuse.hpp"
 
 namespace isotet::jobs {
@@ -32,11 +34,24 @@ FileInfo info_of(const MakeOptions& made) {
     return info;
 }
 
+/// A power of ten within which points lie that a program has computed twice: they may differ by roundings of the grid's
+/// size, and 0 would leave seams open there.
+std::string tolerance_of_rounding(const Array& points) {
+    const core::PointReader reader(points);
+    double largest = 0;
+    for (std::size_t i = 0; i < points.tuples(); ++i)
+        for (const double x : reader[i])
+            if (std::isfinite(x)) largest = std::max(largest, std::abs(x));
+    const double share = points.type() == ScalarType::float32 ? 0x1p-23 : 0x1p-33;
+    return largest > 0 ? fmt::format("1e{}", static_cast<int>(std::ceil(std::log10(share * largest)))) : "0";
+}
+
 std::string coincident_points_note(const Grid& grid) {
     const CoincidentPoints found = estimate_coincident_points(grid);
     if (found.points == 0) return {};
-    return fmt::format("{}{} coincide{} with other points: the surface has seams there; `merge_points` 0 joins them",
-                       found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "");
+    return fmt::format("{}{} coincide{} with other points: the surface has seams there; `merge_points` {} joins them",
+                       found.estimated ? "about " : "", counted(found.points, "point"), found.points == 1 ? "s" : "",
+                       tolerance_of_rounding(grid.points));
 }
 
 /// What is said of fields whose values differ at merged points; empty where none does.
