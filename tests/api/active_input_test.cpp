@@ -127,7 +127,8 @@ TEST_F(ActiveInput, IsCompletedAsItWasWhenAnotherGridIsSetMeanwhile) {
     bool was_set = false;
     isotet::Run meanwhile; // as another thread would, while nothing is locked
     meanwhile.progress.report = [&](std::string_view, double) {
-        if (!std::exchange(was_set, true)) EXPECT_TRUE(contour.set({other, point_field(other), {}, {}}, chosen));
+        if (std::exchange(was_set, true)) return;
+        EXPECT_TRUE(contour.set({other, point_field(other), {}, {}}, chosen));
     };
     const auto found = contour.extract(0.1, meanwhile);
     ASSERT_TRUE(found) << found.error().message;
