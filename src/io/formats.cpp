@@ -1,4 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
+#include "io/foreign.hpp"
 #include "io/formats.hpp"
 
 #include <fcntl.h>
@@ -130,24 +131,6 @@ std::string_view utf_16_order(std::string_view bytes) {
     return {};
 }
 
-/// Files of other programs that are often asked for; `begins` may be empty.
-struct Foreign {
-    std::string_view extension, begins, is;
-};
-constexpr Foreign foreign[] = {
-    {".inp", "*", "is an input file of Abaqus or CalculiX, which is not read: meshio or ccx2paraview make a VTU of it"},
-    {".med", "",
-     "is a MED file, which is not read: gmsh and meshio convert the mesh, ParaView with MEDReader the fields"},
-    {".unv", "", "is an I-deas universal file, which is not read: gmsh -save -format msh41 converts the mesh"},
-};
-
-std::string_view foreign_file(std::string_view bytes, std::string_view extension) {
-    bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
-    for (const Foreign& file : foreign)
-        if (extension == file.extension && bytes.starts_with(file.begins)) return file.is;
-    return {};
-}
-
 /// What a file is that holds no grid itself: a packed one, or a pointer to one. Empty if none.
 std::string_view wrapping_of(std::string_view head) {
     struct Wrapping {
@@ -192,10 +175,10 @@ Error nobody_knows(const std::string& path, const Head& head, const std::string&
                             title, fmt::join(names_of_readers(), ", "))};
     }
 #endif
-    if (const auto type = vtk_xml::type_of(head.bytes); !type.empty())
-        return {ErrorCode::file, fmt::format("{} is a VTK file of type {}, which is not read", path, in_quotes(type))};
     if (const auto is = foreign_file(head.bytes, extension); !is.empty())
         return {ErrorCode::file, fmt::format("{} {}", path, is)};
+    if (const auto type = vtk_xml::type_of(head.bytes); !type.empty())
+        return {ErrorCode::file, fmt::format("{} is a VTK file of type {}, which is not read", path, in_quotes(type))};
     return {ErrorCode::file,
             fmt::format("{} has no format that isotet reads: {}, its name {}; formats are {}", path, seen,
                         extension.empty() ? "has no extension" : "ends in " + in_quotes(extension),

@@ -117,6 +117,14 @@ TEST_F(ReadFile, ThatIsPackedOrAPointerOrOfAnotherProgramIsNamed) {
     EXPECT_NE(message("a.vtu", "version https://git-lfs.github.com/spec/v1\noid").find("is a pointer of Git LFS"),
               std::string::npos);
     EXPECT_NE(message("a.inp", "\n** made\n*NODE\n").find("Abaqus or CalculiX"), std::string::npos);
+    EXPECT_NE(message("a.mesh", "MFEM mesh v1.0\n\ndimension\n3\n").find("MFEM's own mesh"), std::string::npos);
+    EXPECT_NE(message("a.szplt", "#!SZPLT").find("a Tecplot file"), std::string::npos);
+    EXPECT_NE(message("a.dat", "TITLE = \"x\"\n").find("a Tecplot file"), std::string::npos);
+    EXPECT_NE(message("a.su2", "NDIME= 3\n").find("a mesh of SU2"), std::string::npos);
+    EXPECT_NE(message("a.rmed", "\x89HDF\r\n\x1a\n").find("a MED file"), std::string::npos);
+    EXPECT_NE(message("a.h5", "\x89HDF\r\n\x1a\n").find("neither VTKHDF, CGNS nor Exodus"), std::string::npos);
+    EXPECT_NE(message("a.stl", "solid x\n").find("is a surface"), std::string::npos);
+    EXPECT_NE(message("a.xyz", "1 2 3\n").find("has no format that isotet reads"), std::string::npos);
 }
 
 TEST_F(ReadFile, ThatIsNoPlainFileOrEmptyIsAnError) {

@@ -122,7 +122,8 @@ Result<ReadResult> read_gmsh_file(const std::string& path, const ReadOptions& op
 }
 
 int recognizes_medit(std::string_view head, std::string_view extension) {
-    return by_content_or_name(medit::looks_like_medit(head), extension == ".mesh" || extension == ".meshb");
+    const bool named = (extension == ".mesh" || extension == ".meshb") && !head.starts_with("MFEM "); // MFEM's own
+    return by_content_or_name(medit::looks_like_medit(head), named);
 }
 
 /// The .sol or .solb beside a mesh, the kind that fits the mesh first.
