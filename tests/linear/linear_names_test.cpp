@@ -24,7 +24,7 @@ Grid renamed(Grid grid, std::uint8_t first) {
     return grid;
 }
 
-std::string bytes_of(const Array& array) { return {static_cast<const char*>(array.data()), array.bytes()}; }
+std::string bytes_of_array(const Array& array) { return {static_cast<const char*>(array.data()), array.bytes()}; }
 
 Surface surface_of(const Grid& grid) {
     ContourOptions options;
@@ -39,8 +39,8 @@ TEST(CellsOfDegreeOne, AreTheLinearCellsThatTheyAre) {
     ASSERT_GT(expected.triangle_count(), 100u);
     for (const std::uint8_t first : {core::first_lagrange, core::first_bezier}) {
         const Surface found = surface_of(renamed(linear, first));
-        EXPECT_EQ(bytes_of(found.positions), bytes_of(expected.positions));
-        EXPECT_EQ(bytes_of(found.triangles), bytes_of(expected.triangles));
+        EXPECT_EQ(bytes_of_array(found.positions), bytes_of_array(expected.positions));
+        EXPECT_EQ(bytes_of_array(found.triangles), bytes_of_array(expected.triangles));
     }
 }
 

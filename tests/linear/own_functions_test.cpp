@@ -87,7 +87,7 @@ std::vector<OwnCase> all_cases() {
         {"tetrahedron of 10", 24, CellKind::tetrahedron, 2, 10, whole_space(CellKind::tetrahedron, 2)},
         {"pyramid of 14", 74, CellKind::pyramid, 2, 14, whole_space(CellKind::pyramid, 2)}};
     constexpr std::uint8_t first_lagrange = 71, first_bezier = 78;
-    const std::array<CellKind, 4> kinds{CellKind::tetrahedron, CellKind::hexahedron, CellKind::wedge,
+    const std::array<CellKind, 4> tried{CellKind::tetrahedron, CellKind::hexahedron, CellKind::wedge,
                                         CellKind::pyramid};
     for (std::uint8_t k = 0; k < 4; ++k)
         for (const unsigned p : {2u, 3u, 4u})
@@ -95,7 +95,7 @@ std::vector<OwnCase> all_cases() {
                 if (bezier && k == 3) continue;
                 const auto type = static_cast<std::uint8_t>((bezier ? first_bezier : first_lagrange) + k);
                 out.push_back({"kind " + std::to_string(k) + " degree " + std::to_string(p) + (bezier ? " bezier" : ""),
-                               type, kinds[k], p, core::node_count(kinds[k], p), whole_space(kinds[k], p), bezier});
+                               type, tried[k], p, core::node_count(tried[k], p), whole_space(tried[k], p), bezier});
             }
     return out;
 }

@@ -15,7 +15,7 @@
 namespace isotet::test {
 namespace {
 
-using Place = std::array<double, 3>;
+using FrdPlace = std::array<double, 3>;
 
 enum class FrdForm : char { short_text = '0', long_text = '1', binary_float = '2', binary_double = '3' };
 
@@ -28,7 +28,7 @@ public:
 
     static int number_of(std::size_t node) { return 5 + 7 * static_cast<int>(node); }
 
-    FrdText& nodes(const std::vector<Place>& places) {
+    FrdText& nodes(const std::vector<FrdPlace>& places) {
         header("    2C", places.size());
         for (std::size_t i = 0; i < places.size(); ++i)
             record(number_of(i), std::vector<double>(places[i].begin(), places[i].end()));
@@ -103,18 +103,18 @@ private:
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-const std::vector<Place> hexahedron{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+const std::vector<FrdPlace> hexahedron{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                     {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-const std::vector<Place> wedge{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+const std::vector<FrdPlace> wedge{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
 const Pairs hexahedron_edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6}, {6, 7}, {7, 4}};
 const Pairs wedge_edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 4}, {2, 5}, {3, 4}, {4, 5}, {5, 3}};
 const Pairs hexahedron_edges_of_vtk{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
                                     {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 const Pairs wedge_edges_of_vtk{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
 
-std::vector<Place> with_middles(std::vector<Place> corners, const Pairs& edges) {
+std::vector<FrdPlace> with_middles(std::vector<FrdPlace> corners, const Pairs& edges) {
     for (const auto& [a, b] : edges) {
-        Place middle{};
+        FrdPlace middle{};
         for (std::size_t k = 0; k < 3; ++k) middle[k] = (corners[a][k] + corners[b][k]) / 2;
         corners.push_back(middle);
     }
@@ -133,20 +133,20 @@ TEST(ReadFrd, HasMiddleNodesWhereVtkPutsThem) {
     struct Cell {
         int type;
         std::uint8_t vtk_type;
-        const std::vector<Place>& corners;
+        const std::vector<FrdPlace>& corners;
         const Pairs &edges, &edges_of_vtk;
     };
     for (const FrdForm form : forms)
         for (const Cell& cell : {Cell{4, 25, hexahedron, hexahedron_edges, hexahedron_edges_of_vtk},
                                  Cell{5, 26, wedge, wedge_edges, wedge_edges_of_vtk}}) {
-            const std::vector<Place> places = with_middles(cell.corners, cell.edges);
+            const std::vector<FrdPlace> places = with_middles(cell.corners, cell.edges);
             FrdText file(form);
             file.nodes(places).begin_elements(1).element(3, cell.type, numbers(places.size())).end();
             const auto result = io::parse_frd(file.text(), {}, {});
             ASSERT_TRUE(result) << result.error().message;
             const Cells& cells = result->grid.cells;
             ASSERT_EQ(cells.types.at(0), cell.vtk_type);
-            const std::vector<Place> expected = with_middles(cell.corners, cell.edges_of_vtk);
+            const std::vector<FrdPlace> expected = with_middles(cell.corners, cell.edges_of_vtk);
             for (std::size_t i = 0; i < expected.size(); ++i)
                 for (std::size_t k = 0; k < 3; ++k)
                     EXPECT_EQ(result->grid.points.at(static_cast<std::size_t>(cells.connectivity.at(i)), k), expected[i][k])

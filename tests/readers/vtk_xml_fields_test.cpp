@@ -95,7 +95,7 @@ Names names_of(const FileInfo& info) {
     return names;
 }
 
-std::string left_out(const FileInfo& info) {
+std::string reasons_of(const FileInfo& info) {
     std::string all;
     for (const LeftOut& item : info.left_out)
         all += fmt::format("{}{} {}: {}", all.empty() ? "" : "; ", item.what, item.name, item.reason);
@@ -127,7 +127,7 @@ TEST(VtkXmlFields, OneThatIsBrokenLeavesTheOthers) {
             const io::Loaded file = loaded(text);
             EXPECT_EQ(point_values(file, "T"), (std::vector<double>{1, 2, 3, 4})) << bad;
             EXPECT_EQ(find(file.pieces.at(0).grid.point_fields, "q"), nullptr) << bad;
-            EXPECT_TRUE(left_out(file.info).starts_with(reason)) << left_out(file.info);
+            EXPECT_TRUE(reasons_of(file.info).starts_with(reason)) << reasons_of(file.info);
             const io::Loaded named = loaded(text, {.point_fields = Names{"T"}});
             EXPECT_EQ(point_values(named, "T"), (std::vector<double>{1, 2, 3, 4})) << bad;
         }
@@ -155,7 +155,7 @@ TEST(VtkXmlFields, OfCellsThatAreBrokenLeaveTheOthers) {
     const io::Loaded file = loaded(
         vtu(Tet{.cell_data = array_of("Float32", "q", "no") + array_of("Float32", "m", "7")}.piece()));
     EXPECT_EQ(values_of(find(file.pieces.at(0).grid.cell_fields, "m")), std::vector<double>{7});
-    EXPECT_EQ(left_out(file.info), "cell field q: 'no', number 0 of 1, is not float32");
+    EXPECT_EQ(reasons_of(file.info), "cell field q: 'no', number 0 of 1, is not float32");
 }
 
 TEST(VtkXmlFields, GhostMarksOfCellsMustBeSound) {
@@ -223,7 +223,7 @@ TEST(VtkXmlFields, WithOtherComponentsInAnotherPieceAreLeftOut) {
     const io::Loaded file =
         loaded(vtu(Tet{.point_data = of_1 + good}.piece() + Tet{.x = 1, .point_data = good + of_3}.piece()));
     EXPECT_EQ(names_of(file.info), Names{"T"});
-    EXPECT_EQ(left_out(file.info), "point field q: it has 1 component in one piece and 3 in another");
+    EXPECT_EQ(reasons_of(file.info), "point field q: it has 1 component in one piece and 3 in another");
     EXPECT_EQ(point_values(file, "T").size(), 8u);
 }
 
@@ -318,8 +318,8 @@ TEST(VtkXmlFields, MayShareTheirBytes) {
     };
     const io::Loaded file = loaded(text(0));
     EXPECT_EQ(file.pieces.at(0).grid.point_fields.size(), 3u);
-    EXPECT_EQ(left_out(file.info), "");
-    EXPECT_EQ(left_out(loaded(text(4)).info), "point field r: it has 0 bytes, but 4 int8 take 4");
+    EXPECT_EQ(reasons_of(file.info), "");
+    EXPECT_EQ(reasons_of(loaded(text(4)).info), "point field r: it has 0 bytes, but 4 int8 take 4");
 }
 
 TEST(VtkXmlFields, WhoseLengthIsWrongAreReadWhereTheyFit) {
@@ -333,7 +333,7 @@ TEST(VtkXmlFields, WhoseLengthIsWrongAreReadWhereTheyFit) {
     EXPECT_TRUE(file.notes[0].starts_with("the stated length of 'T' is wrong")) << file.notes[0];
     const io::Loaded short_one = loaded(
         vtu(Tet{.point_data = array_of("Float32", "T", digits.substr(0, 24), "format=\"binary\"")}.piece()));
-    EXPECT_NE(left_out(short_one.info).find("bytes are announced"), std::string::npos) << left_out(short_one.info);
+    EXPECT_NE(reasons_of(short_one.info).find("bytes are announced"), std::string::npos) << reasons_of(short_one.info);
 }
 
 TEST(VtkXmlCells, MayHaveIndicesOfFloats) {

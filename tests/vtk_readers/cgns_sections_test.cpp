@@ -20,7 +20,7 @@ namespace {
 using Points = std::vector<cgsize_t>;
 
 /// Two hexahedra, a wedge and a tetrahedron in a row along x; the number of a cell is in its field.
-const std::vector<std::vector<double>> places{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1},
+const std::vector<std::vector<double>> corner_places{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1},
                                               {1, 1, 1}, {0, 1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1},
                                               {3, 0, 0}, {3, 0, 1}, {4, 0, 0}};
 const std::vector<Points> volume{{1, 2, 3, 4, 5, 6, 7, 8},
@@ -37,11 +37,11 @@ struct CgnsWriter {
         cg_set_file_type(CG_FILE_HDF5);
         EXPECT_EQ(cg_open(path.c_str(), CG_MODE_WRITE, &file), 0) << cg_get_error();
         cg_base_write(file, "Base", 3, 3, &base);
-        const cgsize_t size[3] = {static_cast<cgsize_t>(places.size()), static_cast<cgsize_t>(volume.size()), 0};
+        const cgsize_t size[3] = {static_cast<cgsize_t>(corner_places.size()), static_cast<cgsize_t>(volume.size()), 0};
         cg_zone_write(file, base, "Zone", size, CG_Unstructured, &zone);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::vector<double> values;
-            for (const auto& place : places) values.push_back(place[axis]);
+            for (const auto& place : corner_places) values.push_back(place[axis]);
             const char name[] = {'C', 'o', 'o', 'r', 'd', 'i', 'n', 'a', 't', 'e', "XYZ"[axis], '\0'};
             cg_coord_write(file, base, zone, CG_RealDouble, name, values.data(), &at);
         }
@@ -93,7 +93,7 @@ struct CgnsWriter {
     void close() {
         solution("Empty", CG_Vertex, "", {});
         std::vector<double> x;
-        for (const auto& place : places) x.push_back(place[0]);
+        for (const auto& place : corner_places) x.push_back(place[0]);
         solution("Nodal", CG_Vertex, "T", x);
         solution("Cells", CG_CellCenter, "q", {0, 1, 2, 3});
         EXPECT_EQ(cg_close(file), 0) << cg_get_error();
@@ -121,7 +121,7 @@ void expect_cells(const std::string& path) {
     }
     EXPECT_EQ(at, grid.cells.connectivity.size());
     ASSERT_EQ(grid.point_fields.size(), 1u);
-    for (std::size_t i = 0; i < places.size(); ++i) EXPECT_EQ(grid.point_fields[0].values.at(i), places[i][0]);
+    for (std::size_t i = 0; i < corner_places.size(); ++i) EXPECT_EQ(grid.point_fields[0].values.at(i), corner_places[i][0]);
     EXPECT_EQ(result->info.blocks.at(0).cells, volume.size());
     EXPECT_TRUE(result->info.times.empty());
 }
@@ -129,9 +129,9 @@ void expect_cells(const std::string& path) {
 TEST(CgnsSections, MayStandInAnyOrderAndNumberTheBoundaryFirst) {
     const TemporaryFolder folder;
     const Points hexahedra = all_of({volume[0], volume[1]}), quads = all_of({boundary[0], boundary[1]});
-    enum Kind { hexahedron, wedge, tetrahedron, quad, triangle };
+    enum SectionKind { hexahedron, wedge, tetrahedron, quad, triangle };
     // The numbers of the elements stay in this order of kinds; the sections are written in the other.
-    const std::vector<std::vector<Kind>> numbered{{hexahedron, wedge, tetrahedron, quad, triangle},
+    const std::vector<std::vector<SectionKind>> numbered{{hexahedron, wedge, tetrahedron, quad, triangle},
                                                   {quad, triangle, hexahedron, wedge, tetrahedron},
                                                   {quad, hexahedron, wedge, triangle, tetrahedron}};
     int files = 0;
@@ -139,9 +139,9 @@ TEST(CgnsSections, MayStandInAnyOrderAndNumberTheBoundaryFirst) {
         for (const bool backwards : {false, true}) {
             const std::string path = folder.file(std::to_string(files++) + ".cgns");
             CgnsWriter writer(path);
-            std::vector<std::pair<Kind, cgsize_t>> firsts;
+            std::vector<std::pair<SectionKind, cgsize_t>> firsts;
             cgsize_t next = 1;
-            for (const Kind kind : order) {
+            for (const SectionKind kind : order) {
                 firsts.emplace_back(kind, next);
                 next += kind == hexahedron || kind == quad ? 2 : 1;
             }
@@ -198,7 +198,7 @@ TEST(CgnsSolutions, OfOneNameAreTwoFieldsAndThoseElsewhereAreTold) {
     const std::string path = folder.file("a.cgns");
     CgnsWriter writer(path);
     writer.mixed(1, volume, true);
-    writer.solution("Before", CG_Vertex, "T", std::vector<double>(places.size(), 7));
+    writer.solution("Before", CG_Vertex, "T", std::vector<double>(corner_places.size(), 7));
     writer.solution("Faces", CG_CellCenter, "flux", std::vector<double>(4, 1));
     writer.rename_location("/Base/Zone/Faces", "FaceCenter");
     writer.close();
@@ -220,9 +220,9 @@ TEST(CgnsSolutions, AreThoseOfTheirSteps) {
         const std::string path = folder.file(with_pointers ? "a.cgns" : "b.cgns");
         CgnsWriter writer(path);
         writer.mixed(1, volume, true);
-        writer.solution("S1", CG_Vertex, "p", std::vector<double>(places.size(), 1));
-        writer.solution("S2", CG_Vertex, "p", std::vector<double>(places.size(), 2));
-        if (with_pointers) writer.solution("S3", CG_Vertex, "rest", std::vector<double>(places.size(), 3));
+        writer.solution("S1", CG_Vertex, "p", std::vector<double>(corner_places.size(), 1));
+        writer.solution("S2", CG_Vertex, "p", std::vector<double>(corner_places.size(), 2));
+        if (with_pointers) writer.solution("S3", CG_Vertex, "rest", std::vector<double>(corner_places.size(), 3));
         cg_biter_write(writer.file, writer.base, "Steps", 2);
         cg_goto(writer.file, writer.base, "BaseIterativeData_t", 1, "end");
         const cgsize_t count = 2;
