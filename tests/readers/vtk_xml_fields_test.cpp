@@ -32,7 +32,7 @@ std::string array_of(std::string_view type, std::string_view name, std::string_v
 /// One tet: the pieces lie side by side along x.
 struct Tet {
     int x = 0;
-    std::string point_data, cell_data;
+    std::string point_data = {}, cell_data = {};
     std::string count = "1", connectivity = array_of("Int32", "connectivity", "0 1 2 3"),
                 offsets = array_of("Int32", "offsets", "4"), types = array_of("UInt8", "types", "10");
     std::string points = {};
@@ -61,13 +61,20 @@ std::string vtu(const std::string& pieces, std::string_view root = "type=\"Unstr
                        root, pieces, behind);
 }
 
+ReadOptions reading(Names point_fields, std::optional<Names> cell_fields = {}) {
+    ReadOptions options;
+    options.point_fields = std::move(point_fields);
+    options.cell_fields = std::move(cell_fields);
+    return options;
+}
+
 io::Loaded loaded(const std::string& text, const ReadOptions& options = {}) {
     auto result = io::vtk_xml::load(ByteSource(text), "UnstructuredGrid", options, Depth::arrays, false, {});
     EXPECT_TRUE(result) << result.error().message << "\n" << text;
     return result ? std::move(*result) : io::Loaded{};
 }
 
-std::string error_of(const std::string& text, const ReadOptions& options = {}) {
+std::string error_of_grid(const std::string& text, const ReadOptions& options = {}) {
     const auto result = io::vtk_xml::load(ByteSource(text), "UnstructuredGrid", options, Depth::arrays, false, {});
     return result ? "no error" : result.error().message;
 }
@@ -128,7 +135,7 @@ TEST(VtkXmlFields, OneThatIsBrokenLeavesTheOthers) {
             EXPECT_EQ(point_values(file, "T"), (std::vector<double>{1, 2, 3, 4})) << bad;
             EXPECT_EQ(find(file.pieces.at(0).grid.point_fields, "q"), nullptr) << bad;
             EXPECT_TRUE(reasons_of(file.info).starts_with(reason)) << reasons_of(file.info);
-            const io::Loaded named = loaded(text, {.point_fields = Names{"T"}});
+            const io::Loaded named = loaded(text, reading({"T"}));
             EXPECT_EQ(point_values(named, "T"), (std::vector<double>{1, 2, 3, 4})) << bad;
         }
     }
@@ -144,7 +151,7 @@ TEST(VtkXmlFields, OneThatIsBrokenIsAnErrorWhereItIsNamed) {
         ASSERT_EQ(all->notes.size(), 1u);
         EXPECT_NE(all->notes[0].find("point field 'q' is left out: " + std::string(reason)), std::string::npos)
             << all->notes[0];
-        const auto named = read(path, {.point_fields = Names{"q"}});
+        const auto named = read(path, reading({"q"}));
         ASSERT_FALSE(named);
         EXPECT_EQ(named.error().code, ErrorCode::invalid_data);
         EXPECT_NE(named.error().message.find(reason), std::string::npos) << named.error().message;
@@ -159,9 +166,9 @@ TEST(VtkXmlFields, OfCellsThatAreBrokenLeaveTheOthers) {
 }
 
 TEST(VtkXmlFields, GhostMarksOfCellsMustBeSound) {
-    EXPECT_EQ(error_of(vtu(Tet{.cell_data = array_of("UInt8", "vtkGhostType", "x")}.piece())),
+    EXPECT_EQ(error_of_grid(vtu(Tet{.cell_data = array_of("UInt8", "vtkGhostType", "x")}.piece())),
               "the array 'vtkGhostType': 'x', number 0 of 1, is not uint8");
-    EXPECT_EQ(error_of(vtu(Tet{.cell_data = array_of("Foo", "vtkGhostType", "0")}.piece())),
+    EXPECT_EQ(error_of_grid(vtu(Tet{.cell_data = array_of("Foo", "vtkGhostType", "0")}.piece())),
               "the array 'vtkGhostType': its type is 'Foo', which is not known");
 }
 
@@ -244,7 +251,7 @@ TEST(VtkXmlFields, OfFilesInPiecesAreThoseOfAllPieces) {
         ASSERT_TRUE(info) << info.error().message;
         EXPECT_EQ(names_of(*info).size(), 2u);
         for (const char* name : {"T", "q"}) {
-            const auto result = read(path, {.point_fields = Names{name}, .cell_fields = Names{}});
+            const auto result = read(path, reading({name}, Names{}));
             ASSERT_TRUE(result) << result.error().message;
             EXPECT_EQ(result->grid.cells.count(), 2u);
             EXPECT_EQ(result->grid.point_fields.size(), 1u);
@@ -343,9 +350,9 @@ TEST(VtkXmlCells, MayHaveIndicesOfFloats) {
                       .types = array_of(type, "types", "10")};
         EXPECT_EQ(loaded(vtu(tet.piece())).pieces.at(0).grid.cells.count(), 1u) << type;
     }
-    EXPECT_EQ(error_of(vtu(Tet{.connectivity = array_of("Float32", "connectivity", "0 1 2 2.5")}.piece())),
+    EXPECT_EQ(error_of_grid(vtu(Tet{.connectivity = array_of("Float32", "connectivity", "0 1 2 2.5")}.piece())),
               "Cells 'connectivity' is float32, and not all of its values are whole numbers");
-    EXPECT_EQ(error_of(vtu(Tet{.types = array_of("Float32", "types", "10.5")}.piece())),
+    EXPECT_EQ(error_of_grid(vtu(Tet{.types = array_of("Float32", "types", "10.5")}.piece())),
               "a cell type is not a whole number between 0 and 255");
 }
 
@@ -357,10 +364,10 @@ TEST(VtkXmlCells, MustBeAsManyAsAreAnnounced) {
                        .types = array_of("UInt8", "types", types)}
                        .piece());
     };
-    EXPECT_EQ(error_of(tet("2", "4 8", "10 10")), "no error");
-    EXPECT_EQ(error_of(tet("1", "4 8", "10")), "the array 'offsets': it holds more than the 1 values that are announced");
-    EXPECT_EQ(error_of(tet("1", "4", "10 10")), "the array 'types': it holds more than the 1 values that are announced");
-    EXPECT_EQ(error_of(tet("0", "4 8", "10 10")), "NumberOfCells is 0, but the array 'types' holds values");
+    EXPECT_EQ(error_of_grid(tet("2", "4 8", "10 10")), "no error");
+    EXPECT_EQ(error_of_grid(tet("1", "4 8", "10")), "the array 'offsets': it holds more than the 1 values that are announced");
+    EXPECT_EQ(error_of_grid(tet("1", "4", "10 10")), "the array 'types': it holds more than the 1 values that are announced");
+    EXPECT_EQ(error_of_grid(tet("0", "4 8", "10 10")), "NumberOfCells is 0, but the array 'types' holds values");
     const auto packed = [](const char* count) {
         return vtu(Tet{.count = count,
                        .connectivity = array_of("Int32", "connectivity", "0 1 2 3 0 1 2 3"),
@@ -368,8 +375,8 @@ TEST(VtkXmlCells, MustBeAsManyAsAreAnnounced) {
                        .types = array_of("UInt8", "types", "AgAAAAoK", "format=\"binary\"")}
                        .piece());
     };
-    EXPECT_EQ(error_of(packed("2")), "no error");
-    EXPECT_EQ(error_of(packed("1")),
+    EXPECT_EQ(error_of_grid(packed("2")), "no error");
+    EXPECT_EQ(error_of_grid(packed("1")),
               "NumberOfCells is 1: the array 'types': it holds 2 values, but 1 are announced");
 }
 
@@ -383,13 +390,13 @@ TEST(VtkXmlCells, PointsMayBeOfAnyType) {
         EXPECT_EQ(grid.points.type(), read_as);
         EXPECT_EQ(grid.points.at(3, 2), 1);
     }
-    EXPECT_EQ(error_of(vtu(Tet{.points = array_of("Float32", "Points", "0 0 1 0 0 1 1 1", "NumberOfComponents=\"2\"")}
+    EXPECT_EQ(error_of_grid(vtu(Tet{.points = array_of("Float32", "Points", "0 0 1 0 0 1 1 1", "NumberOfComponents=\"2\"")}
                                .piece())),
               "the points have 2 components, not 3");
 }
 
 TEST(VtkXmlCells, WithoutAPieceAreAnError) {
-    EXPECT_EQ(error_of(vtu("")), "the UnstructuredGrid has no Piece");
+    EXPECT_EQ(error_of_grid(vtu("")), "the UnstructuredGrid has no Piece");
 }
 
 TEST(CommonType, HoldsTheValuesOfBothWhateverTheirOrder) {
