@@ -516,7 +516,7 @@ def solid(points, cells, values, *, above: float | None = None, below: float | N
     >>> points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     >>> corner = isotet.solid(points, [[0, 1, 2, 3]], [0.0, 1.0, 1.0, 1.0], below=0.5)
     >>> corner
-    <isotet.Surface: 4 vertices, 4 triangles>
+    <isotet.Surface: 4 vertices, 4 triangles, fields boundary>
     >>> round(corner.solid["volume"], 6)
     0.020833
     """

@@ -1,5 +1,5 @@
 // Copyright (c) the isotet authors. SPDX-License-Identifier: BSD-3-Clause
-#include "io/foreign.hpp"
+#include "io/own/foreign.hpp"
 #include "io/formats.hpp"
 
 #include <fcntl.h>

@@ -347,7 +347,7 @@ void Server::Data::accept_later(Acceptor& from) {
     });
 }
 
-/// A socket that its owner alone may open. It takes the place of one that nobody listens at any more.
+/// A socket that its owner alone may open. It takes the place of one without a listener.
 void Server::Data::listen_locally(const std::string& path, beast::error_code& error) {
     local_acceptor.open(LocalProtocol(), error);
     if (error) return;

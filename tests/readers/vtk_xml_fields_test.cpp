@@ -13,6 +13,7 @@
 
 #include "io/own/byte_source.hpp"
 #include "io/own/common_type.hpp"
+#include "io/own/join.hpp"
 #include "io/own/vtk_xml/base64.hpp"
 #include "io/own/vtk_xml/load.hpp"
 #include "support/temporary_folder.hpp"
@@ -74,6 +75,12 @@ io::Loaded loaded(const std::string& text, const ReadOptions& options = {}) {
     return result ? std::move(*result) : io::Loaded{};
 }
 
+ReadResult joined(const std::string& text) {
+    auto result = io::join(loaded(text), {});
+    EXPECT_TRUE(result) << result.error().message << "\n" << text;
+    return result ? std::move(*result) : ReadResult{};
+}
+
 std::string error_of_grid(const std::string& text, const ReadOptions& options = {}) {
     const auto result = io::vtk_xml::load(ByteSource(text), "UnstructuredGrid", options, Depth::arrays, false, {});
     return result ? "no error" : result.error().message;
@@ -90,6 +97,10 @@ std::vector<double> values_of(const Field* field) {
     for (std::size_t i = 0; field && i < field->values.tuples(); ++i)
         for (std::size_t c = 0; c < field->values.components(); ++c) values.push_back(field->values.at(i, c));
     return values;
+}
+
+std::vector<double> point_values(const ReadResult& file, std::string_view name) {
+    return values_of(find(file.grid.point_fields, name));
 }
 
 std::vector<double> point_values(const io::Loaded& file, std::string_view name) {
@@ -195,13 +206,13 @@ TEST(VtkXmlFields, OfPiecesHaveATypeThatHoldsAllValues) {
                                               {"Int16", "Float32", ScalarType::float64},
                                               {"UInt16", "UInt16", ScalarType::uint16}}) {
         const std::string a = Tet{.point_data = array_of(first, "T", "1 2 3 4")}.piece(),
-                          b = Tet{.x = 1, .point_data = array_of(second, "T", "5 6 7 8")}.piece();
+                          b = Tet{.x = 3, .point_data = array_of(second, "T", "5 6 7 8")}.piece();
         for (const auto& pieces : {a + b, empty_piece + a + b, a + bare_piece + b, a + b + empty_piece}) {
-            const io::Loaded file = loaded(vtu(pieces));
+            const ReadResult file = joined(vtu(pieces));
             EXPECT_EQ(point_values(file, "T"), (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}));
-            EXPECT_EQ(find(file.pieces.at(0).grid.point_fields, "T")->values.type(), type) << first << " " << second;
+            EXPECT_EQ(find(file.grid.point_fields, "T")->values.type(), type) << first << " " << second;
             EXPECT_EQ(file.info.fields.at(0).type, type);
-            EXPECT_EQ(file.pieces[0].grid.cells.count(), 2u);
+            EXPECT_EQ(file.grid.cells.count(), 2u);
         }
     }
 }
@@ -210,8 +221,8 @@ TEST(VtkXmlFields, OfSomePiecesAreNoDataInTheOthers) {
     for (const char* type : {"Int32", "Float32"}) {
         const std::string with = array_of(type, "q", "5 6 7 8");
         for (const bool first : {true, false}) {
-            const io::Loaded file = loaded(vtu(Tet{.point_data = first ? good + with : good}.piece() +
-                                               Tet{.x = 1, .point_data = first ? good : good + with}.piece()));
+            const ReadResult file = joined(vtu(Tet{.point_data = first ? good + with : good}.piece() +
+                                               Tet{.x = 3, .point_data = first ? good : good + with}.piece()));
             const std::vector<double> values = point_values(file, "q");
             ASSERT_EQ(values.size(), 8u);
             for (std::size_t i = 0; i < 4; ++i) {
@@ -227,8 +238,8 @@ TEST(VtkXmlFields, OfSomePiecesAreNoDataInTheOthers) {
 TEST(VtkXmlFields, WithOtherComponentsInAnotherPieceAreLeftOut) {
     const std::string of_3 = array_of("Float32", "q", "0 0 0 0 0 0 0 0 0 0 0 0", "NumberOfComponents=\"3\""),
                       of_1 = array_of("Float32", "q", "0 0 0 0");
-    const io::Loaded file =
-        loaded(vtu(Tet{.point_data = of_1 + good}.piece() + Tet{.x = 1, .point_data = good + of_3}.piece()));
+    const ReadResult file =
+        joined(vtu(Tet{.point_data = of_1 + good}.piece() + Tet{.x = 3, .point_data = good + of_3}.piece()));
     EXPECT_EQ(names_of(file.info), Names{"T"});
     EXPECT_EQ(reasons_of(file.info), "point field q: it has 1 component in one piece and 3 in another");
     EXPECT_EQ(point_values(file, "T").size(), 8u);

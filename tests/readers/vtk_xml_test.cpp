@@ -321,7 +321,7 @@ TEST(LegacyVtkGrid, NamesWhatIsWrong) {
         legacy_error(
             "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2000000000 2000000000 2\n"
             "POINT_DATA 1\nSCALARS s float\nLOOKUP_TABLE default\n1\n"),
-        "DIMENSIONS are 2000000000 x 2000000000 x 2: too many points");
+        "point field 's' cannot be read: it has 1 values, but the grid has 8000000000000000000 points");
 }
 
 } // namespace

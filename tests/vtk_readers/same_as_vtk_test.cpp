@@ -144,7 +144,7 @@ vtkSmartPointer<vtkStructuredGrid> sample_curved() {
     return grid;
 }
 
-/// Reads changed copies of a file: what we read of them is what VTK reads, or an error with a sentence.
+/// Reads changed copies of a file: what we read of them is what VTK reads, or left out, or an error with a sentence.
 void expect_same_of_changed(const std::string& whole, const std::string& ending, const char* what) {
     const TemporaryFolder folder;
     std::mt19937 random(20260807);
@@ -167,7 +167,12 @@ void expect_same_of_changed(const std::string& whole, const std::string& ending,
         ++read_by_us;
         const auto theirs = read_with_vtk_apart(path);
         if (theirs.empty()) continue; // VTK crashes on some files that are sound where it matters
-        EXPECT_EQ(digest(ours->grid), theirs) << what << ", round " << round;
+        if (ours->info.left_out.empty()) {
+            EXPECT_EQ(digest(ours->grid), theirs) << what << ", round " << round;
+            continue;
+        }
+        for (const std::string& line : digest(ours->grid)) // VTK keeps what it could read of a broken array
+            EXPECT_NE(std::ranges::find(theirs, line), theirs.end()) << line << ", " << what << ", round " << round;
     }
     EXPECT_GT(read_by_us, 0);
 }

@@ -81,10 +81,12 @@ private:
         if (keyword == "lines") return read_legacy_cells(values_, keyword, list(), file_.lines);
         if (keyword == "polygons") return read_legacy_cells(values_, keyword, list(), file_.polygons);
         if (keyword == "triangle_strips") return read_legacy_cells(values_, keyword, list(), file_.strips);
-        if (keyword == "cells")
+        if (keyword == "cells") {
+            file_.has_cells = true;
             return read_legacy_cells(values_, keyword,
                                      wants_.geometry && wants_.leave_corners ? LegacyList::without_corners : list(),
                                      file_.cells);
+        }
         if (keyword == "cell_types") return read_legacy_cell_types(values_, wants_.geometry, file_);
         if (keyword == "dimensions") return read_dimensions();
         if (keyword == "origin") return read_three(file_.origin, keyword);

@@ -43,7 +43,7 @@ struct LegacyCells {
 
 struct LegacyFile {
     std::string dataset; ///< "polydata", "unstructured_grid" and so on
-    bool has_points = false;
+    bool has_points = false, has_cells = false;
     std::uint64_t point_count = 0; ///< that POINTS announces
     Array points;                  ///< float32 or float64
     LegacyCells vertices, lines, polygons, strips, cells;

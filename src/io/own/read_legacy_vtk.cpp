@@ -145,6 +145,15 @@ Result<void> take_cells(const ByteSource& source, LegacyFile& file, const ReadOp
     return {};
 }
 
+/// The sections without which a file was cut off; a count of 0 is an empty grid.
+Result<void> check_sections(const LegacyFile& file) {
+    for (const auto& [has, section] : {std::pair{file.has_points, "POINTS"},
+                                       {file.has_cells, "CELLS"},
+                                       {file.cell_type_count > 0 || file.cells.count == 0, "CELL_TYPES"}})
+        if (!has) return invalid_data(fmt::format("the file ends without {}", section));
+    return {};
+}
+
 bool is_grid(std::string_view dataset) { return dataset.ends_with("_grid") || dataset == "structured_points"; }
 
 } // namespace
@@ -182,6 +191,7 @@ Result<Loaded> load_legacy(const ByteSource& source, const ReadOptions& options,
     if (structured) {
         if (auto taken = take_structured(*file, piece, loaded.notes); !taken) return taken.error();
     } else {
+        if (auto whole = check_sections(*file); !whole) return whole.error();
         piece.grid.points = std::move(file->points);
     }
     if (piece.grid.points.empty()) piece.grid.points = Array(ScalarType::float32, nullptr, 0, 3, nullptr);

@@ -231,7 +231,7 @@ struct Job {
     std::optional<Error> error;
 };
 
-/// What is broken of a field that nobody asked for by name is left out.
+/// A broken field that is not asked for by name is left out.
 bool may_be_left_out(const Job& job, const Error& error, const ReadOptions& options) {
     const bool named = job.association == Association::point ? options.point_fields.has_value()
                                                              : options.cell_fields.has_value();
