@@ -229,7 +229,7 @@ TEST(VtkXmlFields, OfSomePiecesAreNoDataInTheOthers) {
                 EXPECT_EQ(values[first ? i : i + 4], 5.0 + static_cast<double>(i));
                 EXPECT_TRUE(std::isnan(values[first ? i + 4 : i]));
             }
-            EXPECT_EQ(file.notes, Names{"point field 'q' is in 1 of 2 pieces only: NaN in the others"});
+            EXPECT_EQ(file.notes.at(0), "point field 'q' is in 1 of 2 pieces only: NaN in the others");
             EXPECT_EQ(point_values(file, "T").size(), 8u);
         }
     }

@@ -87,7 +87,10 @@ private:
                                      wants_.geometry && wants_.leave_corners ? LegacyList::without_corners : list(),
                                      file_.cells);
         }
-        if (keyword == "cell_types") return read_legacy_cell_types(values_, wants_.geometry, file_);
+        if (keyword == "cell_types") {
+            file_.has_cells = true;
+            return read_legacy_cell_types(values_, wants_.geometry, file_);
+        }
         if (keyword == "dimensions") return read_dimensions();
         if (keyword == "origin") return read_three(file_.origin, keyword);
         if (keyword == "spacing" || keyword == "aspect_ratio") return read_three(file_.spacing, keyword);

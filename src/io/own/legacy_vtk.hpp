@@ -43,7 +43,8 @@ struct LegacyCells {
 
 struct LegacyFile {
     std::string dataset; ///< "polydata", "unstructured_grid" and so on
-    bool has_points = false, has_cells = false;
+    bool has_points = false;
+    bool has_cells = false; ///< CELLS or CELL_TYPES, of 0 perhaps
     std::uint64_t point_count = 0; ///< that POINTS announces
     Array points;                  ///< float32 or float64
     LegacyCells vertices, lines, polygons, strips, cells;

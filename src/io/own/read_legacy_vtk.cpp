@@ -148,7 +148,7 @@ Result<void> take_cells(const ByteSource& source, LegacyFile& file, const ReadOp
 /// The sections without which a file was cut off; a count of 0 is an empty grid.
 Result<void> check_sections(const LegacyFile& file) {
     for (const auto& [has, section] : {std::pair{file.has_points, "POINTS"},
-                                       {file.has_cells, "CELLS"},
+                                       {file.has_cells && (file.cells.count > 0 || file.cell_type_count == 0), "CELLS"},
                                        {file.cell_type_count > 0 || file.cells.count == 0, "CELL_TYPES"}})
         if (!has) return invalid_data(fmt::format("the file ends without {}", section));
     return {};
