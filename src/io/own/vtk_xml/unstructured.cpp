@@ -92,8 +92,7 @@ Result<std::vector<Piece>> load_unstructured(Document& document, const Layouts& 
         const bool active_may_do = wanted.options.active_cells && alone && !wanted.ids && whole.left_out.empty();
         auto part = read_cells(document, element, active_may_do ? &active : nullptr, progress);
         if (!part) return part.error();
-        if (alone) pieces.push_back(std::move(whole));
-        else pieces.push_back(part_of(whole, points, cells, i));
+        pieces.push_back(alone ? whole : part_of(whole, points, cells, i));
         if (part->only_active) pieces[i].cells_in_file = cells.total;
         pieces[i].grid.cells = std::move(part->cells);
     }
