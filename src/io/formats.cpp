@@ -62,10 +62,10 @@ std::vector<std::string> names_of_readers() {
 
 #if !ISOTET_IO
 /// Formats that a build with VTK reads: how their files begin, and what they are called.
-struct LeftOut {
+struct NeedsReader {
     std::string_view title, begins, extensions;
 };
-constexpr LeftOut left_out[] = {
+constexpr NeedsReader need_reader[] = {
     {"an XDMF file", "<Xdmf", ".xdmf .xmf"},
     {"a NetCDF file (Exodus II)", "CDF", ".e .ex2 .exo .g"},
     {"an HDF5 file (VTKHDF, Exodus II, CGNS)", "\x89HDF", ".hdf .vtkhdf .cgns .h5"},
@@ -73,10 +73,10 @@ constexpr LeftOut left_out[] = {
 
 /// What a file is that a build with VTK would read; empty if it is none.
 std::string_view title_left_out(std::string_view head, std::string_view extension) {
-    for (const LeftOut& format : left_out) {
+    for (const NeedsReader& format : need_reader) {
         if (head.starts_with(format.begins)) return format.title;
     }
-    for (const LeftOut& format : left_out) {
+    for (const NeedsReader& format : need_reader) {
         const std::size_t at = extension.empty() ? std::string_view::npos : format.extensions.find(extension);
         if (at == std::string_view::npos) continue;
         const std::size_t end = at + extension.size();
