@@ -105,6 +105,9 @@ void expect_same_once(const Grid& grid, const PointField& field, const Result<Pa
     const auto reference = extract_direct_by_reference(grid, field, std::span(&isovalue, 1), options, run);
     expect(bool(once) == bool(packed) && bool(reference) == bool(packed));
     if (!packed) {
+        // Of a grid that is too small and broken, too, each tells what it finds first.
+        const auto is_small = [](const Error& error) { return error.message.find("smaller unit") != std::string::npos; };
+        if (is_small(once.error()) || is_small(packed.error()) || is_small(reference.error())) return;
         expect(once.error().message == packed.error().message && reference.error().message == packed.error().message);
         return;
     }
@@ -125,7 +128,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const PointField field{"value", grid.point_fields[0].values, false, {}};
     const auto report = survey(grid, {.faces = true}, {.threads = 1});
     const auto packed = pack(grid, field, {.precision = precision, .gradients = true}, {.threads = 1});
-    expect(bool(report) == bool(packed));
+    // A survey takes grids so small that coordinates would vanish, packing does not.
+    expect(report ? packed || packed.error().message.find("smaller unit") != std::string::npos : !packed);
     if (std::isfinite(isovalue))
         for (const Ties ties : {Ties::merge, Ties::keep})
             expect_same_once(grid, field, packed, isovalue, precision, ties);
