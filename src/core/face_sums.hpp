@@ -12,6 +12,7 @@
 #include "core/buffer.hpp"
 #include "core/face_counter.hpp"
 #include "core/parallel.hpp"
+#include "core/point_hash.hpp"
 
 namespace isotet::core {
 
@@ -88,13 +89,6 @@ public:
     static constexpr std::uint64_t bytes_per_point = 17;
 
 private:
-    /// MurmurHash3's last step (Appleby 2011).
-    static std::uint64_t mixed(std::uint64_t x) {
-        x = (x ^ x >> 33) * 0xff51afd7ed558ccdu;
-        x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53u;
-        return x ^ x >> 33;
-    }
-
     template <class Point>
     static Change change_of(const AscendingTet<Point>& tet) {
         const std::array<Point, 4> p = tet.corners();

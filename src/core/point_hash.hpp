@@ -15,6 +15,13 @@ constexpr std::uint64_t folded_product(std::uint64_t a, std::uint64_t b) noexcep
     return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
 }
 
+/// MurmurHash3's last step (Appleby 2011).
+constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
+    x = (x ^ x >> 33) * 0xff51afd7ed558ccdu;
+    x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53u;
+    return x ^ x >> 33;
+}
+
 /// The same for equal coordinates, -0 and +0 being equal.
 inline std::uint64_t hash_of(const Point& point) noexcept {
     const auto bits = [](double coordinate) {

@@ -15,6 +15,7 @@
 #include "core/native_cells.hpp"
 #include "core/orientation.hpp"
 #include "core/parallel.hpp"
+#include "core/point_hash.hpp"
 #include "core/storage.hpp"
 
 namespace isotet::solid {
@@ -46,17 +47,10 @@ DirectedFace directed(std::span<const std::uint64_t> corners, std::uint64_t cell
     return face;
 }
 
-/// MurmurHash3's last step (Appleby 2011).
-std::uint64_t mixed_bits(std::uint64_t x) {
-    x = (x ^ x >> 33) * 0xff51afd7ed558ccdu;
-    x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53u;
-    return x ^ x >> 33;
-}
-
 /// Of the points but the lowest, signed by the direction.
 std::uint64_t hash_of(const DirectedFace& face) {
     std::uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (std::size_t k = 1; k < 4; ++k) hash = mixed_bits(hash + face.points[k]);
+    for (std::size_t k = 1; k < 4; ++k) hash = core::mixed(hash + face.points[k]);
     return face.mirrored ? 0 - hash : hash;
 }
 
